@@ -1,0 +1,106 @@
+#include "base/csv.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace servoctl {
+namespace {
+
+/// Splits the text into records; knows nothing of columns.
+class Splitter {
+ public:
+  explicit Splitter(std::string_view text) : text_(text) {
+    if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;
+  }
+
+  bool at_end() const { return at_ >= text_.size(); }
+  std::uint32_t line() const { return line_; }
+
+  /// False when a quote is not closed before the end of the text.
+  bool next(std::vector<std::string>& cells) {
+    cells.clear();
+    cells.emplace_back();
+    for (;;) {
+      if (at_end()) return true;
+      const char c = text_[at_];
+      if (c == '"' && cells.back().empty()) {
+        if (!quoted(cells.back())) return false;
+        continue;
+      }
+      ++at_;
+      if (c == ',') {
+        cells.emplace_back();
+      } else if (c == '\n') {
+        ++line_;
+        return true;
+      } else if (c != '\r' || (!at_end() && text_[at_] != '\n')) {
+        cells.back() += c;
+      }
+    }
+  }
+
+ private:
+  bool quoted(std::string& cell) {
+    for (++at_; !at_end(); ++at_) {
+      const char c = text_[at_];
+      if (c == '\n') ++line_;
+      if (c != '"') {
+        cell += c;
+        continue;
+      }
+      if (at_ + 1 < text_.size() && text_[at_ + 1] == '"') {
+        cell += '"';
+        ++at_;
+        continue;
+      }
+      ++at_;
+      return true;
+    }
+    return false;
+  }
+
+  std::string_view text_;
+  std::size_t at_ = 0;
+  std::uint32_t line_ = 1;
+};
+
+tl::unexpected<Error> fail_at(std::string_view file, std::uint32_t line, const std::string& what) {
+  Error error;
+  error.code = Errc::file;
+  error.message = fmt::format("{}:{}: {}", file, line, what);
+  error.line = line;
+  return fail(std::move(error));
+}
+
+}  // namespace
+
+std::size_t CsvTable::column(std::string_view name) const {
+  return static_cast<std::size_t>(std::find(columns.begin(), columns.end(), name) - columns.begin());
+}
+
+Result<CsvTable> parse_csv(std::string_view text, std::string_view file) {
+  CsvTable table;
+  Splitter splitter(text);
+  std::vector<std::string> cells;
+  while (!splitter.at_end()) {
+    const auto line = splitter.line();
+    if (!splitter.next(cells)) return fail_at(file, line, "a quote is opened here and never closed");
+    if (cells.size() == 1 && cells.front().empty()) continue;
+    if (table.columns.empty()) {
+      table.columns = cells;
+      auto sorted = cells;
+      std::sort(sorted.begin(), sorted.end());
+      const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+      if (twice != sorted.end()) return fail_at(file, line, fmt::format("column '{}' stands here twice", *twice));
+      continue;
+    }
+    if (cells.size() != table.columns.size())
+      return fail_at(file, line, fmt::format("{} cells, but the header names {} columns", cells.size(),
+                                             table.columns.size()));
+    table.rows.push_back({cells, line});
+  }
+  if (table.columns.empty()) return fail_at(file, 1, "the file is empty; a line with column names is expected");
+  return table;
+}
+
+}  // namespace servoctl

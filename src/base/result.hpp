@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <tl/expected.hpp>
+#include <utility>
+
+#include "base/object_address.hpp"
+
+namespace servoctl {
+
+/// What went wrong, in the terms a caller can act on. Each has one exit code and one name in JSON, both part of
+/// the contract that scripts rely on.
+enum class Errc : std::uint8_t {
+  negative,     ///< It ran, and the answer is no: a difference, a failed check, an incomplete result.
+  usage,        ///< The request itself is wrong; nothing was sent.
+  bus,          ///< The transport is missing, down or lost.
+  timeout,      ///< The node did not answer in time.
+  sdo_abort,    ///< The node answered and refused.
+  protocol,     ///< The node answered with something the protocol does not allow.
+  file,         ///< A file cannot be read, written or parsed.
+  refused,      ///< servoctl refuses for safety: a confirmation is missing, or --read-only forbids it.
+  bug,          ///< A fault of servoctl itself.
+  interrupted,  ///< The user pressed Ctrl-C.
+};
+
+/// Process exit code: 1 negative, 2 usage, 3 bus, 4 timeout, 5 sdo_abort, 6 protocol, 7 file, 8 refused, 70 bug,
+/// 130 interrupted.
+int exit_code(Errc code);
+
+/// The name in JSON: `negative usage bus no-answer sdo-abort protocol file refused bug interrupted`.
+std::string_view name(Errc code);
+
+/// A failure, told in full: what happened, to which node and object, and what to do next.
+struct Error {
+  Errc code = Errc::bug;
+  std::string message;                       ///< What happened: one sentence without a full stop.
+  std::string hint;                          ///< What to do next; empty when there is nothing to say.
+  std::optional<std::uint8_t> node;          ///< 1..127 when one node is concerned.
+  std::optional<ObjectAddress> object;       ///< Set when one object is concerned.
+  std::optional<std::uint32_t> abort_code;   ///< Set only with Errc::sdo_abort (CiA 301, 7.2.4.3.17).
+  std::optional<std::uint32_t> line;         ///< Line of the file the error is in, from 1.
+};
+
+template <class T>
+using Result = tl::expected<T, Error>;
+
+[[nodiscard]] inline tl::unexpected<Error> fail(Errc code, std::string message, std::string hint = {}) {
+  Error error;
+  error.code = code;
+  error.message = std::move(message);
+  error.hint = std::move(hint);
+  return tl::unexpected<Error>(std::move(error));
+}
+
+[[nodiscard]] inline tl::unexpected<Error> fail(Error error) { return tl::unexpected<Error>(std::move(error)); }
+
+}  // namespace servoctl

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace servoctl {
+
+/// ASCII letters in lower case; other bytes unchanged.
+std::string lower(std::string_view text);
+bool equals_nocase(std::string_view a, std::string_view b);
+bool starts_with_nocase(std::string_view text, std::string_view prefix);
+
+/// Without spaces, tabs, CR and LF at both ends.
+std::string_view trim(std::string_view text);
+
+/// The parts between separators; a text without separator is one part, an empty text none.
+std::vector<std::string_view> split(std::string_view text, char separator);
+
+/// Columns the text takes on a terminal: two for East Asian wide characters, none for combining ones. UTF-8; a bad byte
+/// counts as one column.
+std::size_t display_width(std::string_view text);
+
+/// `text` filled with spaces to `width` columns; longer text is left as it is.
+std::string pad_right(std::string_view text, std::size_t width);
+std::string pad_left(std::string_view text, std::size_t width);
+
+/// At most `width` columns of `text`; where something is cut, the last column is `…`.
+std::string clip(std::string_view text, std::size_t width);
+
+/// Levenshtein distance with transpositions, ASCII case ignored.
+std::size_t edit_distance(std::string_view a, std::string_view b);
+
+/// Up to `most` of the candidates nearest to `text`, best first; those too far off to be meant are left out.
+std::vector<std::string> nearest(std::string_view text, std::span<const std::string> candidates,
+                                 std::size_t most = 3);
+
+/// "Did you mean a, b or c?"; empty when there is nothing to offer.
+std::string did_you_mean(std::string_view text, std::span<const std::string> candidates);
+
+/// `a`, `a or b`, `a, b or c`.
+std::string one_of(std::span<const std::string> words);
+
+}  // namespace servoctl
