@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+
+#include "base/result.hpp"
+#include "base/time.hpp"
+#include "can/frame.hpp"
+
+namespace servoctl::can {
+
+/// A CAN bus and the clock that belongs to it: real transports use the steady clock, a simulated bus its own,
+/// so that no test ever sleeps.
+class Bus {
+ public:
+  Bus() = default;
+  Bus(const Bus&) = delete;
+  Bus& operator=(const Bus&) = delete;
+  virtual ~Bus() = default;
+
+  virtual TimePoint now() const = 0;
+
+  /// Hands one frame to the bus. Waits while the transmit queue is full, at most a second; Errc::bus when the
+  /// interface is down or gone.
+  virtual Result<void> send(const Frame& frame) = 0;
+
+  /// Waits for a frame until `deadline`; one in the past asks without waiting. An empty optional means that
+  /// there was none; it may come before the deadline when a signal woke the process up.
+  virtual Result<std::optional<Frame>> receive(TimePoint deadline) = 0;
+
+  /// A descriptor that becomes readable when receive() has something to give, for use in a poll loop; -1 if
+  /// none.
+  virtual int poll_fd() const { return -1; }
+
+  /// When the bus wants receive() called although nothing was received from outside; kNever for real
+  /// transports.
+  virtual TimePoint next_event() const { return kNever; }
+};
+
+}  // namespace servoctl::can

@@ -1,0 +1,57 @@
+#include "can/frame.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "base/bytes.hpp"
+#include "base/number.hpp"
+
+namespace servoctl::can {
+namespace {
+
+/// How can-utils marks a report of the controller, as <linux/can.h> does.
+constexpr std::uint32_t kErrorFlag = 0x2000'0000;
+constexpr std::uint32_t kExtendedMask = 0x1FFF'FFFF;
+
+}  // namespace
+
+Frame make_frame(std::uint32_t id, std::span<const std::uint8_t> data) {
+  Frame frame;
+  frame.id = id;
+  frame.size = static_cast<std::uint8_t>(std::min<std::size_t>(data.size(), frame.data.size()));
+  std::copy_n(data.begin(), frame.size, frame.data.begin());
+  return frame;
+}
+
+std::string to_string(const Frame& frame) {
+  if (frame.error) return fmt::format("{:08X}#{}", kErrorFlag | frame.id, to_hex(frame.payload(), ""));
+  auto out = frame.extended ? fmt::format("{:08X}#", frame.id) : fmt::format("{:03X}#", frame.id);
+  if (frame.remote) return out + (frame.size == 0 ? "R" : fmt::format("R{}", frame.size));
+  return out + to_hex(frame.payload(), "");
+}
+
+std::optional<Frame> parse_frame(std::string_view text) {
+  const auto hash = text.find('#');
+  if (hash != 3 && hash != 8) return std::nullopt;
+  Frame frame;
+  const auto id = parse_digits(text.substr(0, hash), 16);
+  if (!id || *id > (hash == 8 ? kErrorFlag | kExtendedMask : 0x7FFU)) return std::nullopt;
+  frame.error = (*id & kErrorFlag) != 0;
+  frame.extended = hash == 8 && !frame.error;
+  frame.id = static_cast<std::uint32_t>(*id) & kExtendedMask;
+  const auto rest = text.substr(hash + 1);
+  if (!frame.error && !rest.empty() && (rest.front() == 'R' || rest.front() == 'r')) {
+    const auto size = rest.size() == 1 ? std::optional<std::uint64_t>(0) : parse_digits(rest.substr(1), 10);
+    if (!size || *size > 8) return std::nullopt;
+    frame.remote = true;
+    frame.size = static_cast<std::uint8_t>(*size);
+    return frame;
+  }
+  const auto bytes = parse_hex_bytes(rest);
+  if (!bytes || bytes->size() > 8) return std::nullopt;
+  frame.size = static_cast<std::uint8_t>(bytes->size());
+  std::copy(bytes->begin(), bytes->end(), frame.data.begin());
+  return frame;
+}
+
+}  // namespace servoctl::can
