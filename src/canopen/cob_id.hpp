@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+
+namespace servoctl::canopen {
+
+/// Node-IDs of CiA 301: 1..127; 0 means all nodes in an NMT command.
+inline constexpr std::uint8_t kFirstNode = 1;
+inline constexpr std::uint8_t kLastNode = 127;
+
+/// Bases of the pre-defined connection set (CiA 301, 7.3.5); the node-ID is added, except to kNmt and kSync.
+inline constexpr std::uint32_t kNmt = 0x000;
+inline constexpr std::uint32_t kSync = 0x080;
+inline constexpr std::uint32_t kEmergency = 0x080;
+inline constexpr std::uint32_t kSdoAnswer = 0x580;   ///< From the server, the drive.
+inline constexpr std::uint32_t kSdoRequest = 0x600;  ///< From the client.
+inline constexpr std::uint32_t kErrorControl = 0x700;  ///< Boot-up, heartbeat and node guarding.
+
+}  // namespace servoctl::canopen

@@ -1,0 +1,70 @@
+#include "canopen/node_watch.hpp"
+
+#include <algorithm>
+
+namespace servoctl::canopen {
+
+TimePoint NodeWatch::Node::deadline() const {
+  if (lost || intervals < 2) return kNever;
+  return *last + std::max<Duration>(3 * period, period + std::chrono::milliseconds(100));
+}
+
+void NodeWatch::on_frame(const can::Frame& frame, TimePoint now) {
+  if (const auto emergency = parse_emergency(frame)) {
+    events_.push_back({now, emergency->node, *emergency});
+    return;
+  }
+  if (const auto message = parse_error_control(frame)) on_error_control(*message, now);
+}
+
+void NodeWatch::on_error_control(const ErrorControl& message, TimePoint now) {
+  auto& node = nodes_[message.node];
+  if (message.boot_up) {
+    ++node.boots;
+    node.state = NmtState::pre_operational;  // CiA 301, 7.3.2.2.1: a node enters it by itself after boot-up.
+    node.last.reset();
+    node.intervals = 0;
+    node.lost = false;
+    events_.push_back({now, message.node, NodeEvent::BootUp{}});
+    return;
+  }
+  if (node.last) node.period = std::max(node.intervals++ == 0 ? Duration::zero() : node.period, now - *node.last);
+  if (node.lost || (node.state && *node.state != message.state))
+    events_.push_back({now, message.node, NodeEvent::StateChange{message.state}});
+  node.lost = false;
+  node.state = message.state;
+  node.last = now;
+  ++node.heartbeats;
+}
+
+void NodeWatch::on_time(TimePoint now) {
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    auto& node = nodes_[i];
+    if (now < node.deadline()) continue;
+    node.lost = true;
+    events_.push_back({now, static_cast<std::uint8_t>(i), NodeEvent::HeartbeatLost{now - *node.last}});
+    node.last.reset();
+    node.intervals = 0;
+  }
+}
+
+TimePoint NodeWatch::deadline() const {
+  TimePoint next = kNever;
+  for (const auto& node : nodes_) next = std::min(next, node.deadline());
+  return next;
+}
+
+std::optional<NodeEvent> NodeWatch::take_event() {
+  if (events_.empty()) return std::nullopt;
+  auto event = events_.front();
+  events_.pop_front();
+  return event;
+}
+
+void NodeWatch::forget(std::uint8_t node) {
+  const auto boots = nodes_[node].boots;
+  nodes_[node] = {};
+  nodes_[node].boots = boots;
+}
+
+}  // namespace servoctl::canopen

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <variant>
+
+#include "base/time.hpp"
+#include "can/frame.hpp"
+#include "canopen/emergency.hpp"
+#include "canopen/nmt.hpp"
+
+namespace servoctl::canopen {
+
+/// Something a node told without being asked, or stopped telling.
+struct NodeEvent {
+  struct BootUp {};
+  struct StateChange {
+    NmtState state;
+  };
+  struct HeartbeatLost {
+    Duration silence;
+  };
+  TimePoint time;
+  std::uint8_t node = 0;
+  std::variant<BootUp, StateChange, HeartbeatLost, Emergency> what;
+};
+
+/// Listens to boot-up, heartbeat and emergency messages of all nodes. Sees every frame, whatever a command waits for.
+///
+/// The heartbeat period of a node is learned from its messages: the longest of at least two intervals, so that an extra
+/// message at a change of state does not count as the period. A node that stays silent for three periods (at least 100 ms
+/// longer than one) is reported as lost, once, until it is heard again.
+class NodeWatch {
+ public:
+  void on_frame(const can::Frame& frame, TimePoint now);
+  void on_time(TimePoint now);
+  TimePoint deadline() const;
+
+  std::optional<NodeEvent> take_event();
+
+  /// State last heard from the node (1..127); empty until it was heard.
+  std::optional<NmtState> state(std::uint8_t node) const { return nodes_[node].state; }
+  /// Boot-up messages heard from the node so far.
+  std::uint32_t boots(std::uint8_t node) const { return nodes_[node].boots; }
+  /// Heartbeats heard from the node so far, boot-up not counted.
+  std::uint32_t heartbeats(std::uint8_t node) const { return nodes_[node].heartbeats; }
+  /// Forgets the state and the period of the node, before it is told to reset.
+  void forget(std::uint8_t node);
+
+ private:
+  struct Node {
+    std::optional<NmtState> state;
+    std::uint32_t boots = 0;
+    std::uint32_t heartbeats = 0;
+    std::optional<TimePoint> last;  ///< Last heartbeat since boot-up or loss.
+    Duration period{};              ///< Longest interval between two heartbeats.
+    std::uint32_t intervals = 0;    ///< Intervals measured.
+    bool lost = false;
+    TimePoint deadline() const;
+  };
+  void on_error_control(const ErrorControl& message, TimePoint now);
+
+  std::array<Node, 128> nodes_{};
+  std::deque<NodeEvent> events_;
+};
+
+}  // namespace servoctl::canopen

@@ -1,0 +1,88 @@
+#include "canopen/sdo_abort.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace servoctl::canopen {
+namespace {
+
+struct Row {
+  std::uint32_t code;
+  std::string_view text;
+  std::string_view hint;
+};
+
+constexpr std::string_view kCheckType = "check the object's type and size: `objects` shows what the dictionary says";
+constexpr std::string_view kCheckName =
+    "this firmware does not have it, or the dictionary in use belongs to another drive";
+constexpr std::string_view kCheckRange = "`param explain` or `objects` shows the limits; other settings may narrow them";
+constexpr std::string_view kCheckState =
+    "the drive takes this in another state only: disable it or go to pre-operational, then try again";
+
+constexpr std::array kRows{
+    Row{0x0503'0000, "toggle bit not alternated", "try again; if it stays, look for a second master on the bus"},
+    Row{0x0504'0000, "SDO protocol timed out", "try again; if it stays, look at the bus load"},
+    Row{0x0504'0001, "command specifier not valid or unknown", "the drive does not support this kind of transfer"},
+    Row{0x0504'0002, "invalid block size", ""},
+    Row{0x0504'0003, "invalid sequence number", ""},
+    Row{0x0504'0004, "CRC error", "try again; if it stays, look at the wiring and the termination"},
+    Row{0x0504'0005, "out of memory", ""},
+    Row{0x0601'0000, "unsupported access to an object", ""},
+    Row{0x0601'0001, "attempt to read a write-only object", "it can be written, not read"},
+    Row{0x0601'0002, "attempt to write a read-only object", "it can be read, not written"},
+    Row{0x0602'0000, "object does not exist in the object dictionary", kCheckName},
+    Row{0x0604'0041, "object cannot be mapped to the PDO", ""},
+    Row{0x0604'0042, "number and length of the mapped objects exceed the PDO length", "a PDO holds 8 bytes"},
+    Row{0x0604'0043, "general parameter incompatibility", ""},
+    Row{0x0604'0047, "general internal incompatibility in the device", ""},
+    Row{0x0606'0000, "access failed due to a hardware error", ""},
+    Row{0x0607'0010, "data type does not match, length of service parameter does not match", kCheckType},
+    Row{0x0607'0012, "data type does not match, length of service parameter too high", kCheckType},
+    Row{0x0607'0013, "data type does not match, length of service parameter too low", kCheckType},
+    Row{0x0609'0011, "sub-index does not exist", kCheckName},
+    Row{0x0609'0030, "invalid value for parameter", kCheckRange},
+    Row{0x0609'0031, "value of parameter written too high", kCheckRange},
+    Row{0x0609'0032, "value of parameter written too low", kCheckRange},
+    Row{0x0609'0036, "maximum value is less than minimum value", ""},
+    Row{0x060A'0023, "resource not available: SDO connection", ""},
+    Row{0x0800'0000, "general error", ""},
+    Row{0x0800'0020, "data cannot be transferred or stored to the application", kCheckState},
+    Row{0x0800'0021, "data cannot be transferred or stored to the application because of local control",
+        "the panel or the vendor's software may hold control of the drive"},
+    Row{0x0800'0022, "data cannot be transferred or stored to the application because of the present device state",
+        kCheckState},
+    Row{0x0800'0023, "object dictionary dynamic generation failed or no object dictionary is present", ""},
+    Row{0x0800'0024, "no data available", ""},
+};
+
+const Row* find(std::uint32_t code) {
+  const auto row = std::find_if(kRows.begin(), kRows.end(), [&](const Row& r) { return r.code == code; });
+  return row == kRows.end() ? nullptr : &*row;
+}
+
+/// The error class of the high byte (ISO 9506, from which CiA 301 has it).
+std::string_view class_text(std::uint32_t code) {
+  switch (code >> 24U) {
+    case 0x05: return "service error not listed in CiA 301";
+    case 0x06: return "access error not listed in CiA 301";
+    case 0x08: return "other error not listed in CiA 301";
+    default: return "code of the vendor, not listed in CiA 301";
+  }
+}
+
+}  // namespace
+
+std::string sdo_abort_text(std::uint32_t code) {
+  const auto* row = find(code);
+  return std::string(row != nullptr ? row->text : class_text(code));
+}
+
+std::string sdo_abort_hint(std::uint32_t code) {
+  const auto* row = find(code);
+  return row != nullptr ? std::string(row->hint) : "look the code up in the drive's manual";
+}
+
+bool is_standard_sdo_abort(std::uint32_t code) { return find(code) != nullptr; }
+
+}  // namespace servoctl::canopen

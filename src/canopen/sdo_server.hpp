@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "base/bytes.hpp"
+#include "base/object_address.hpp"
+#include "base/time.hpp"
+#include "can/frame.hpp"
+
+namespace servoctl::canopen {
+
+/// What an SDO server serves: the entries of a device. Both calls answer at once; a refusal is an SDO abort code.
+class ObjectStore {
+ public:
+  virtual ~ObjectStore() = default;
+  /// Fills `out`; returns 0 or the abort code.
+  virtual std::uint32_t read(ObjectAddress object, Bytes& out) = 0;
+  /// Returns 0 or the abort code; nothing is changed when it refuses.
+  virtual std::uint32_t write(ObjectAddress object, ByteSpan data) = 0;
+};
+
+/// The server side of the default SDO channel (CiA 301, 7.2.4). Performs no I/O and reads no clock.
+class SdoServer {
+ public:
+  struct Options {
+    bool segmented = true;               ///< False: segmented requests are aborted with 0504 0001h.
+    Duration timeout = std::chrono::seconds(1);  ///< Silence of the client that ends a segmented transfer.
+  };
+
+  SdoServer(std::uint8_t node, ObjectStore& store, Options options) : node_(node), store_(&store), options_(options) {}
+
+  void on_frame(const can::Frame& frame, TimePoint now);
+  void on_time(TimePoint now);
+  std::optional<can::Frame> take_frame();
+  TimePoint deadline() const { return deadline_; }
+  /// Forgets a transfer under way, as a reset of the communication does.
+  void reset();
+
+ private:
+  enum class State : std::uint8_t { idle, upload, download };
+
+  void on_upload_initiate(ObjectAddress object, TimePoint now);
+  void on_download_initiate(const can::Frame& frame, TimePoint now);
+  void on_upload_segment(const can::Frame& frame, TimePoint now);
+  void on_download_segment(const can::Frame& frame, TimePoint now);
+  void abort(ObjectAddress object, std::uint32_t code);
+
+  std::uint8_t node_;
+  ObjectStore* store_;
+  Options options_;
+  State state_ = State::idle;
+  ObjectAddress object_;
+  Bytes data_;
+  std::size_t offset_ = 0;
+  std::optional<std::size_t> announced_;
+  std::uint8_t toggle_ = 0;
+  TimePoint deadline_ = kNever;
+  std::optional<can::Frame> tx_;
+};
+
+}  // namespace servoctl::canopen
