@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace servoctl::drive {
+
+/// States of the power drive system (CiA 402-2, 8.2.3).
+enum class DriveState : std::uint8_t {
+  not_ready_to_switch_on,
+  switch_on_disabled,
+  ready_to_switch_on,
+  switched_on,
+  operation_enabled,
+  quick_stop_active,
+  fault_reaction_active,
+  fault,
+  unknown,  ///< Bits that fit no state.
+};
+
+std::string_view name(DriveState state);     ///< `switch on disabled`
+std::string_view name_zh(DriveState state);  ///< `伺服无故障`
+
+/// The state in a statusword (6041h): bits 0 to 3, 5 and 6; all others are masked.
+DriveState decode_state(std::uint16_t statusword);
+
+/// Whether the power stage may be energised in this state.
+bool is_energised(DriveState state);
+
+/// The commands a controlword (6040h) can carry (CiA 402-2, table 28), by bits 0 to 3 and 7.
+enum class ControlCommand : std::uint8_t { none, shutdown, switch_on, enable_operation, disable_voltage, quick_stop, fault_reset };
+
+/// The command in a controlword. A fault reset is the rising edge of bit 7, seen against the controlword before; while bit
+/// 7 stays set no other command is carried out.
+ControlCommand decode_command(std::uint16_t controlword, std::uint16_t before);
+
+/// The state the command leads to, or the same state where it does nothing there. Transitions 2 to 12, 15 and 16; those
+/// the drive makes by itself are not in it. Switch on + enable operation in one step (3 and 4) is followed.
+DriveState next_state(DriveState state, ControlCommand command);
+
+/// The bits of a statusword with their common meaning, low to high: `quick_stop`, `warning`, `remote`, … Bits 12 and 13
+/// depend on the mode of operation (0 when unknown).
+std::vector<std::string> statusword_bits(std::uint16_t statusword, std::int8_t mode);
+
+}  // namespace servoctl::drive

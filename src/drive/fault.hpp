@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/result.hpp"
+
+namespace servoctl::drive {
+
+/// One line of a family's faults table (docs/drive-data.md).
+struct Fault {
+  enum class Kind : std::uint8_t { fault, warning, status };
+  std::optional<std::uint16_t> code;  ///< As in 603Fh and EMCY; empty where the manual prints none.
+  std::string extra;                  ///< The vendor's second code, as printed.
+  std::string panel;                  ///< What the panel shows.
+  Kind kind = Kind::fault;
+  std::optional<bool> resettable;     ///< Empty: the manual does not say.
+  std::string name;
+  std::string name_zh;
+  std::string check;                  ///< Cause and remedy.
+  std::string check_zh;
+  std::string assumed;
+  std::uint32_t line = 0;
+};
+
+std::string_view name(Fault::Kind kind);  ///< `fault warning status`
+
+/// Reads `<family>.faults.csv`. Errc::file with file and line for a bad cell or an unknown column.
+Result<std::vector<Fault>> parse_faults(std::string_view csv, std::string_view file);
+
+}  // namespace servoctl::drive

@@ -1,0 +1,142 @@
+#include "drive/naming.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+#include "base/text.hpp"
+
+namespace servoctl::drive {
+namespace {
+
+bool is_plain(const od::Object& object) { return object.entries.size() == 1 && object.entries.front().address.sub == 0; }
+
+/// Entries of `object` that `part` names: exactly, or as a piece of one name.
+std::vector<const od::Entry*> entries_named(const od::Object& object, std::string_view part) {
+  std::vector<const od::Entry*> pieces;
+  for (const auto& entry : object.entries) {
+    const auto name = od::identifier(entry.name);
+    if (name == part) return {&entry};
+    if (entry.address.sub != 0 && !part.empty() && name.find(part) != std::string::npos) pieces.push_back(&entry);
+  }
+  return pieces;
+}
+
+tl::unexpected<Error> unknown(const Profile& profile, std::string_view text) {
+  const auto known = names(profile);
+  auto hint = did_you_mean(lower(text), known);
+  if (hint.empty()) hint = "`objects PATTERN` and `param search WORD` find names; an index is written 0x6041 or 6041h";
+  return fail(Errc::usage, fmt::format("'{}' is no object or parameter of {}", text, profile.family), std::move(hint));
+}
+
+tl::unexpected<Error> ambiguous(std::string_view text, const std::vector<std::string>& meanings) {
+  const std::vector<std::string> shown(meanings.begin(),
+                                       meanings.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(meanings.size(), 6)));
+  return fail(Errc::usage, fmt::format("'{}' is ambiguous: {} meanings", text, meanings.size()),
+              "write " + one_of(shown) + (shown.size() < meanings.size() ? ", …" : ""));
+}
+
+/// Objects and entries by name; empty when nothing of this name exists.
+std::vector<Target> named(const Profile& profile, std::string_view text) {
+  const auto dot = text.find('.');
+  const auto object_name = od::identifier(text.substr(0, dot));
+  const auto part = dot == std::string_view::npos ? std::string() : od::identifier(text.substr(dot + 1));
+  std::vector<Target> out;
+  if (object_name.empty()) return out;
+  for (const auto& object : profile.dictionary.objects()) {
+    if (od::identifier(object.name) != object_name) continue;
+    if (dot == std::string_view::npos) {
+      for (const auto& entry : object.entries)
+        if (is_plain(object) || entry.address.sub != 0) out.push_back(target_at(&profile, entry.address));
+    } else {
+      for (const auto* entry : entries_named(object, part)) out.push_back(target_at(&profile, entry->address));
+    }
+  }
+  return out;
+}
+
+std::string full_name(const Profile& profile, const Target& target) {
+  if (target.parameter != nullptr) return target.parameter->id;
+  const auto* object = profile.dictionary.object(target.address.index);
+  return object != nullptr && target.entry != nullptr ? entry_name(*object, *target.entry) : to_string(target.address);
+}
+
+}  // namespace
+
+std::string Target::label() const {
+  if (parameter != nullptr) return parameter->id + " " + parameter->name;
+  return entry != nullptr ? entry->name : std::string();
+}
+
+std::string Target::label_zh() const {
+  if (parameter != nullptr && !parameter->name_zh.empty()) return parameter->id + " " + parameter->name_zh;
+  return entry != nullptr && !entry->name_zh.empty() ? entry->name_zh : label();
+}
+
+Target target_at(const Profile* profile, ObjectAddress address) {
+  Target out;
+  out.address = address;
+  if (profile == nullptr) return out;
+  out.entry = profile->dictionary.find(address);
+  out.parameter = profile->parameter(address);
+  return out;
+}
+
+std::string entry_name(const od::Object& object, const od::Entry& entry) {
+  const auto name = od::identifier(object.name);
+  return is_plain(object) ? name : name + "." + od::identifier(entry.name);
+}
+
+std::vector<std::string> names(const Profile& profile) {
+  std::vector<std::string> out;
+  for (const auto& parameter : profile.parameters) out.push_back(parameter.id);
+  for (const auto& object : profile.dictionary.objects())
+    for (const auto& entry : object.entries)
+      if (profile.parameter(entry.address) == nullptr) out.push_back(entry_name(object, entry));
+  return out;
+}
+
+Result<const od::Parameter*> resolve_parameter(const Profile& profile, std::string_view text) {
+  if (const auto* parameter = profile.parameter(text)) return parameter;
+  if (const auto address = parse_object_address(text))
+    if (const auto* parameter = profile.parameter(*address)) return parameter;
+  std::vector<const od::Parameter*> named;
+  const auto wanted = od::identifier(text);
+  for (const auto& parameter : profile.parameters)
+    if (od::identifier(parameter.name) == wanted) named.push_back(&parameter);
+  if (named.size() == 1) return named.front();
+  std::vector<std::string> known;
+  for (const auto* parameter : named) known.push_back(parameter->id);
+  if (named.size() > 1) return ambiguous(text, known);
+  for (const auto& parameter : profile.parameters) known.push_back(parameter.id);
+  auto hint = profile.parameters.empty() ? fmt::format("{} has no table of panel parameters", profile.family)
+                                         : did_you_mean(text, known);
+  if (hint.empty()) hint = "`param list` shows all, `param search WORD` finds them by name";
+  return fail(Errc::usage, fmt::format("'{}' is no panel parameter of {}", text, profile.family), std::move(hint));
+}
+
+Result<Target> resolve(const Profile* profile, std::string_view text) {
+  if (const auto address = parse_object_address(text)) return target_at(profile, *address);
+  if (profile == nullptr)
+    return fail(Errc::usage, fmt::format("'{}' is no object address, and without a drive family names are unknown", text),
+                "write an address such as 0x6041 or 0x6099:1, or add -d FAMILY (`drives` lists them)");
+  if (const auto* parameter = profile->parameter(text)) {
+    if (!parameter->object)
+      return fail(Errc::usage, fmt::format("{} ({}) has no object on the bus", parameter->id, parameter->name),
+                  "it can be changed on the panel only; `param explain` tells what it does");
+    return target_at(profile, *parameter->object);
+  }
+  auto found = named(*profile, text);
+  if (found.empty()) {
+    const auto wanted = od::identifier(text);
+    for (const auto& parameter : profile->parameters)
+      if (parameter.object && od::identifier(parameter.name) == wanted)
+        found.push_back(target_at(profile, *parameter.object));
+  }
+  if (found.empty()) return unknown(*profile, text);
+  if (found.size() == 1) return found.front();
+  std::vector<std::string> meanings;
+  for (const auto& target : found) meanings.push_back(full_name(*profile, target));
+  return ambiguous(text, meanings);
+}
+
+}  // namespace servoctl::drive

@@ -1,0 +1,213 @@
+#include "drive/profile.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <fmt/format.h>
+#include <system_error>
+
+#include "base/file.hpp"
+#include "base/text.hpp"
+#include "od/eds.hpp"
+
+namespace servoctl::drive {
+namespace fs = std::filesystem;
+namespace {
+
+fs::path with_extension(const fs::path& stem, std::string_view extension) { return stem.string() + std::string(extension); }
+
+/// The program's own data: beside an installed program, or in the source tree of one that was just built.
+std::optional<fs::path> own_folder() {
+  std::error_code ignored;
+  const auto program = fs::read_symlink("/proc/self/exe", ignored);
+  if (ignored) return std::nullopt;
+  for (auto folder = program.parent_path(); folder.has_relative_path(); folder = folder.parent_path()) {
+    if (fs::is_directory(folder / "share/servoctl/eds", ignored)) return folder / "share/servoctl/eds";
+    if (fs::is_directory(folder / "eds", ignored) && fs::exists(folder / "CMakeLists.txt", ignored)) return folder / "eds";
+  }
+  return std::nullopt;
+}
+
+Result<void> add_dictionary(Profile& profile, const fs::path& path) {
+  const auto text = read_file(path);
+  if (!text) return tl::unexpected<Error>(text.error());
+  auto file = od::read_eds(*text, path.string());
+  if (!file) return tl::unexpected<Error>(file.error());
+  profile.dictionary = std::move(file->dictionary);
+  for (const auto& finding : file->diagnostics) profile.warnings.push_back(od::to_string(finding, path.filename().string()));
+  if (profile.rules.name.empty()) profile.rules.name = file->device.product_name;
+  if (profile.rules.vendor.empty()) profile.rules.vendor = file->device.vendor_name;
+  return {};
+}
+
+Result<void> add_parameters(Profile& profile, const fs::path& path) {
+  const auto text = read_file(path);
+  if (!text) return tl::unexpected<Error>(text.error());
+  auto parameters = od::parse_parameters(*text, path.string());
+  if (!parameters) return tl::unexpected<Error>(parameters.error());
+  profile.parameters = std::move(*parameters);
+  return {};
+}
+
+Result<void> add_object_notes(Profile& profile, const fs::path& path) {
+  const auto text = read_file(path);
+  if (!text) return tl::unexpected<Error>(text.error());
+  return od::annotate(profile.dictionary, *text, path.string());
+}
+
+Result<void> add_faults(Profile& profile, const fs::path& path) {
+  const auto text = read_file(path);
+  if (!text) return tl::unexpected<Error>(text.error());
+  auto faults = parse_faults(*text, path.string());
+  if (!faults) return tl::unexpected<Error>(faults.error());
+  profile.faults = std::move(*faults);
+  return {};
+}
+
+Result<void> add_rules(Profile& profile, const fs::path& path) {
+  const auto text = read_file(path);
+  if (!text) return tl::unexpected<Error>(text.error());
+  auto rules = parse_rules(*text, path.string());
+  if (!rules) return tl::unexpected<Error>(rules.error());
+  profile.rules = std::move(*rules);
+  return {};
+}
+
+struct Part {
+  std::string_view extension;
+  Result<void> (*add)(Profile&, const fs::path&);
+};
+/// In the order they need each other: the objects table annotates the dictionary.
+constexpr Part kParts[] = {
+    {".toml", add_rules},           {".eds", add_dictionary},      {".dcf", add_dictionary},
+    {".objects.csv", add_object_notes}, {".params.csv", add_parameters}, {".faults.csv", add_faults},
+};
+
+Result<Profile> load_parts(const Family& family) {
+  Profile profile;
+  profile.family = family.name;
+  std::error_code ignored;
+  for (const auto& part : kParts) {
+    const auto path = with_extension(family.stem, part.extension);
+    if (!fs::exists(path, ignored)) continue;
+    if (part.extension == ".dcf" && !profile.dictionary.empty()) continue;
+    if (const auto added = part.add(profile, path); !added) return tl::unexpected<Error>(added.error());
+  }
+  profile.build_index();
+  return profile;
+}
+
+Result<Profile> load_single_file(const fs::path& path) {
+  Profile profile;
+  profile.family = path.string();
+  const bool table = lower(path.extension().string()) == ".csv";
+  const auto added = table ? add_parameters(profile, path) : add_dictionary(profile, path);
+  if (!added) return tl::unexpected<Error>(added.error());
+  profile.build_index();
+  return profile;
+}
+
+bool names_a_file(std::string_view family) {
+  const auto folded = lower(family);
+  return family.find('/') != std::string_view::npos || folded.ends_with(".eds") || folded.ends_with(".dcf") ||
+         folded.ends_with(".csv");
+}
+
+void find_in(const fs::path& folder, std::vector<Family>& out) {
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    const auto extension = it->path().extension();
+    if (extension != ".eds" && extension != ".dcf" && extension != ".toml") continue;
+    const auto name = lower(it->path().stem().string());
+    if (std::none_of(out.begin(), out.end(), [&](const Family& f) { return f.name == name; }))
+      out.push_back({name, folder / it->path().stem()});
+  }
+}
+
+}  // namespace
+
+std::string canonical_id(std::string_view id) {
+  std::string out;
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  const auto is_alnum = [&](char c) { return is_digit(c) || (c >= 'a' && c <= 'z'); };
+  const auto text = lower(id);
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '_' || c == '-') {
+      // Between two digits the separator says where one number ends: P3-5 is not P35.
+      if (!out.empty() && is_digit(out.back()) && i + 1 < text.size() && is_digit(text[i + 1])) out += '.';
+      continue;
+    }
+    const bool leading = out.empty() || !is_digit(out.back());
+    if (c == '0' && leading && i + 1 < text.size() && is_alnum(text[i + 1])) continue;
+    out += c;
+  }
+  return out;
+}
+
+void Profile::build_index() {
+  by_id_.clear();
+  by_object_.clear();
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    by_id_.emplace(canonical_id(parameters[i].id), i);
+    if (parameters[i].object) by_object_.emplace(*parameters[i].object, i);
+  }
+}
+
+const od::Parameter* Profile::parameter(std::string_view id) const {
+  const auto found = by_id_.find(canonical_id(id));
+  return found == by_id_.end() ? nullptr : &parameters[found->second];
+}
+
+const od::Parameter* Profile::parameter(ObjectAddress object) const {
+  const auto found = by_object_.find(object);
+  return found == by_object_.end() ? nullptr : &parameters[found->second];
+}
+
+std::vector<fs::path> drive_folders() {
+  std::vector<fs::path> out;
+  if (const char* own = std::getenv("SERVOCTL_DRIVES"); own != nullptr)
+    for (const auto part : split(own, ':'))
+      if (!part.empty()) out.emplace_back(part);
+  if (const char* config = std::getenv("XDG_CONFIG_HOME"); config != nullptr && *config != '\0')
+    out.push_back(fs::path(config) / "servoctl/drives");
+  else if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0')
+    out.push_back(fs::path(home) / ".config/servoctl/drives");
+  if (auto own = own_folder()) out.push_back(std::move(*own));
+  return out;
+}
+
+std::vector<Family> find_families(std::span<const fs::path> folders) {
+  std::vector<Family> out;
+  for (const auto& folder : folders) {
+    find_in(folder, out);
+    std::error_code error;
+    for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+      if (std::error_code not_a_folder; it->is_directory(not_a_folder)) find_in(it->path(), out);
+  }
+  std::sort(out.begin(), out.end(), [](const Family& a, const Family& b) { return a.name < b.name; });
+  return out;
+}
+
+Result<Profile> load_profile(std::string_view family, std::span<const fs::path> folders) {
+  if (names_a_file(family)) return load_single_file(fs::path(family));
+  const auto families = find_families(folders);
+  const auto found =
+      std::find_if(families.begin(), families.end(), [&](const Family& f) { return equals_nocase(f.name, family); });
+  if (found != families.end()) return load_parts(*found);
+  std::vector<std::string> names;
+  for (const auto& known : families) names.push_back(known.name);
+  auto hint = did_you_mean(family, names);
+  if (hint.empty())
+    hint = names.empty() ? std::string("no drive data was found: set SERVOCTL_DRIVES to its folder, or name an .eds file")
+                         : "known families: " + one_of(names) + "; or name an .eds file";
+  return fail(Errc::usage, fmt::format("no drive family is called '{}'", family), std::move(hint));
+}
+
+Result<Rules> load_rules(const Family& family) {
+  const auto path = with_extension(family.stem, ".toml");
+  const auto text = read_file(path);
+  if (!text) return tl::unexpected<Error>(text.error());
+  return parse_rules(*text, path.string());
+}
+
+}  // namespace servoctl::drive

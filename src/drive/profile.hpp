@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "base/result.hpp"
+#include "drive/fault.hpp"
+#include "drive/rules.hpp"
+#include "od/dictionary.hpp"
+#include "od/parameter.hpp"
+
+namespace servoctl::drive {
+
+/// All that is known of one drive family: its dictionary, panel parameters, faults and rules.
+struct Profile {
+  std::string family;  ///< `gsd600`; the path for a file of the user's own.
+  Rules rules;
+  od::Dictionary dictionary;
+  std::vector<od::Parameter> parameters;
+  std::vector<Fault> faults;
+  std::vector<std::string> warnings;  ///< Findings in the files that did not stop them from being used.
+
+  /// The parameter with this id, in any of the ways people write it (`Pn0202`, `pn202`).
+  const od::Parameter* parameter(std::string_view id) const;
+  /// The parameter that stands at this object.
+  const od::Parameter* parameter(ObjectAddress object) const;
+
+  /// Builds the tables behind parameter(); called by load_profile().
+  void build_index();
+
+ private:
+  std::unordered_map<std::string, std::size_t> by_id_;
+  std::unordered_map<ObjectAddress, std::size_t> by_object_;
+};
+
+/// The id without what people leave out: case, `_` and `-`, leading zeros of each number (`Pn0202` and `pn_202` are one).
+std::string canonical_id(std::string_view id);
+
+/// Where families are looked for, in this order: the folders of $SERVOCTL_DRIVES (separated by `:`), the user's own
+/// (`$XDG_CONFIG_HOME/servoctl/drives`, `~/.config/servoctl/drives`), the data installed with the program or standing in its
+/// source tree.
+std::vector<std::filesystem::path> drive_folders();
+
+/// A family that was found: its name and its files without extension.
+struct Family {
+  std::string name;
+  std::filesystem::path stem;  ///< `…/eds/vmmore/gsd600`
+};
+
+/// All families in the folders and one level below, by name; the first folder that has one wins. Reads no file.
+std::vector<Family> find_families(std::span<const std::filesystem::path> folders);
+
+/// Loads a family by name, or a user's own `.eds`, `.dcf` or `.csv` file by path. Errc::usage for an unknown name (nearest
+/// ones offered), Errc::file for a file that cannot be used.
+Result<Profile> load_profile(std::string_view family, std::span<const std::filesystem::path> folders);
+
+/// Only the rules of a family, for recognising drives.
+Result<Rules> load_rules(const Family& family);
+
+}  // namespace servoctl::drive
