@@ -1,0 +1,162 @@
+#include <algorithm>
+#include <fmt/format.h>
+
+#include "base/text.hpp"
+#include "report/value.hpp"
+
+namespace servoctl::report {
+namespace {
+
+template <class... Fs>
+struct Overloaded : Fs... {
+  using Fs::operator()...;
+};
+template <class... Fs>
+Overloaded(Fs...) -> Overloaded<Fs...>;  // clang 14 has no aggregate deduction.
+
+constexpr std::size_t kGap = 2;
+
+bool is_number(const Value& value) {
+  return std::holds_alternative<std::int64_t>(value.data()) || std::holds_alternative<std::uint64_t>(value.data()) ||
+         std::holds_alternative<double>(value.data());
+}
+
+/// What a value says in one line.
+std::string inline_text(const Value& value) {
+  return std::visit(Overloaded{
+                        [](std::monostate) { return std::string("-"); },
+                        [](bool b) { return std::string(b ? "yes" : "no"); },
+                        [](std::int64_t i) { return fmt::format("{}", i); },
+                        [](std::uint64_t u) { return fmt::format("{}", u); },
+                        [](double d) { return fmt::format("{:.12g}", d); },
+                        [](const std::string& s) { return s; },
+                        [](const Hex& h) { return fmt::format("0x{:0{}X}", h.value, h.digits); },
+                        [](const List& l) {
+                          std::string out;
+                          for (const auto& v : l) out += (out.empty() ? "" : ", ") + inline_text(v);
+                          return out;
+                        },
+                        [](const Record& r) {
+                          std::string out;
+                          for (const auto& f : r)
+                            if (f.show != Show::json) out += (out.empty() ? "" : ", ") + f.key + "=" + inline_text(f.value);
+                          return out;
+                        },
+                        [](const Table&) { return std::string(); },
+                    },
+                    value.data());
+}
+
+bool is_block(const Value& value) {
+  return std::holds_alternative<Table>(value.data()) || std::holds_alternative<Record>(value.data());
+}
+
+/// Breaks at spaces so that no line is longer than `width`; lines after the first are indented.
+std::string wrapped(const std::string& text, std::size_t indent, std::size_t width) {
+  std::string out;
+  std::size_t used = 0;
+  for (const auto word : split(text, ' ')) {
+    const auto size = display_width(word);
+    if (used > 0 && width > 0 && indent + used + 1 + size > width) {
+      out += '\n' + std::string(indent, ' ');
+      used = 0;
+    }
+    if (used > 0) {
+      out += ' ';
+      ++used;
+    }
+    out += word;
+    used += size;
+  }
+  return out;
+}
+
+class TableText {
+ public:
+  TableText(const Table& table, std::size_t width) {
+    for (std::size_t i = 0; i < table.columns.size(); ++i)
+      if (table.columns[i].show != Show::json) columns_.push_back(measure(table, i));
+    if (width > 0) shrink(width);
+    add_line(table, nullptr);
+    for (const auto& row : table.rows) add_line(table, &row);
+  }
+  std::string take() { return std::move(out_); }
+
+ private:
+  struct Column {
+    std::size_t index;
+    std::size_t width;
+    bool right;
+  };
+
+  static Column measure(const Table& table, std::size_t index) {
+    const auto& column = table.columns[index];
+    Column out{index, display_width(column.title.empty() ? column.key : column.title), !table.rows.empty()};
+    for (const auto& row : table.rows) {
+      out.width = std::max(out.width, display_width(inline_text(row[index])));
+      out.right = out.right && (is_number(row[index]) || row[index].is_null());
+    }
+    return out;
+  }
+
+  /// Takes what is too much from the widest column; a column of at most 12 is left alone.
+  void shrink(std::size_t width) {
+    for (;;) {
+      std::size_t total = columns_.empty() ? 0 : (columns_.size() - 1) * kGap;
+      for (const auto& column : columns_) total += column.width;
+      const auto widest = std::max_element(columns_.begin(), columns_.end(),
+                                           [](const Column& a, const Column& b) { return a.width < b.width; });
+      if (total <= width || widest == columns_.end() || widest->width <= 12) return;
+      widest->width = std::max<std::size_t>(12, widest->width - std::min(widest->width, total - width));
+    }
+  }
+
+  void add_line(const Table& table, const List* row) {
+    std::string line;
+    for (const auto& column : columns_) {
+      const auto& head = table.columns[column.index];
+      const auto cell = row == nullptr ? (head.title.empty() ? head.key : head.title) : inline_text((*row)[column.index]);
+      const auto clipped = clip(cell, column.width);
+      if (!line.empty()) line += std::string(kGap, ' ');
+      line += column.right ? pad_left(clipped, column.width) : pad_right(clipped, column.width);
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    out_ += line + '\n';
+  }
+
+  std::vector<Column> columns_;
+  std::string out_;
+};
+
+std::string record_text(const Record& record, std::size_t width) {
+  std::size_t left = 0;
+  const auto title = [](const Field& f) { return f.title.empty() ? f.key : f.title; };
+  for (const auto& field : record)
+    if (field.show != Show::json && !is_block(field.value)) left = std::max(left, display_width(title(field)));
+  std::string out;
+  for (const auto& field : record) {
+    if (field.show == Show::json || field.value.is_null()) continue;
+    if (is_block(field.value)) {
+      out += (out.empty() ? "" : "\n") + title(field) + ":\n" + to_text(field.value, width);
+      continue;
+    }
+    out += pad_right(title(field), left + kGap) + wrapped(inline_text(field.value), left + kGap, width) + '\n';
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string to_text(const Value& value, std::size_t width) {
+  if (value.is_null()) return {};
+  if (const auto* table = std::get_if<Table>(&value.data())) return TableText(*table, width).take();
+  if (const auto* record = std::get_if<Record>(&value.data())) return record_text(*record, width);
+  if (const auto* list = std::get_if<List>(&value.data())) {
+    std::string out;
+    for (const auto& element : *list) out += (out.empty() || !is_block(element) ? "" : "\n") + to_text(element, width);
+    return out;
+  }
+  return inline_text(value) + '\n';
+}
+
+}  // namespace servoctl::report
