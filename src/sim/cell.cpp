@@ -1,0 +1,135 @@
+#include "sim/cell.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <utility>
+
+#include "base/duration.hpp"
+#include "base/number.hpp"
+#include "base/text.hpp"
+#include "canopen/cob_id.hpp"
+
+namespace servoctl::sim {
+namespace {
+
+struct Place {
+  std::string family;
+  std::uint8_t node = 1;
+};
+
+tl::unexpected<Error> bad_spec(std::string what) {
+  return fail(Errc::usage, std::move(what), "simulated drives are written sim:FAMILY@NODE, for example sim:gsd600@1,gsd600@2?state=FILE");
+}
+
+Result<Place> parse_place(std::string_view text) {
+  const auto at = text.find('@');
+  Place place;
+  place.family = lower(text.substr(0, at));
+  if (place.family.empty()) return bad_spec("a simulated drive has no family name");
+  if (at == std::string_view::npos) return place;
+  const auto node = parse_digits(text.substr(at + 1), 10);
+  if (!node || *node < canopen::kFirstNode || *node > canopen::kLastNode)
+    return bad_spec(fmt::format("'{}' is no node-ID (1..127)", text.substr(at + 1)));
+  place.node = static_cast<std::uint8_t>(*node);
+  return place;
+}
+
+Result<const drive::Profile*> profile_of(Cell& cell, const std::string& family, std::span<const std::filesystem::path> folders) {
+  for (const auto& known : cell.profiles)
+    if (known->family == family) return known.get();
+  auto loaded = drive::load_profile(family, folders);
+  if (!loaded) return tl::unexpected<Error>(loaded.error());
+  cell.profiles.push_back(std::make_unique<drive::Profile>(std::move(*loaded)));
+  return cell.profiles.back().get();
+}
+
+Result<void> plan_fault(Cell& cell, std::string_view text, TimePoint now) {
+  const auto at = text.find('@');
+  const auto code = parse_integer(text.substr(0, at));
+  const auto delay = parse_duration(at == std::string_view::npos ? "0" : text.substr(at + 1));
+  if (!code || code->negative || code->magnitude > 0xFFFF || !delay)
+    return bad_spec(fmt::format("'fault={}' is not CODE@TIME, such as fault=0xFF00@2s", text));
+  for (const auto& drive : cell.drives) drive->raise_fault_at(static_cast<std::uint16_t>(code->magnitude), now + *delay);
+  return {};
+}
+
+Result<void> apply_option(Cell& cell, std::string_view option, TimePoint now) {
+  const auto equals = option.find('=');
+  const auto key = option.substr(0, equals);
+  const auto value = equals == std::string_view::npos ? std::string_view() : option.substr(equals + 1);
+  if (key == "state") return {};
+  if (key == "fault") return plan_fault(cell, value, now);
+  const auto time = parse_duration(value);
+  if (key != "silent" && key != "delay") {
+    const std::string keys[] = {"state", "fault", "silent", "delay"};
+    return bad_spec(fmt::format("'{}' is no option of a simulated bus: there are {}", key, one_of(keys)));
+  }
+  if (!time) return bad_spec(fmt::format("'{}' is no time, such as 500ms", value));
+  for (const auto& drive : cell.drives) {
+    if (key == "silent") drive->fall_silent_at(now + *time);
+    if (key == "delay") drive->misbehaviour().answer_delay = *time;
+  }
+  return {};
+}
+
+Result<std::unique_ptr<Memory>> open_memory(std::span<const std::string_view> options) {
+  for (const auto option : options) {
+    if (!option.starts_with("state=")) continue;
+    auto memory = Memory::open(std::string(option.substr(6)));
+    if (!memory) return tl::unexpected<Error>(memory.error());
+    return std::make_unique<Memory>(std::move(*memory));
+  }
+  return std::make_unique<Memory>();
+}
+
+/// A simulated bus that owns what is on it.
+class CellBus final : public can::Bus {
+ public:
+  CellBus(Cell cell, SimBus::Clock clock) : cell_(std::move(cell)), bus_(clock) {
+    for (const auto& drive : cell_.drives) bus_.attach(*drive);
+  }
+  TimePoint now() const override { return bus_.now(); }
+  Result<void> send(const can::Frame& frame) override { return bus_.send(frame); }
+  Result<std::optional<can::Frame>> receive(TimePoint deadline) override { return bus_.receive(deadline); }
+  TimePoint next_event() const override { return bus_.next_event(); }
+
+ private:
+  Cell cell_;
+  SimBus bus_;
+};
+
+}  // namespace
+
+Result<Cell> build_cell(std::string_view spec, std::span<const std::filesystem::path> folders, TimePoint now) {
+  const auto question = spec.find('?');
+  const auto options = question == std::string_view::npos ? std::vector<std::string_view>() : split(spec.substr(question + 1), '&');
+  const auto places = split(spec.substr(0, question), ',');
+  if (places.empty()) return bad_spec("no simulated drive is named");
+  Cell cell;
+  auto memory = open_memory(options);
+  if (!memory) return tl::unexpected<Error>(memory.error());
+  cell.memory = std::move(*memory);
+  for (const auto text : places) {
+    const auto place = parse_place(text);
+    if (!place) return tl::unexpected<Error>(place.error());
+    const auto profile = profile_of(cell, place->family, folders);
+    if (!profile) return tl::unexpected<Error>(profile.error());
+    for (const auto& other : cell.drives)
+      if (other->node() == place->node) return bad_spec(fmt::format("node-ID {} is given twice", place->node));
+    const auto key = fmt::format("{}.{}", cell.drives.size() + 1, place->family);
+    cell.drives.push_back(std::make_unique<SimDrive>(**profile, place->node, *cell.memory, key));
+  }
+  for (const auto option : options)
+    if (const auto applied = apply_option(cell, option, now); !applied) return tl::unexpected<Error>(applied.error());
+  return cell;
+}
+
+Result<std::unique_ptr<can::Bus>> open_sim(std::string_view spec, std::span<const std::filesystem::path> folders,
+                                           SimBus::Clock clock) {
+  const auto now = SimBus(clock).now();
+  auto cell = build_cell(spec, folders, now);
+  if (!cell) return tl::unexpected<Error>(cell.error());
+  return std::make_unique<CellBus>(std::move(*cell), clock);
+}
+
+}  // namespace servoctl::sim

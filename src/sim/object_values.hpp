@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <unordered_map>
+
+#include "base/bytes.hpp"
+#include "base/object_address.hpp"
+#include "drive/profile.hpp"
+
+namespace servoctl::sim {
+
+/// The values of all entries of a drive, as bytes, with the checks a drive makes before it takes a new one: existence,
+/// access, length and limits. Rules that depend on the drive's state are made by the drive.
+class ObjectValues {
+ public:
+  explicit ObjectValues(const drive::Profile& profile) : profile_(&profile) {}
+
+  /// Every entry goes to its default for this node; one without a default to zero.
+  void load_defaults(std::uint8_t node);
+
+  /// Abort code when the entry cannot be read, or 0.
+  std::uint32_t check_read(ObjectAddress object) const;
+  /// Abort code when the entry does not take these bytes, or 0.
+  std::uint32_t check_write(ObjectAddress object, ByteSpan data, std::uint8_t node) const;
+
+  const Bytes& get(ObjectAddress object) const;
+  std::uint64_t number(ObjectAddress object) const { return load_le(get(object)); }
+  void set(ObjectAddress object, ByteSpan data) { values_[object].assign(data.begin(), data.end()); }
+  /// Sets a number in the size the entry has.
+  void set_number(ObjectAddress object, std::uint64_t value);
+  bool has(ObjectAddress object) const { return profile_->dictionary.find(object) != nullptr; }
+
+ private:
+  const drive::Profile* profile_;
+  std::unordered_map<ObjectAddress, Bytes> values_;
+};
+
+}  // namespace servoctl::sim

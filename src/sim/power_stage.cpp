@@ -1,0 +1,62 @@
+#include "sim/power_stage.hpp"
+
+#include <algorithm>
+
+namespace servoctl::sim {
+namespace {
+
+using drive::ControlCommand;
+using drive::DriveState;
+
+constexpr Duration kReaction = std::chrono::milliseconds(20);
+
+}  // namespace
+
+void PowerStage::reset() {
+  state_ = DriveState::switch_on_disabled;
+  controlword_ = 0;
+  deadline_ = kNever;
+}
+
+void PowerStage::on_controlword(std::uint16_t controlword, std::int64_t quick_stop_option, bool may_reset, TimePoint now) {
+  const auto command = drive::decode_command(controlword, controlword_);
+  controlword_ = controlword;
+  was_reset_ = false;
+  if (command == ControlCommand::fault_reset && !may_reset) return;
+  const auto before = state_;
+  const bool stopping = state_ == DriveState::quick_stop_active && deadline_ != kNever;
+  if (stopping && command == ControlCommand::enable_operation) return;
+  state_ = drive::next_state(state_, command);
+  was_reset_ = before == DriveState::fault && state_ != before;
+  if (state_ == before) return;
+  deadline_ = kNever;
+  if (state_ != DriveState::quick_stop_active) return;
+  const auto& staying = rules_->quick_stop_stays_enabled;
+  stays_enabled_ = std::find(staying.begin(), staying.end(), quick_stop_option) != staying.end();
+  deadline_ = now + kReaction;
+}
+
+void PowerStage::raise_fault(TimePoint now) {
+  if (state_ == DriveState::fault || state_ == DriveState::fault_reaction_active) return;
+  state_ = DriveState::fault_reaction_active;
+  deadline_ = now + kReaction;
+}
+
+void PowerStage::on_time(TimePoint now) {
+  if (now < deadline_) return;
+  deadline_ = kNever;
+  if (state_ == DriveState::fault_reaction_active) state_ = DriveState::fault;
+  if (state_ == DriveState::quick_stop_active && !stays_enabled_) state_ = DriveState::switch_on_disabled;
+}
+
+std::uint16_t PowerStage::statusword(std::int8_t mode) const {
+  const auto base = rules_->statusword[static_cast<std::size_t>(state_)];
+  const bool disabled = state_ == DriveState::ready_to_switch_on || state_ == DriveState::switched_on;
+  const bool enabled = state_ == DriveState::operation_enabled;
+  for (const auto& row : rules_->mode_bits)
+    if (row.mode == mode && (disabled || enabled))
+      return static_cast<std::uint16_t>(base | (enabled ? row.enabled : row.disabled));
+  return base;
+}
+
+}  // namespace servoctl::sim

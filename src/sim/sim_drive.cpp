@@ -1,0 +1,294 @@
+#include "sim/sim_drive.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "canopen/cob_id.hpp"
+#include "canopen/sdo_abort.hpp"
+#include "drive/quantity.hpp"
+#include "sim/known_objects.hpp"
+
+namespace servoctl::sim {
+namespace abort = canopen::sdo_abort;
+using canopen::NmtCommand;
+using canopen::NmtState;
+
+namespace {
+
+/// From a reset to the boot-up message.
+constexpr Duration kBootTime = std::chrono::milliseconds(50);
+constexpr std::size_t kHistorySize = 8;
+
+canopen::SdoServer::Options server_options(const drive::Rules& rules) {
+  canopen::SdoServer::Options options;
+  options.segmented = rules.sdo_segmented;
+  return options;
+}
+
+}  // namespace
+
+SimDrive::SimDrive(const drive::Profile& profile, std::uint8_t node, Memory& memory, std::string key)
+    : profile_(&profile),
+      memory_(&memory),
+      key_(std::move(key)),
+      node_(node),
+      values_(profile),
+      power_(profile.rules),
+      server_(node, *this, server_options(profile.rules)) {
+  auto& cells = memory_->cells(key_);
+  const auto* node_id = parameter(profile.rules.node_id_parameter);
+  if (node_id == nullptr || !node_id->object || cells.find(*node_id->object) != cells.end()) return;
+  if (!node_id->default_value || od::to_double(*node_id->default_value) != node)
+    cells[*node_id->object] = store_le(node, od::size_of(node_id->type).value_or(1));
+}
+
+void SimDrive::on_frame(const can::Frame& frame, TimePoint now) {
+  now_ = now;
+  if (misbehaviour_.silent || boot_at_ != kNever) return;
+  if (const auto message = canopen::parse_nmt(frame)) {
+    if (message->node == 0 || message->node == node_) on_nmt(message->command, now);
+    return;
+  }
+  if (nmt_ == NmtState::stopped) return;  // CiA 301, table 39: no SDO in this state.
+  server_.on_frame(frame, now);
+  collect_answers(now);
+}
+
+void SimDrive::collect_answers(TimePoint now) {
+  while (const auto answer = server_.take_frame()) {
+    if (misbehaviour_.drop_answers > 0) {
+      --misbehaviour_.drop_answers;
+      continue;
+    }
+    const int copies = misbehaviour_.duplicate_answers > 0 ? 2 : 1;
+    if (copies == 2) --misbehaviour_.duplicate_answers;
+    for (int i = 0; i < copies; ++i) {
+      if (misbehaviour_.answer_delay > Duration::zero())
+        late_.push_back({*answer, now + misbehaviour_.answer_delay});
+      else
+        tx_.push_back(*answer);
+    }
+  }
+}
+
+void SimDrive::on_time(TimePoint now) {
+  now_ = now;
+  if (now >= planned_silence_) {
+    misbehaviour_.silent = true;
+    planned_silence_ = kNever;
+  }
+  if (misbehaviour_.silent) return;
+  if (now >= boot_at_) power_on(now);
+  power_.on_time(now);
+  server_.on_time(now);
+  collect_answers(now);
+  while (!late_.empty() && now >= late_.front().time) {
+    tx_.push_back(late_.front().frame);
+    late_.pop_front();
+  }
+  if (now >= next_heartbeat_) {
+    tx_.push_back(canopen::heartbeat_frame(node_, nmt_));
+    plan_heartbeat(now);
+  }
+  if (planned_fault_ && now >= planned_fault_->time)
+    raise_fault(std::exchange(planned_fault_, std::nullopt)->code, {}, now);
+}
+
+TimePoint SimDrive::deadline() const {
+  if (misbehaviour_.silent) return kNever;
+  auto next = std::min({boot_at_, power_.deadline(), server_.deadline(), next_heartbeat_, planned_silence_});
+  if (!late_.empty()) next = std::min(next, late_.front().time);
+  if (planned_fault_) next = std::min(next, planned_fault_->time);
+  return next;
+}
+
+std::optional<can::Frame> SimDrive::take_frame() {
+  if (tx_.empty()) return std::nullopt;
+  const auto frame = tx_.front();
+  tx_.pop_front();
+  return frame;
+}
+
+void SimDrive::power_on(TimePoint now) {
+  boot_at_ = kNever;
+  if (full_restart_) {
+    restore_if_asked();
+    values_.load_defaults(node_);
+    for (const auto& cell : memory_->cells(key_)) values_.set(cell.first, cell.second);
+    const auto* node_id = parameter(profile_->rules.node_id_parameter);
+    if (node_id != nullptr && node_id->object) {
+      const auto set_to = values_.number(*node_id->object);
+      if (set_to >= canopen::kFirstNode && set_to <= canopen::kLastNode && set_to != node_) {
+        node_ = static_cast<std::uint8_t>(set_to);
+        values_.load_defaults(node_);
+        for (const auto& cell : memory_->cells(key_)) values_.set(cell.first, cell.second);
+      }
+    }
+    at_start_.clear();
+    for (const auto& p : profile_->parameters)
+      if (p.object && p.effect == od::Effect::restart) at_start_[*p.object] = values_.number(*p.object);
+    power_.reset();
+    history_.clear();
+  }
+  load_mirrors();
+  server_ = canopen::SdoServer(node_, *this, server_options(profile_->rules));
+  tx_.push_back(canopen::heartbeat_frame(node_, NmtState::initialising));
+  const auto* autostart = parameter(profile_->rules.autostart_parameter);
+  const bool start = autostart != nullptr && autostart->object && effective(*autostart->object) == 1;
+  set_nmt(start ? NmtState::operational : NmtState::pre_operational);
+  plan_heartbeat(now);
+}
+
+void SimDrive::restore_if_asked() {
+  auto& cells = memory_->cells(key_);
+  const auto set = [&](const std::string& id) {
+    const auto* p = parameter(id);
+    const auto cell = p != nullptr && p->object ? cells.find(*p->object) : cells.end();
+    return cell != cells.end() && load_le(cell->second) == 1;
+  };
+  if (set(profile_->rules.restore_defaults_parameter)) cells.clear();
+  if (set(profile_->rules.clear_alarms_parameter)) cells.erase(*parameter(profile_->rules.clear_alarms_parameter)->object);
+  (void)memory_->save();
+}
+
+void SimDrive::load_mirrors() {
+  const auto& with_node = profile_->rules.mirror_add_node_id;
+  for (const auto& p : profile_->parameters) {
+    if (!p.mirror || !p.object || !values_.has(*p.mirror)) continue;
+    const bool add = std::find(with_node.begin(), with_node.end(), *p.mirror) != with_node.end();
+    values_.set_number(*p.mirror, effective(*p.object) + (add ? node_ : 0U));
+  }
+}
+
+std::uint64_t SimDrive::effective(ObjectAddress object) const {
+  const auto found = at_start_.find(object);
+  return found == at_start_.end() ? values_.number(object) : found->second;
+}
+
+void SimDrive::on_nmt(NmtCommand command, TimePoint now) {
+  switch (command) {
+    case NmtCommand::start: return set_nmt(NmtState::operational);
+    case NmtCommand::stop: return set_nmt(NmtState::stopped);
+    case NmtCommand::enter_pre_operational: return set_nmt(NmtState::pre_operational);
+    case NmtCommand::reset_node:
+    case NmtCommand::reset_communication:
+      full_restart_ = command == NmtCommand::reset_node;
+      boot_at_ = now + kBootTime;
+      next_heartbeat_ = kNever;
+      server_.reset();
+      late_.clear();
+      nmt_ = NmtState::initialising;
+  }
+}
+
+void SimDrive::set_nmt(NmtState state) { nmt_ = state; }
+
+void SimDrive::plan_heartbeat(TimePoint now) {
+  const auto period = std::chrono::milliseconds(values_.number(kHeartbeatTime));
+  next_heartbeat_ = period.count() == 0 ? kNever : now + period;
+}
+
+std::uint32_t SimDrive::read(ObjectAddress object, Bytes& out) {
+  if (const auto code = values_.check_read(object); code != 0) return code;
+  if (object == kStatusword) {
+    out = store_le(power_.statusword(static_cast<std::int8_t>(values_.number(kModeDisplay))), 2);
+    return 0;
+  }
+  if (object.index == kErrorHistory.index) {
+    if (object.sub == 0) out = store_le(history_.size(), 1);
+    if (object.sub > 0 && object.sub > history_.size()) return abort::kNoData;
+    if (object.sub > 0) out = store_le(history_[object.sub - 1U], 4);
+    return 0;
+  }
+  out = values_.get(object);
+  return 0;
+}
+
+std::uint32_t SimDrive::check_state(ObjectAddress object, ByteSpan data) const {
+  const auto target = drive::target_at(profile_, object);
+  const auto effect = drive::meaning(target, node_).effect;
+  if (effect == od::Effect::standstill && drive::is_energised(power_.state())) return abort::kDeviceState;
+  if (object == kModes && target.entry != nullptr && !target.entry->labels.empty()) {
+    const auto value = od::decode(target.entry->type, data);
+    if (!value || drive::label_of(drive::meaning(target, node_), *value) == nullptr) return abort::kRange;
+  }
+  return 0;
+}
+
+std::uint32_t SimDrive::write(ObjectAddress object, ByteSpan data) {
+  if (object == kErrorHistory && data.size() == 1 && data[0] != 0) return abort::kRange;
+  if (const auto code = values_.check_write(object, data, node_); code != 0) return code;
+  if (const auto code = check_state(object, data); code != 0) return code;
+  bool handled = false;
+  if (const auto code = write_command(object, data, handled); code != 0 || handled) return code;
+  values_.set(object, data);
+  after_write(object, data);
+  return 0;
+}
+
+std::uint32_t SimDrive::write_command(ObjectAddress object, ByteSpan data, bool& handled) {
+  handled = true;
+  if (object == kErrorHistory) {
+    history_.clear();
+    return 0;
+  }
+  if (object == kStore) return load_le(data) == kSaveSignature ? save_objects() : abort::kCannotStore;
+  if (object == kRestore) {
+    if (load_le(data) != kLoadSignature) return abort::kCannotStore;
+    memory_->cells(key_).clear();
+    return memory_->save() ? 0 : abort::kCannotStore;
+  }
+  handled = false;
+  return 0;
+}
+
+std::uint32_t SimDrive::save_objects() {
+  auto& cells = memory_->cells(key_);
+  for (const auto& object : profile_->dictionary.objects())
+    for (const auto& entry : object.entries)
+      if (entry.access == od::Access::rw && !entry.command && !entry.is_volatile && entry.address != kControlword)
+        cells[entry.address] = values_.get(entry.address);
+  return memory_->save() ? 0 : abort::kCannotStore;
+}
+
+void SimDrive::after_write(ObjectAddress object, ByteSpan data) {
+  const auto* parameter = profile_->parameter(object);
+  if (parameter != nullptr && parameter->access == od::Access::rw && !parameter->is_volatile) {
+    memory_->cells(key_)[object] = Bytes(data.begin(), data.end());
+    (void)memory_->save();
+  }
+  if (object == kHeartbeatTime) plan_heartbeat(now_);
+  if (object == kModes) values_.set(kModeDisplay, data);
+  if (object == kControlword) {
+    const auto& gate = profile_->rules.fault_reset_enabled_by;
+    const bool may_reset = !gate || effective(gate->object) == gate->value;
+    power_.on_controlword(static_cast<std::uint16_t>(load_le(data)),
+                          static_cast<std::int64_t>(values_.number(kQuickStopOption)), may_reset, now_);
+    if (power_.was_reset()) {
+      values_.set_number(kErrorCode, 0);
+      values_.set_number(kErrorRegister, 0);
+      send_emergency(0, {});
+    }
+  }
+}
+
+void SimDrive::raise_fault(std::uint16_t code, std::array<std::uint8_t, 5> vendor, TimePoint now) {
+  power_.raise_fault(now);
+  values_.set_number(kErrorCode, code);
+  values_.set_number(kErrorRegister, 0x81);  // Generic and manufacturer specific.
+  history_.push_front(static_cast<std::uint32_t>(vendor[0] | vendor[1] << 8U) << 16U | code);
+  if (history_.size() > kHistorySize) history_.pop_back();
+  send_emergency(code, vendor);
+}
+
+void SimDrive::send_emergency(std::uint16_t code, std::array<std::uint8_t, 5> vendor) {
+  if (nmt_ == NmtState::stopped || nmt_ == NmtState::initialising) return;
+  canopen::Emergency emergency;
+  emergency.node = node_;
+  emergency.code = code;
+  emergency.error_register = static_cast<std::uint8_t>(values_.number(kErrorRegister));
+  emergency.vendor = vendor;
+  tx_.push_back(canopen::emergency_frame(emergency));
+}
+
+}  // namespace servoctl::sim

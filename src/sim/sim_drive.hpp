@@ -1,0 +1,102 @@
+#pragma once
+
+#include <array>
+#include <deque>
+#include <string>
+#include <unordered_map>
+
+#include "canopen/emergency.hpp"
+#include "canopen/nmt.hpp"
+#include "canopen/sdo_server.hpp"
+#include "drive/profile.hpp"
+#include "sim/device.hpp"
+#include "sim/memory.hpp"
+#include "sim/object_values.hpp"
+#include "sim/power_stage.hpp"
+
+namespace servoctl::sim {
+
+/// Ways in which a simulated drive misbehaves; all off at first.
+struct Misbehaviour {
+  bool silent = false;                   ///< Says nothing and hears nothing: power off or cable out.
+  std::uint32_t drop_answers = 0;        ///< So many SDO answers are lost on the way.
+  std::uint32_t duplicate_answers = 0;   ///< So many SDO answers arrive twice.
+  Duration answer_delay{};               ///< Every SDO answer comes this late.
+};
+
+/// A drive of a family, made from its profile: object dictionary behind an SDO server, NMT slave, boot-up, heartbeat,
+/// emergencies, CiA 402 states, panel parameters with non-volatile memory.
+///
+/// What the manual leaves open is answered like this: a panel parameter is kept at once when it is written, an object of the
+/// communication or device profile only by 1010h; an NMT reset of the node restarts the drive as a power cycle does.
+class SimDrive final : public Device, private canopen::ObjectStore {
+ public:
+  /// `profile` and `memory` outlive the drive. `key` names its cells in the memory; `node` is the node-ID it is set to.
+  SimDrive(const drive::Profile& profile, std::uint8_t node, Memory& memory, std::string key);
+
+  void on_frame(const can::Frame& frame, TimePoint now) override;
+  void on_time(TimePoint now) override;
+  std::optional<can::Frame> take_frame() override;
+  TimePoint deadline() const override;
+
+  /// The drive detects an error: emergency, history, fault reaction.
+  void raise_fault(std::uint16_t code, std::array<std::uint8_t, 5> vendor, TimePoint now);
+  /// Misbehaves or raises a fault later on.
+  void raise_fault_at(std::uint16_t code, TimePoint time) { planned_fault_ = {code, time}; }
+  void fall_silent_at(TimePoint time) { planned_silence_ = time; }
+  Misbehaviour& misbehaviour() { return misbehaviour_; }
+
+  std::uint8_t node() const { return node_; }
+  canopen::NmtState nmt_state() const { return nmt_; }
+
+ private:
+  struct Planned {
+    std::uint16_t code;
+    TimePoint time;
+  };
+  struct Delayed {
+    can::Frame frame;
+    TimePoint time;
+  };
+
+  std::uint32_t read(ObjectAddress object, Bytes& out) override;
+  std::uint32_t write(ObjectAddress object, ByteSpan data) override;
+  std::uint32_t check_state(ObjectAddress object, ByteSpan data) const;
+  void after_write(ObjectAddress object, ByteSpan data);
+  std::uint32_t write_command(ObjectAddress object, ByteSpan data, bool& handled);
+  std::uint32_t save_objects();
+
+  void power_on(TimePoint now);
+  void reset_communication(TimePoint now);
+  void load_mirrors();
+  void restore_if_asked();
+  void on_nmt(canopen::NmtCommand command, TimePoint now);
+  void set_nmt(canopen::NmtState state);
+  void collect_answers(TimePoint now);
+  void plan_heartbeat(TimePoint now);
+  void send_emergency(std::uint16_t code, std::array<std::uint8_t, 5> vendor);
+  std::uint64_t effective(ObjectAddress object) const;
+  const od::Parameter* parameter(const std::string& id) const { return id.empty() ? nullptr : profile_->parameter(id); }
+
+  const drive::Profile* profile_;
+  Memory* memory_;
+  std::string key_;
+  std::uint8_t node_;
+  ObjectValues values_;
+  std::unordered_map<ObjectAddress, std::uint64_t> at_start_;  ///< Parameters that take effect by a restart.
+  PowerStage power_;
+  canopen::SdoServer server_;
+  canopen::NmtState nmt_ = canopen::NmtState::initialising;
+  TimePoint now_{};
+  TimePoint boot_at_ = TimePoint::min();  ///< When the boot-up message is due; kNever once it is sent.
+  bool full_restart_ = true;
+  TimePoint next_heartbeat_ = kNever;
+  std::deque<std::uint32_t> history_;
+  std::deque<can::Frame> tx_;
+  std::deque<Delayed> late_;
+  Misbehaviour misbehaviour_;
+  std::optional<Planned> planned_fault_;
+  TimePoint planned_silence_ = kNever;
+};
+
+}  // namespace servoctl::sim
