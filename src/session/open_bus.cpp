@@ -1,0 +1,38 @@
+#include "session/open_bus.hpp"
+
+#include <fmt/format.h>
+
+#include "base/text.hpp"
+#include "can/local.hpp"
+#include "can/socketcan.hpp"
+#include "can/trace.hpp"
+#include "sim/cell.hpp"
+
+namespace servoctl::session {
+namespace {
+
+Result<std::unique_ptr<can::Bus>> open_plain(std::string_view url, const BusOptions& options) {
+  const auto colon = url.find(':');
+  if (colon == std::string_view::npos && !url.empty()) return can::open_socketcan(url);
+  const auto scheme = url.substr(0, colon);
+  const auto rest = colon == std::string_view::npos ? std::string_view() : url.substr(colon + 1);
+  if (scheme == "socketcan") return can::open_socketcan(rest);
+  if (scheme == "local") return can::open_local(rest);
+  if (scheme == "sim") return sim::open_sim(rest, options.drive_folders, options.clock);
+  const std::string schemes[] = {"socketcan", "local", "sim"};
+  auto hint = did_you_mean(scheme, schemes);
+  if (hint.empty()) hint = "write can0, local:NAME or sim:FAMILY@NODE";
+  return fail(Errc::usage, fmt::format("'{}' is no bus", url), std::move(hint));
+}
+
+}  // namespace
+
+Result<std::unique_ptr<can::Bus>> open_bus(std::string_view url, const BusOptions& options) {
+  auto bus = open_plain(url, options);
+  if (!bus || options.trace.empty()) return bus;
+  const auto colon = url.find(':');
+  const auto name = url.substr(0, colon) == "socketcan" ? url.substr(colon + 1) : url.substr(0, colon);
+  return can::trace_to(std::move(*bus), options.trace, name);
+}
+
+}  // namespace servoctl::session

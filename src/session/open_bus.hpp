@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "can/bus.hpp"
+#include "sim/sim_bus.hpp"
+
+namespace servoctl::session {
+
+/// What is needed to open a bus beside its URL.
+struct BusOptions {
+  std::span<const std::filesystem::path> drive_folders;  ///< Where simulated drives find their data.
+  std::filesystem::path trace;                           ///< Every frame goes into this file; empty: none.
+  sim::SimBus::Clock clock = sim::SimBus::Clock::real_time;
+};
+
+/// Opens a bus by URL: `can0` or `socketcan:can0`, `local:NAME`, `sim:gsd600@1,gsd600@2?state=FILE`. Errc::usage for a URL
+/// that is not understood, Errc::bus with the mending command for an interface that is missing or down.
+Result<std::unique_ptr<can::Bus>> open_bus(std::string_view url, const BusOptions& options);
+
+}  // namespace servoctl::session

@@ -1,0 +1,99 @@
+#include "session/scan.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace servoctl::session {
+namespace {
+
+constexpr ObjectAddress kDeviceType{0x1000, 0};
+constexpr std::array kNumbers{ObjectAddress{0x1018, 1}, ObjectAddress{0x1018, 2}, ObjectAddress{0x1018, 3},
+                              ObjectAddress{0x1018, 4}};
+constexpr std::array kTexts{ObjectAddress{0x1008, 0}, ObjectAddress{0x1009, 0}, ObjectAddress{0x100A, 0}};
+
+std::optional<std::uint32_t> number(const Result<Bytes>& answer) {
+  if (!answer || answer->empty() || answer->size() > 4) return std::nullopt;
+  return static_cast<std::uint32_t>(load_le(*answer));
+}
+
+std::string text(const Result<Bytes>& answer) {
+  if (!answer) return {};
+  std::string out(answer->begin(), answer->end());
+  while (!out.empty() && out.back() == '\0') out.pop_back();
+  return out;
+}
+
+/// The first nodes' worth of requests asks who is there.
+Result<std::vector<Identity>> find_nodes(Session& session, std::span<const std::uint8_t> nodes) {
+  std::vector<SdoRequest> requests;
+  for (const auto node : nodes) requests.push_back({node, kDeviceType, {}});
+  const auto retries = std::exchange(session.options().retries, 0);
+  const auto answers = session.transfer(requests);
+  session.options().retries = retries;
+  std::vector<Identity> found;
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    if (!answers[i] && (answers[i].error().code == Errc::bus || answers[i].error().code == Errc::interrupted))
+      return tl::unexpected<Error>(answers[i].error());
+    if (!answers[i] && answers[i].error().code == Errc::timeout) continue;
+    Identity identity;
+    identity.node = nodes[i];
+    identity.device_type = number(answers[i]);
+    found.push_back(std::move(identity));
+  }
+  return found;
+}
+
+}  // namespace
+
+Result<std::vector<Identity>> scan(Session& session, std::span<const std::uint8_t> nodes) {
+  auto found = find_nodes(session, nodes);
+  if (!found) return found;
+  std::vector<SdoRequest> requests;
+  for (const auto& identity : *found) {
+    for (const auto object : kNumbers) requests.push_back({identity.node, object, {}});
+    for (const auto object : kTexts) requests.push_back({identity.node, object, {}});
+  }
+  const auto answers = session.transfer(requests);
+  auto at = answers.begin();
+  for (auto& identity : *found) {
+    identity.vendor_id = number(*at++);
+    identity.product_code = number(*at++);
+    identity.revision = number(*at++);
+    identity.serial = number(*at++);
+    identity.device_name = text(*at++);
+    identity.hardware_version = text(*at++);
+    identity.software_version = text(*at++);
+    identity.nmt = session.watch().state(identity.node);
+  }
+  return found;
+}
+
+namespace {
+
+std::optional<std::uint32_t> identity_number(const Identity& identity, ObjectAddress object) {
+  if (object == kDeviceType) return identity.device_type;
+  if (object == kNumbers[0]) return identity.vendor_id;
+  if (object == kNumbers[1]) return identity.product_code;
+  if (object == kNumbers[2]) return identity.revision;
+  if (object == kNumbers[3]) return identity.serial;
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<Guess> guess_families(const Identity& identity, std::span<const drive::Family> families) {
+  std::vector<Guess> out;
+  for (const auto& family : families) {
+    const auto rules = drive::load_rules(family);
+    if (!rules || rules->identity.empty()) continue;
+    const bool fits = std::all_of(rules->identity.begin(), rules->identity.end(), [&](const drive::Condition& condition) {
+      return identity_number(identity, condition.object) == condition.value;
+    });
+    if (fits) out.push_back({family.name, rules->identity_certain});
+  }
+  std::stable_sort(out.begin(), out.end(), [](const Guess& a, const Guess& b) { return a.certain && !b.certain; });
+  return out;
+}
+
+}  // namespace servoctl::session

@@ -1,0 +1,46 @@
+#include "session/serve.hpp"
+
+#include <algorithm>
+
+namespace servoctl::session {
+namespace {
+
+constexpr Duration kCancelSlice = std::chrono::milliseconds(250);
+
+/// Sends what the drives have to say, to the bus and to each other.
+Result<void> flush(can::Bus& bus, sim::Cell& cell) {
+  for (bool any = true; any;) {
+    any = false;
+    for (const auto& drive : cell.drives) {
+      while (const auto frame = drive->take_frame()) {
+        any = true;
+        if (const auto sent = bus.send(*frame); !sent) return sent;
+        for (const auto& other : cell.drives)
+          if (other != drive) other->on_frame(*frame, bus.now());
+      }
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<void> serve(Session& session, sim::Cell& cell) {
+  auto& bus = session.bus();
+  const auto& cancelled = session.options().cancelled;
+  for (;;) {
+    TimePoint next = bus.now() + kCancelSlice;
+    for (const auto& drive : cell.drives) {
+      if (drive->deadline() <= bus.now()) drive->on_time(bus.now());
+      next = std::min(next, drive->deadline());
+    }
+    if (const auto sent = flush(bus, cell); !sent) return sent;
+    if (cancelled && cancelled()) return {};
+    const auto frame = bus.receive(next);
+    if (!frame) return tl::unexpected<Error>(frame.error());
+    if (!*frame) continue;
+    for (const auto& drive : cell.drives) drive->on_frame(**frame, bus.now());
+  }
+}
+
+}  // namespace servoctl::session

@@ -1,0 +1,71 @@
+#include "session/session.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "session/transfer_run.hpp"
+
+namespace servoctl::session {
+namespace {
+
+/// A signal that comes between the question and the wait would otherwise be noticed at the end of the wait only.
+constexpr Duration kCancelSlice = std::chrono::milliseconds(250);
+
+}  // namespace
+
+Session::Session(std::unique_ptr<can::Bus> bus, std::string url, Options options)
+    : bus_(std::move(bus)), url_(std::move(url)), options_(std::move(options)) {}
+
+std::vector<Result<Bytes>> Session::transfer(std::span<const SdoRequest> requests) {
+  return TransferRun(*this, requests).run();
+}
+
+Result<Bytes> Session::upload(std::uint8_t node, ObjectAddress object) {
+  const SdoRequest request{node, object, {}};
+  return std::move(transfer(std::span(&request, 1)).front());
+}
+
+Result<void> Session::download(std::uint8_t node, ObjectAddress object, Bytes data) {
+  const SdoRequest request{node, object, std::move(data)};
+  const auto result = std::move(transfer(std::span(&request, 1)).front());
+  if (!result) return tl::unexpected<Error>(result.error());
+  return {};
+}
+
+Result<std::optional<can::Frame>> Session::receive(TimePoint deadline) {
+  if (options_.cancelled) {
+    if (options_.cancelled()) return fail(Errc::interrupted, "interrupted");
+    deadline = std::min(deadline, now() + kCancelSlice);
+  }
+  auto frame = bus_->receive(std::min(deadline, watch_.deadline()));
+  if (!frame) return frame;
+  if (*frame) watch_.on_frame(**frame, now());
+  watch_.on_time(now());
+  return frame;
+}
+
+Result<bool> Session::wait(const std::function<bool()>& done, TimePoint deadline) {
+  while (!done()) {
+    if (now() >= deadline) return false;
+    if (const auto frame = receive(deadline); !frame) return tl::unexpected<Error>(frame.error());
+  }
+  return true;
+}
+
+Result<void> Session::listen() {
+  for (;;) {
+    const auto frame = receive(now());
+    if (!frame) return tl::unexpected<Error>(frame.error());
+    if (!*frame) return {};
+  }
+}
+
+std::vector<canopen::NodeEvent> Session::take_events() {
+  std::vector<canopen::NodeEvent> out;
+  while (auto event = watch_.take_event()) out.push_back(*event);
+  return out;
+}
+
+TimePoint Session::next_event() const { return std::min(bus_->next_event(), watch_.deadline()); }
+
+}  // namespace servoctl::session

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/bytes.hpp"
+#include "base/object_address.hpp"
+#include "base/result.hpp"
+#include "can/bus.hpp"
+#include "canopen/node_watch.hpp"
+#include "canopen/sdo_client.hpp"
+
+namespace servoctl::session {
+
+/// One SDO transfer: a read, or a write when `data` is set.
+struct SdoRequest {
+  std::uint8_t node = 0;
+  ObjectAddress object;
+  std::optional<Bytes> data;
+};
+
+struct Options {
+  Duration timeout = std::chrono::milliseconds(500);  ///< Longest wait for one SDO answer.
+  std::uint32_t retries = 1;                          ///< Further tries of a read that was not answered; never of a write.
+  std::function<bool()> cancelled;                    ///< Asked in every wait; may be empty.
+};
+
+/// A bus with its nodes. One pump drives any number of protocol machines; listeners see every frame in every wait.
+class Session {
+ public:
+  Session(std::unique_ptr<can::Bus> bus, std::string url, Options options);
+
+  /// Runs all requests: those of one node one after the other, those of different nodes at the same time. The answers stand
+  /// in the order of the requests. After a node has not answered, or has refused a write, its further writes are not sent;
+  /// after it has not answered, its further reads neither: a dead node costs one timeout (and its retries).
+  std::vector<Result<Bytes>> transfer(std::span<const SdoRequest> requests);
+  Result<Bytes> upload(std::uint8_t node, ObjectAddress object);
+  Result<void> download(std::uint8_t node, ObjectAddress object, Bytes data);
+
+  /// Sends a frame that belongs to no machine.
+  Result<void> send(const can::Frame& frame) { return bus_->send(frame); }
+
+  /// Listens until `done` answers true or the deadline passes; the answer is that of `done`.
+  Result<bool> wait(const std::function<bool()>& done, TimePoint deadline);
+  /// Takes in whatever has arrived, without waiting.
+  Result<void> listen();
+
+  /// What nodes told since the last call.
+  std::vector<canopen::NodeEvent> take_events();
+  canopen::NodeWatch& watch() { return watch_; }
+
+  TimePoint now() const { return bus_->now(); }
+  can::Bus& bus() { return *bus_; }
+  const std::string& url() const { return url_; }
+  Options& options() { return options_; }
+
+  /// When listen() has something to do although nothing arrives from outside.
+  TimePoint next_event() const;
+
+ private:
+  friend class TransferRun;
+
+  /// Receives one frame or lets the deadline pass; the listeners see it first. Errc::interrupted when cancelled.
+  Result<std::optional<can::Frame>> receive(TimePoint deadline);
+
+  std::unique_ptr<can::Bus> bus_;
+  std::string url_;
+  Options options_;
+  canopen::NodeWatch watch_;
+};
+
+}  // namespace servoctl::session

@@ -1,0 +1,126 @@
+#include "session/transfer_run.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+#include "canopen/cob_id.hpp"
+
+namespace servoctl::session {
+namespace {
+
+constexpr int kNone = -1;
+
+std::string silence_hint(std::uint8_t node) {
+  return fmt::format("is node {} powered and connected, does it run at this bitrate and is this its node-ID? `scan` shows who "
+                     "answers",
+                     node);
+}
+
+}  // namespace
+
+TransferRun::TransferRun(Session& session, std::span<const SdoRequest> requests)
+    : session_(&session), requests_(requests), results_(requests.size(), Result<Bytes>(Bytes{})), open_(requests.size()) {
+  channel_of_node_.fill(kNone);
+  for (std::size_t i = 0; i < requests.size(); ++i) {
+    const auto node = requests[i].node & 0x7FU;
+    if (channel_of_node_[node] == kNone) {
+      channel_of_node_[node] = static_cast<int>(channels_.size());
+      channels_.push_back({canopen::SdoClient(requests[i].node, session.options().timeout), {}, 0, 0});
+    }
+    channels_[static_cast<std::size_t>(channel_of_node_[node])].waiting.push_back(i);
+  }
+}
+
+std::vector<Result<Bytes>> TransferRun::run() {
+  for (auto& channel : channels_) start(channel);
+  for (;;) {
+    TimePoint next = kNever;
+    for (auto& channel : channels_) {
+      while (advance(channel)) {
+      }
+      next = std::min(next, channel.client.deadline());
+    }
+    if (open_ == 0) return std::move(results_);
+    const auto frame = session_->receive(next);
+    if (!frame) {
+      fail_all(frame.error());
+      return std::move(results_);
+    }
+    if (*frame) dispatch(**frame);
+    const auto now = session_->now();
+    for (auto& channel : channels_)
+      if (channel.client.deadline() <= now) channel.client.on_time(now);
+  }
+}
+
+void TransferRun::dispatch(const can::Frame& frame) {
+  if (frame.id < canopen::kSdoAnswer || frame.id > canopen::kSdoAnswer + canopen::kLastNode) return;
+  const int channel = channel_of_node_[frame.id - canopen::kSdoAnswer];
+  if (channel != kNone) channels_[static_cast<std::size_t>(channel)].client.on_frame(frame, session_->now());
+}
+
+bool TransferRun::advance(Channel& channel) {
+  if (const auto frame = channel.client.take_frame()) {
+    if (const auto sent = session_->bus().send(*frame); !sent) fail_all(sent.error());
+    return true;
+  }
+  if (auto result = channel.client.take_result()) {
+    finish(channel, std::move(*result));
+    return true;
+  }
+  return false;
+}
+
+void TransferRun::start(Channel& channel) {
+  if (channel.waiting.empty()) return;
+  channel.current = channel.waiting.front();
+  channel.waiting.pop_front();
+  channel.tries = 0;
+  const auto& request = requests_[channel.current];
+  if (request.data)
+    channel.client.start_download(request.object, *request.data, session_->now());
+  else
+    channel.client.start_upload(request.object, session_->now());
+}
+
+void TransferRun::finish(Channel& channel, Result<Bytes> result) {
+  const auto& request = requests_[channel.current];
+  const bool silent = !result && result.error().code == Errc::timeout;
+  if (silent && !request.data && channel.tries < session_->options().retries) {
+    ++channel.tries;
+    channel.client.start_upload(request.object, session_->now());
+    return;
+  }
+  if (silent && result.error().hint.empty()) result.error().hint = silence_hint(request.node);
+  results_[channel.current] = result;
+  --open_;
+  if (!result && (silent || request.data)) skip_rest(channel, result.error(), silent);
+  start(channel);
+}
+
+void TransferRun::skip_rest(Channel& channel, const Error& reason, bool reads_too) {
+  std::deque<std::size_t> kept;
+  for (const auto index : channel.waiting) {
+    if (!requests_[index].data && !reads_too) {
+      kept.push_back(index);
+      continue;
+    }
+    Error error = reason;  // Keeps the object that failed: that is the cause.
+    error.message = fmt::format("node {}, object {}: not tried after {} failed", requests_[index].node,
+                                to_string(requests_[index].object), reason.object ? to_string(*reason.object) : "an object");
+    results_[index] = tl::unexpected<Error>(std::move(error));
+    --open_;
+  }
+  channel.waiting = std::move(kept);
+}
+
+void TransferRun::fail_all(const Error& error) {
+  for (auto& channel : channels_) {
+    if (channel.client.busy()) results_[channel.current] = tl::unexpected<Error>(error);
+    for (const auto index : channel.waiting) results_[index] = tl::unexpected<Error>(error);
+    channel = {canopen::SdoClient(channel.client.node(), session_->options().timeout), {}, 0, 0};
+  }
+  open_ = 0;
+}
+
+}  // namespace servoctl::session

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <span>
+#include <vector>
+
+#include "session/session.hpp"
+
+namespace servoctl::session {
+
+/// One call of Session::transfer(): a channel for each node, each working off its own requests.
+class TransferRun {
+ public:
+  TransferRun(Session& session, std::span<const SdoRequest> requests);
+  std::vector<Result<Bytes>> run();
+
+ private:
+  struct Channel {
+    canopen::SdoClient client;
+    std::deque<std::size_t> waiting;  ///< Requests not started yet.
+    std::size_t current = 0;
+    std::uint32_t tries = 0;
+  };
+
+  bool advance(Channel& channel);
+  void start(Channel& channel);
+  void finish(Channel& channel, Result<Bytes> result);
+  void skip_rest(Channel& channel, const Error& reason, bool reads_too);
+  void fail_all(const Error& error);
+  void dispatch(const can::Frame& frame);
+
+  Session* session_;
+  std::span<const SdoRequest> requests_;
+  std::vector<Channel> channels_;
+  std::array<int, 128> channel_of_node_{};
+  std::vector<Result<Bytes>> results_;
+  std::size_t open_ = 0;
+};
+
+}  // namespace servoctl::session

@@ -1,0 +1,77 @@
+#include "session/write.hpp"
+
+#include <fmt/format.h>
+
+namespace servoctl::session {
+namespace {
+
+Error about(const SdoRequest& request, Errc code, std::string what, std::string hint) {
+  Error error;
+  error.code = code;
+  error.message = fmt::format("node {}, object {}: {}", request.node, to_string(request.object), what);
+  error.hint = std::move(hint);
+  error.node = request.node;
+  error.object = request.object;
+  return error;
+}
+
+/// A request that was not tried carries the object that failed before it.
+bool answer_lost(const Error& error, const SdoRequest& request) {
+  return error.code == Errc::timeout && error.object == request.object;
+}
+
+Result<Written> after_lost_answer(const SdoRequest& request, const Result<Bytes>& found) {
+  if (!found)
+    return fail(about(request, Errc::timeout, "the write was sent, the answer never came, and the value cannot be read back",
+                      "it is unknown whether the value was written: read it when the node answers again"));
+  if (*found != *request.data)
+    return fail(about(request, Errc::timeout,
+                      fmt::format("the write was not answered and had no effect: the object still holds {}", to_hex(*found)),
+                      "write it again"));
+  Written done;
+  done.answer_lost = true;
+  done.read_back = *found;
+  return done;
+}
+
+Result<Written> after_answer(const SdoRequest& request, const Result<Bytes>& found) {
+  if (!found) {
+    auto error = found.error();
+    error.message = "written, but reading it back failed: " + error.message;
+    return fail(std::move(error));
+  }
+  if (*found != *request.data)
+    return fail(about(request, Errc::negative,
+                      fmt::format("the drive acknowledged {} and holds {}", to_hex(*request.data), to_hex(*found)),
+                      "the drive limits or rounds the value, or another setting overrides it"));
+  Written done;
+  done.read_back = *found;
+  return done;
+}
+
+}  // namespace
+
+std::vector<Result<Written>> write_all(Session& session, std::span<const SdoRequest> requests, bool read_back) {
+  const auto answers = session.transfer(requests);
+  std::vector<Result<Written>> out;
+  std::vector<SdoRequest> questions;
+  std::vector<std::size_t> asked;
+  for (std::size_t i = 0; i < requests.size(); ++i) {
+    if (answers[i])
+      out.emplace_back(Written{});
+    else
+      out.emplace_back(tl::unexpected<Error>(answers[i].error()));
+    const bool lost = !answers[i] && answer_lost(answers[i].error(), requests[i]);
+    if (!lost && !(answers[i] && read_back)) continue;
+    questions.push_back({requests[i].node, requests[i].object, {}});
+    asked.push_back(i);
+  }
+  const auto found = session.transfer(questions);
+  for (std::size_t k = 0; k < asked.size(); ++k) {
+    const auto i = asked[k];
+    out[i] = answers[i] ? after_answer(requests[i], found[k]) : after_lost_answer(requests[i], found[k]);
+  }
+  return out;
+}
+
+}  // namespace servoctl::session
