@@ -1,0 +1,174 @@
+#include "commands/change.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+#include "canopen/sdo_client.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using report::Show;
+using report::Value;
+
+std::string called(const Change& change) {
+  const auto label = change.target.label();
+  return label.empty() ? to_string(change.target.address) : label;
+}
+
+/// An object no dictionary knows is read to learn its size: a write of another length would be refused or worse.
+Result<od::DataType> learn_type(Context& context, std::uint8_t node, const drive::Target& target) {
+  const auto bytes = context.session->upload(node, target.address);
+  if (!bytes) {
+    auto error = bytes.error();
+    error.message = "the object's size is not known and reading it to learn it failed: " + error.message;
+    error.hint = "say the type: --type i32, or the drive family: -d FAMILY";
+    return tl::unexpected<Error>(std::move(error));
+  }
+  Reading reading{node, target, {}, *bytes};
+  const auto type = type_of(reading, *bytes);
+  context.notices.push_back(fmt::format("node {}, object {}: taken as {} by the length of what it holds", node,
+                                        to_string(target.address), od::name(type)));
+  return type;
+}
+
+bool is_parameter(const drive::Profile* profile, const Change& change, const std::string& id) {
+  return profile != nullptr && !id.empty() && change.target.parameter != nullptr && change.target.parameter == profile->parameter(id);
+}
+
+std::string effect_text(od::Effect effect) {
+  switch (effect) {
+    case od::Effect::immediate: return "at once";
+    case od::Effect::restart: return "after a restart of the drive";
+    case od::Effect::standstill: return "at standstill";
+    case od::Effect::unstated: break;
+  }
+  return {};
+}
+
+report::List change_row(const Change& change, const Result<session::Written>& written, bool chinese) {
+  const auto meaning = drive::meaning(change.target, change.node);
+  const auto value = od::decode(change.type, change.data);
+  const auto shown = value ? od::to_string(*value) : to_hex(change.data);
+  const auto name = chinese ? change.target.label_zh() : change.target.label();
+  std::string state = "not written";
+  if (written && written->answer_lost)
+    state = "written (the answer was lost, the value was read back)";
+  else if (written && written->read_back)
+    state = "written, read back";
+  else if (written)
+    state = "written";
+  const auto* label = value ? drive::label_of(meaning, *value) : nullptr;
+  return {change.node,
+          to_string(change.target.address),
+          change.target.address.index,
+          change.target.address.sub,
+          report::text_or_null(name),
+          change.target.parameter != nullptr ? Value(change.target.parameter->id) : Value(),
+          meaning.scale == 1 || !value ? shown : fmt::format("{} = {:.12g} {}", shown, drive::scaled(meaning, *value), meaning.unit),
+          value ? od_value(*value) : Value(shown),
+          value ? Value(drive::scaled(meaning, *value)) : Value(),
+          report::text_or_null(std::string(meaning.unit)),
+          label != nullptr ? Value(label->label) : Value(),
+          state,
+          written.has_value(),
+          written ? Value(written->read_back.has_value()) : Value(false),
+          written ? report::text_or_null(effect_text(meaning.effect)) : Value(),
+          report::text_or_null(std::string(od::name(meaning.effect))),
+          written ? Value() : error_record(written.error())};
+}
+
+}  // namespace
+
+Result<Change> make_change(Context& context, std::uint8_t node, const drive::Target& target, std::string_view value,
+                           std::optional<od::DataType> type) {
+  auto meaning = drive::meaning(target, node);
+  const auto named = [&](Error error) {
+    const auto label = target.label();
+    error.message = (label.empty() ? to_string(target.address) : label) + ": " + error.message;
+    return tl::unexpected<Error>(located(std::move(error), node, target.address));
+  };
+  if (!od::writable(meaning.access)) {
+    Error error;
+    error.code = Errc::usage;
+    error.message = "is read-only";
+    error.hint = "it can be read, not written";
+    return named(std::move(error));
+  }
+  if (type) {
+    meaning.type = *type;
+  } else if (!meaning.type_known) {
+    const auto learned = learn_type(context, node, target);
+    if (!learned) return tl::unexpected<Error>(learned.error());
+    meaning.type = *learned;
+  }
+  const auto parsed = drive::parse_quantity(meaning, value);
+  if (!parsed) return named(parsed.error());
+  const auto data = od::encode(meaning.type, *parsed);
+  if (!data) return named(data.error());
+  return Change{node, target, meaning.type, *data};
+}
+
+Result<void> confirm_changes(Context& context, std::span<const Change> changes) {
+  for (const auto& change : changes) {
+    const auto* entry = change.target.entry;
+    const auto* parameter = change.target.parameter;
+    const auto index = change.target.address.index;
+    const bool stores = index == 0x1010 || index == 0x1011 || (entry != nullptr && entry->command) || (parameter != nullptr && parameter->command);
+    const auto* profile = context.profile;
+    const bool addresses = is_parameter(profile, change, profile == nullptr ? "" : profile->rules.node_id_parameter) ||
+                           is_parameter(profile, change, profile == nullptr ? "" : profile->rules.bitrate_parameter);
+    if (!stores && !addresses) continue;
+    const auto question = stores ? fmt::format("Write {} on node {}? It starts an action or stores or restores parameters.", called(change), change.node)
+                                 : fmt::format("Write {} on node {}? After a restart the drive is found under another address.", called(change), change.node);
+    if (const auto answer = context.confirm(question); !answer) return answer;
+  }
+  return {};
+}
+
+Value planned_frames(std::span<const Change> changes) {
+  report::Table table;
+  table.columns = {{"node"}, {"object"}, {"name"}, {"frame"}};
+  for (const auto& change : changes) {
+    canopen::SdoClient client(change.node, std::chrono::seconds(1));
+    client.start_download(change.target.address, change.data, TimePoint{});
+    const auto frame = client.take_frame();
+    table.rows.push_back({change.node, to_string(change.target.address), report::text_or_null(change.target.label()),
+                          frame ? can::to_string(*frame) : std::string()});
+  }
+  return table;
+}
+
+Value write_changes(Context& context, std::span<const Change> changes, bool read_back) {
+  std::vector<session::SdoRequest> requests;
+  for (const auto& change : changes) requests.push_back({change.node, change.target.address, change.data});
+  const auto written = session::write_all(*context.session, requests, read_back);
+  report::Table table;
+  table.columns = {{"node"},
+                   {"object", "", Show::text},
+                   {"index", "", Show::json},
+                   {"sub", "", Show::json},
+                   {"name"},
+                   {"id", "", Show::json},
+                   {"text", "value", Show::text},
+                   {"raw", "", Show::json},
+                   {"value", "", Show::json},
+                   {"unit", "", Show::json},
+                   {"label", "", Show::json},
+                   {"state", "result", Show::text},
+                   {"written", "", Show::json},
+                   {"read_back", "", Show::json},
+                   {"when", "takes effect", Show::text},
+                   {"effect", "", Show::json},
+                   {"error", "", Show::json}};
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    table.rows.push_back(change_row(changes[i], written[i], context.chinese));
+    if (!written[i]) context.errors.push_back(written[i].error());
+    if (written[i] && written[i]->answer_lost)
+      context.notices.push_back(fmt::format("node {}, object {}: the answer to the write was lost; the value read back is the one written",
+                                            changes[i].node, to_string(changes[i].target.address)));
+  }
+  return table;
+}
+
+}  // namespace servoctl::commands

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "base/result.hpp"
+
+namespace servoctl::commands {
+
+/// Help of one command, of a group (`param`), or of the program when `path` is empty, in at most `width` columns (0: 100).
+/// Errc::usage for an unknown name.
+Result<std::string> help_text(std::string_view path, std::size_t width);
+
+/// `param set ASSIGNMENT… [options]`: how the command is written.
+std::string usage_line(std::string_view path);
+
+}  // namespace servoctl::commands

@@ -1,0 +1,174 @@
+#include "canopen/nmt.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+#include "commands/command.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using canopen::NmtCommand;
+using report::Value;
+
+constexpr ObjectAddress kHeartbeat{0x1017, 0};
+constexpr Duration kBootPatience = std::chrono::seconds(5);
+constexpr Duration kStatePatience = std::chrono::seconds(2);
+
+constexpr Parameter kParameters[] = {
+    {.name = "--wait", .help = "wait until a heartbeat or the boot-up message confirms it", .kind = Kind::flag},
+};
+
+bool is_reset(NmtCommand command) { return command == NmtCommand::reset_node || command == NmtCommand::reset_communication; }
+
+/// What was heard of one node before the command.
+struct Before {
+  std::uint8_t node;
+  std::uint32_t boots;
+  std::uint32_t heartbeats;
+};
+
+bool confirmed(session::Session& session, const Before& before, NmtCommand command) {
+  if (is_reset(command)) return session.watch().boots(before.node) > before.boots;
+  return session.watch().heartbeats(before.node) > before.heartbeats &&
+         session.watch().state(before.node) == canopen::state_after(command);
+}
+
+/// Longest heartbeat period of the nodes, read before the command: a stopped node answers no SDO.
+Duration longest_period(Context& context) {
+  std::vector<session::SdoRequest> requests;
+  for (const auto node : context.nodes) requests.push_back({node, kHeartbeat, {}});
+  Duration longest{};
+  for (const auto& answer : context.session->transfer(requests))
+    if (answer && answer->size() <= 8) longest = std::max<Duration>(longest, std::chrono::milliseconds(load_le(*answer)));
+  return longest;
+}
+
+Error unconfirmed(std::uint8_t node, NmtCommand command, Duration period) {
+  Error error;
+  error.code = Errc::timeout;
+  error.node = node;
+  error.message = fmt::format("node {}: '{}' was sent, nothing confirms it", node, canopen::name(command));
+  if (is_reset(command))
+    error.hint = "no boot-up message came: it may restart under another node-ID or bitrate; `scan` shows who is there";
+  else if (period == Duration::zero())
+    error.hint = fmt::format("the node sends no heartbeat: `write 0x1017 500 -n {}` switches it on", node);
+  else
+    error.hint = "its heartbeats still tell another state, or came no more";
+  return error;
+}
+
+report::Table result_table(Context& context, std::span<const Before> before, NmtCommand command, bool waited) {
+  report::Table table;
+  table.columns = {{"node"}, {"command"}, {"confirmed"}, {"state"}};
+  for (const auto& entry : before) {
+    const auto state = context.session->watch().state(entry.node);
+    table.rows.push_back({entry.node == 0 ? Value("all") : Value(entry.node), canopen::name(command),
+                          waited ? Value(confirmed(*context.session, entry, command)) : Value(),
+                          waited && state ? Value(canopen::name(*state)) : Value()});
+  }
+  return table;
+}
+
+Result<report::Value> run(Context& context, const Arguments& arguments, NmtCommand command) {
+  if (context.dry_run) {
+    report::Table table;
+    table.columns = {{"node"}, {"frame"}};
+    for (const auto node : context.nodes) table.rows.push_back({node, can::to_string(canopen::nmt_frame(command, node))});
+    return report::Value(std::move(table));
+  }
+  const bool all = context.nodes.front() == 0;
+  const bool wait = arguments.has("--wait");
+  if (wait && all)
+    return fail(Errc::usage, "--wait needs node-IDs: `all` does not say whose answer to wait for", "for example -n 1,2,3");
+  if (is_reset(command)) {
+    const auto whom = all ? std::string("all nodes") : context.nodes.size() == 1 ? fmt::format("node {}", context.nodes.front()) : fmt::format("{} nodes", context.nodes.size());
+    if (const auto answer = context.confirm(fmt::format("Reset {}? Drives restart and a moving axis loses its control.", whom)); !answer)
+      return tl::unexpected<Error>(answer.error());
+  }
+  const auto period = wait && !is_reset(command) ? longest_period(context) : Duration::zero();
+  std::vector<Before> before;
+  for (const auto node : context.nodes) {
+    before.push_back({node, context.session->watch().boots(node), context.session->watch().heartbeats(node)});
+    if (const auto sent = context.session->send(canopen::nmt_frame(command, node)); !sent) return tl::unexpected<Error>(sent.error());
+  }
+  if (!wait) return report::Value(result_table(context, before, command, false));
+  const auto done = [&] {
+    return std::all_of(before.begin(), before.end(), [&](const Before& b) { return confirmed(*context.session, b, command); });
+  };
+  const bool hopeless = !is_reset(command) && period == Duration::zero();
+  const auto patience = is_reset(command) ? kBootPatience : std::max(kStatePatience, 2 * period);
+  const auto waited = context.session->wait(done, context.session->now() + (hopeless ? Duration::zero() : patience));
+  if (!waited) return tl::unexpected<Error>(waited.error());
+  for (const auto& entry : before)
+    if (!confirmed(*context.session, entry, command)) context.errors.push_back(unconfirmed(entry.node, command, period));
+  return report::Value(result_table(context, before, command, true));
+}
+
+template <NmtCommand command>
+Result<report::Value> run_command(Context& context, const Arguments& arguments) {
+  return run(context, arguments, command);
+}
+
+constexpr std::string_view kDetails =
+    "The command is sent once and is not answered by nodes. With --wait it counts as done when a heartbeat (or, after a reset, the "
+    "boot-up message) confirms it; exit code 4 when nothing does. `-n all` addresses every node.";
+
+}  // namespace
+
+extern const Command kNmtStart;
+const Command kNmtStart{
+    .path = "nmt start",
+    .summary = "Put nodes into operational: PDOs flow",
+    .details = kDetails,
+    .parameters = kParameters,
+    .needs = Needs::node,
+    .effect = Effect::writes,
+    .run = run_command<NmtCommand::start>,
+};
+
+extern const Command kNmtStop;
+const Command kNmtStop{
+    .path = "nmt stop",
+    .summary = "Put nodes into stopped: neither PDO nor SDO",
+    .details = kDetails,
+    .parameters = kParameters,
+    .needs = Needs::node,
+    .effect = Effect::writes,
+    .run = run_command<NmtCommand::stop>,
+};
+
+extern const Command kNmtPreop;
+const Command kNmtPreop{
+    .path = "nmt preop",
+    .summary = "Put nodes into pre-operational: SDO, no PDO",
+    .details = kDetails,
+    .parameters = kParameters,
+    .needs = Needs::node,
+    .effect = Effect::writes,
+    .run = run_command<NmtCommand::enter_pre_operational>,
+};
+
+extern const Command kNmtReset;
+const Command kNmtReset{
+    .path = "nmt reset",
+    .summary = "Restart nodes (reset node); asks first",
+    .details = kDetails,
+    .parameters = kParameters,
+    .needs = Needs::node,
+    .effect = Effect::resets,
+    .run = run_command<NmtCommand::reset_node>,
+};
+
+extern const Command kNmtResetComm;
+const Command kNmtResetComm{
+    .path = "nmt reset-comm",
+    .summary = "Restart the communication of nodes; asks first",
+    .details = kDetails,
+    .parameters = kParameters,
+    .needs = Needs::node,
+    .effect = Effect::resets,
+    .run = run_command<NmtCommand::reset_communication>,
+};
+
+}  // namespace servoctl::commands

@@ -1,0 +1,81 @@
+#include <fmt/format.h>
+
+#include "base/text.hpp"
+#include "commands/command.hpp"
+#include "commands/records.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using report::Show;
+using report::Value;
+
+constexpr Parameter kParameters[] = {
+    {.name = "pattern", .help = "part of a name, or an index with *: 0x60*", .kind = Kind::text},
+};
+
+Value default_of(const std::optional<od::NodeValue>& value) {
+  if (!value) return {};
+  if (!value->plus_node_id) return od_value(value->value);
+  return "$NODEID+" + od::to_string(value->value);
+}
+
+bool wanted(std::string_view pattern, const od::Object& object, const od::Entry& entry) {
+  if (pattern.empty()) return true;
+  const auto address = to_string(entry.address);
+  const auto name = object.name + " " + entry.name + " " + drive::entry_name(object, entry);
+  if (pattern.find('*') != std::string_view::npos)
+    return fits(pattern, address) || fits(pattern, entry.name) || fits(pattern, drive::entry_name(object, entry));
+  if (const auto exact = parse_object_address(pattern)) return exact->index == entry.address.index;
+  return contains_nocase(name, pattern) || contains_nocase(entry.name_zh, pattern);
+}
+
+report::List row(const Context& context, const od::Object& object, const od::Entry& entry) {
+  // A panel parameter has its Chinese name, unit and labels in the parameter table.
+  const auto target = drive::target_at(context.profile, entry.address);
+  const auto meaning = drive::meaning(target, 0);
+  const auto* parameter = target.parameter;
+  const auto name_zh = parameter != nullptr ? parameter->name_zh : entry.name_zh;
+  const auto shown = context.chinese && !name_zh.empty() ? name_zh : entry.name;
+  static const std::vector<od::EnumLabel> kNone;
+  const auto& labels = meaning.labels != nullptr ? *meaning.labels : kNone;
+  const auto unit = meaning.scale == 1 ? std::string(meaning.unit) : fmt::format("{:g} {}", meaning.scale, meaning.unit);
+  return {to_string(entry.address), shown, od::name(entry.type), od::name(entry.access), od::name(entry.pdo), unit, default_of(entry.default_value),
+          entry.address.index, entry.address.sub, entry.name, report::text_or_null(name_zh),
+          drive::entry_name(object, entry), report::text_or_null(std::string(meaning.unit)), meaning.scale, default_of(entry.low), default_of(entry.high),
+          report::text_or_null(std::string(od::name(meaning.effect))), labels_record(labels, false), report::text_or_null(parameter != nullptr ? parameter->note : entry.note),
+          parameter != nullptr ? Value(parameter->id) : Value(),
+          !(parameter != nullptr ? parameter->assumed : entry.assumed).empty()};
+}
+
+Result<report::Value> run(Context& context, const Arguments& arguments) {
+  report::Table table;
+  table.columns = {{"object", "", Show::text}, {"name_text", "name", Show::text}, {"type"}, {"access"}, {"pdo"}, {"unit_text", "unit", Show::text},
+                   {"default"}, {"index", "", Show::json}, {"sub", "", Show::json}, {"name", "", Show::json}, {"name_zh", "", Show::json},
+                   {"identifier", "", Show::json}, {"unit", "", Show::json}, {"scale", "", Show::json}, {"min", "", Show::json}, {"max", "", Show::json},
+                   {"effect", "", Show::json}, {"enum", "", Show::json}, {"note", "", Show::json}, {"parameter", "", Show::json},
+                   {"assumed", "", Show::json}};
+  const auto pattern = arguments.text("pattern");
+  for (const auto& object : context.profile->dictionary.objects())
+    for (const auto& entry : object.entries)
+      if (wanted(pattern, object, entry)) table.rows.push_back(row(context, object, entry));
+  if (table.rows.empty())
+    return fail(Errc::negative, fmt::format("no object of {} fits '{}'", context.profile->family, pattern),
+                "try a shorter word, or 0x60* for a range of indexes");
+  return report::Value(std::move(table));
+}
+
+}  // namespace
+
+extern const Command kObjects;
+const Command kObjects{
+    .path = "objects",
+    .summary = "List the object dictionary of a drive family",
+    .details = "Works without a bus. The pattern is part of a name in English or Chinese, an index, or a form with `*`.",
+    .parameters = kParameters,
+    .needs = Needs::dictionary,
+    .effect = Effect::none,
+    .run = run,
+};
+
+}  // namespace servoctl::commands

@@ -1,0 +1,30 @@
+#include "commands/command.hpp"
+#include "commands/records.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+constexpr Parameter kParameters[] = {
+    {.name = "id", .help = "panel number or name: Pn0202", .kind = Kind::parameter, .required = true},
+};
+
+Result<report::Value> run(Context& context, const Arguments& arguments) {
+  const auto parameter = drive::resolve_parameter(*context.profile, arguments.text("id"));
+  if (!parameter) return tl::unexpected<Error>(parameter.error());
+  return report::Value(parameter_record(**parameter, context.chinese));
+}
+
+}  // namespace
+
+extern const Command kParamExplain;
+const Command kParamExplain{
+    .path = "param explain",
+    .summary = "Tell all that is known of a panel parameter",
+    .details = "Works without a bus. What the manual does not state is marked as assumed.",
+    .parameters = kParameters,
+    .needs = Needs::dictionary,
+    .effect = Effect::none,
+    .run = run,
+};
+
+}  // namespace servoctl::commands

@@ -1,0 +1,44 @@
+#include <fmt/format.h>
+
+#include "base/text.hpp"
+#include "commands/command.hpp"
+#include "commands/records.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+constexpr Parameter kParameters[] = {
+    {.name = "pattern", .help = "a group (gain, terminal), a number with * (Pn02*)", .kind = Kind::text},
+};
+
+Result<report::Value> run(Context& context, const Arguments& arguments) {
+  const auto pattern = arguments.text("pattern");
+  std::vector<const od::Parameter*> found;
+  std::vector<std::string> groups;
+  for (const auto& parameter : context.profile->parameters) {
+    if (groups.empty() || groups.back() != parameter.group) groups.push_back(parameter.group);
+    if (pattern.empty() || equals_nocase(parameter.group, pattern) || fits(pattern, parameter.id) ||
+        drive::canonical_id(parameter.id) == drive::canonical_id(pattern))
+      found.push_back(&parameter);
+  }
+  if (found.empty())
+    return fail(Errc::negative, fmt::format("no parameter of {} fits '{}'", context.profile->family, pattern),
+                groups.empty() ? "this family has no table of panel parameters" : "groups: " + one_of(groups));
+  return report::Value(parameter_table(found, context.chinese));
+}
+
+}  // namespace
+
+extern const Command kParamList;
+const Command kParamList{
+    .path = "param list",
+    .summary = "List the panel parameters of a drive family",
+    .details = "Works without a bus. Range and default are the numbers the panel shows; one step of them is what the unit column "
+               "says.",
+    .parameters = kParameters,
+    .needs = Needs::dictionary,
+    .effect = Effect::none,
+    .run = run,
+};
+
+}  // namespace servoctl::commands

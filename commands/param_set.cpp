@@ -1,0 +1,70 @@
+#include <algorithm>
+#include <fmt/format.h>
+
+#include "commands/change.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+constexpr Parameter kParameters[] = {
+    {.name = "assignment", .help = "ID VALUE, or ID=VALUE ID=VALUE …", .kind = Kind::parameter, .required = true, .many = true},
+};
+
+struct Assignment {
+  std::string_view id;
+  std::string_view value;
+};
+
+Result<std::vector<Assignment>> parse_assignments(std::span<const std::string> words) {
+  std::vector<Assignment> out;
+  if (words.size() == 2 && words[0].find('=') == std::string::npos) {
+    out.push_back({words[0], words[1]});
+    return out;
+  }
+  for (const auto& word : words) {
+    const auto equals = word.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == word.size())
+      return fail(Errc::usage, fmt::format("'{}' is no assignment", word), "write `param set Pn0202 2` or `param set Pn0202=2 Pn0215=800`");
+    out.push_back({std::string_view(word).substr(0, equals), std::string_view(word).substr(equals + 1)});
+  }
+  return out;
+}
+
+Result<report::Value> run(Context& context, const Arguments& arguments) {
+  const auto assignments = parse_assignments(arguments.all("assignment"));
+  if (!assignments) return tl::unexpected<Error>(assignments.error());
+  std::vector<Change> changes;
+  for (const auto node : context.nodes) {
+    for (const auto& assignment : *assignments) {
+      const auto parameter = drive::resolve_parameter(*context.profile, assignment.id);
+      if (!parameter) return tl::unexpected<Error>(parameter.error());
+      const auto target = drive::resolve(context.profile, (*parameter)->id);
+      if (!target) return tl::unexpected<Error>(target.error());
+      auto change = make_change(context, node, *target, assignment.value, {});
+      if (!change) return tl::unexpected<Error>(change.error());
+      changes.push_back(std::move(*change));
+    }
+  }
+  if (context.dry_run) return planned_frames(changes);
+  if (const auto confirmed = confirm_changes(context, changes); !confirmed) return tl::unexpected<Error>(confirmed.error());
+  // A write-only parameter starts an action and has nothing to read back.
+  const bool readable = std::all_of(changes.begin(), changes.end(), [](const Change& c) { return od::readable(c.target.parameter->access); });
+  return write_changes(context, changes, readable);
+}
+
+}  // namespace
+
+extern const Command kParamSet;
+const Command kParamSet{
+    .path = "param set",
+    .summary = "Change panel parameters of a drive and read them back",
+    .details = "All values are checked before the first frame. A plain number is the number the panel shows (Pn0214 400), a number with "
+               "a unit is converted (Pn0214 40Hz), a label stands for its value. Stops at the first refusal. The answer tells "
+               "whether the value was read back and when it takes effect.",
+    .parameters = kParameters,
+    .needs = Needs::node | Needs::dictionary,
+    .effect = Effect::writes,
+    .run = run,
+};
+
+}  // namespace servoctl::commands

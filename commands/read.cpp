@@ -1,0 +1,47 @@
+#include "commands/command.hpp"
+#include "commands/records.hpp"
+#include "commands/type_option.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+constexpr Parameter kParameters[] = {
+    {.name = "object", .help = "0x6041, 6099h.1, statusword, Pn0202", .kind = Kind::object, .required = true, .many = true},
+    {.name = "--type", .help = "data type, when the dictionary does not know it", .kind = Kind::type, .choices = kTypeNames},
+};
+
+Result<report::Value> run(Context& context, const Arguments& arguments) {
+  const auto type = parse_type_option(arguments);
+  if (!type) return tl::unexpected<Error>(type.error());
+  std::vector<Reading> readings;
+  std::vector<session::SdoRequest> requests;
+  for (const auto node : context.nodes) {
+    for (const auto& word : arguments.all("object")) {
+      const auto target = drive::resolve(context.profile, word);
+      if (!target) return tl::unexpected<Error>(target.error());
+      if (!od::readable(drive::meaning(*target, node).access))
+        return fail(Errc::usage, "'" + word + "' is write-only", "it can be written, not read");
+      readings.push_back({node, *target, *type, Bytes{}});
+      requests.push_back({node, target->address, {}});
+    }
+  }
+  auto answers = context.session->transfer(requests);
+  for (std::size_t i = 0; i < readings.size(); ++i) readings[i].bytes = std::move(answers[i]);
+  return report::Value(reading_table(context, readings));
+}
+
+}  // namespace
+
+extern const Command kRead;
+const Command kRead{
+    .path = "read",
+    .summary = "Read objects of a node",
+    .details = "Without --drive only addresses are understood, and the value is shown as an unsigned number of its length. Index and "
+               "sub-index are hexadecimal.",
+    .parameters = kParameters,
+    .needs = Needs::node,
+    .effect = Effect::reads,
+    .run = run,
+};
+
+}  // namespace servoctl::commands

@@ -1,0 +1,259 @@
+#include "commands/records.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+#include "base/text.hpp"
+#include "canopen/sdo_abort.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using report::Field;
+using report::Hex;
+using report::List;
+using report::Record;
+using report::Show;
+using report::Table;
+using report::Value;
+
+std::string shown_name(std::string_view english, std::string_view chinese_name, bool chinese) {
+  return std::string(chinese && !chinese_name.empty() ? chinese_name : english);
+}
+
+Value object_record(const std::optional<ObjectAddress>& object) {
+  if (!object) return {};
+  return Record{{"index", object->index}, {"sub", object->sub}};
+}
+
+Value words(std::string_view text) {
+  List out;
+  for (const auto word : split(text, ' ')) out.emplace_back(word);
+  return out;
+}
+
+std::string flags_of(const od::Parameter& p) {
+  std::string out;
+  const auto add = [&](std::string_view word) { out += (out.empty() ? "" : " ") + std::string(word); };
+  if (p.command) add("command");
+  if (p.is_volatile) add("volatile");
+  if (p.mirror) add("mirror=" + to_string(*p.mirror));
+  return out;
+}
+
+std::string unit_text(std::string_view unit, double scale) {
+  if (scale == 1) return std::string(unit);
+  return fmt::format("{:g}{}{}", scale, unit.empty() ? "" : " ", unit);
+}
+
+std::string range_of(const od::Parameter& p) {
+  if (!p.min && !p.max) return {};
+  return (p.min ? od::to_string(*p.min) : std::string()) + ".." + (p.max ? od::to_string(*p.max) : std::string());
+}
+
+/// Columns of a decoded value: value, unit, label, hex; type and raw bytes for JSON.
+struct Decoded {
+  Value value;
+  Value raw;
+  Value label;
+  Value label_zh;
+  std::string unit;
+  std::string text;  ///< What a person reads: number, unit, label.
+  std::string type;
+};
+
+Decoded decode(const Reading& reading, ByteSpan bytes) {
+  Decoded out;
+  auto meaning = drive::meaning(reading.target, reading.node);
+  const auto type = type_of(reading, bytes);
+  out.type = std::string(od::name(type));
+  const auto value = od::decode(type, bytes);
+  if (!value) {
+    out.text = to_hex(bytes);
+    out.value = out.text;
+    return out;
+  }
+  out.raw = od_value(*value);
+  out.value = meaning.scale == 1 ? out.raw : Value(drive::scaled(meaning, *value));
+  out.unit = std::string(meaning.unit);
+  out.text = od::to_string(*value);
+  if (meaning.scale != 1)
+    out.text += fmt::format(" = {:.12g} {}", drive::scaled(meaning, *value), meaning.unit);
+  else if (!meaning.unit.empty())
+    out.text += " " + out.unit;
+  if (const auto* label = drive::label_of(meaning, *value)) {
+    out.label = label->label;
+    out.label_zh = report::text_or_null(label->label_zh);
+  }
+  return out;
+}
+
+List reading_row(const Reading& reading, bool chinese) {
+  const auto& target = reading.target;
+  const auto name = chinese ? target.label_zh() : target.label();
+  List row{reading.node, to_string(target.address), target.address.index, target.address.sub,
+           report::text_or_null(name)};
+  if (target.parameter != nullptr)
+    row.emplace_back(target.parameter->id);
+  else
+    row.emplace_back();
+  if (!reading.bytes) {
+    const auto type = reading.type ? std::optional(*reading.type) : target.entry != nullptr ? std::optional(target.entry->type) : std::nullopt;
+    row.insert(row.end(), {Value("-"), type ? Value(od::name(*type)) : Value(), Value(), Value(), Value(), Value(), Value(),
+                           Value(), Value(), error_record(reading.bytes.error())});
+    return row;
+  }
+  const auto& bytes = *reading.bytes;
+  auto decoded = decode(reading, bytes);
+  const bool number = std::holds_alternative<std::uint64_t>(decoded.raw.data()) ||
+                      std::holds_alternative<std::int64_t>(decoded.raw.data());
+  Value hex;
+  if (number) hex = fmt::format("0x{:0{}X}", load_le(bytes), bytes.size() * 2);
+  const auto label = chinese && !decoded.label_zh.is_null() ? decoded.label_zh : decoded.label;
+  row.insert(row.end(), {Value(decoded.text), Value(decoded.type), decoded.value, decoded.raw, report::text_or_null(decoded.unit),
+                         label.is_null() ? Value("") : label, decoded.label, hex.is_null() ? Value("") : hex,
+                         Value(to_hex(bytes)), Value()});
+  return row;
+}
+
+}  // namespace
+
+Value error_record(const Error& error) {
+  Record out{{"code", name(error.code)},
+             {"exit", exit_code(error.code)},
+             {"message", error.message},
+             {"hint", report::text_or_null(error.hint)}};
+  if (error.node) out.push_back({"node", *error.node});
+  if (error.object) out.push_back({"object", to_string(*error.object)});
+  if (error.abort_code)
+    out.push_back({"abort", Record{{"code", fmt::format("0x{:08X}", *error.abort_code)},
+                                   {"text", canopen::sdo_abort_text(*error.abort_code)}}});
+  if (error.line) out.push_back({"line", *error.line});
+  return out;
+}
+
+Value od_value(const std::optional<od::Value>& value) {
+  if (!value) return {};
+  if (const auto* i = std::get_if<std::int64_t>(&*value)) return *i;
+  if (const auto* u = std::get_if<std::uint64_t>(&*value)) return *u;
+  if (const auto* d = std::get_if<double>(&*value)) return *d;
+  return od::to_string(*value);
+}
+
+Value labels_record(std::span<const od::EnumLabel> labels, bool chinese) {
+  if (labels.empty()) return {};
+  Record out;
+  for (const auto& label : labels)
+    out.push_back({fmt::format("{}", label.value), shown_name(label.label, label.label_zh, chinese)});
+  return out;
+}
+
+Record parameter_record(const od::Parameter& p, bool chinese) {
+  return {{"id", p.id},
+          {"object", p.object ? Value(to_string(*p.object)) : Value(), Show::text},
+          {"object", object_record(p.object), Show::json},
+          {"name", shown_name(p.name, p.name_zh, chinese), Show::text},
+          {"name", p.name, Show::json},
+          {"name_zh", report::text_or_null(p.name_zh)},
+          {"group", report::text_or_null(p.group)},
+          {"type", od::name(p.type)},
+          {"access", od::name(p.access)},
+          {"unit", report::text_or_null(unit_text(p.unit, p.scale)), Show::text},
+          {"unit", report::text_or_null(p.unit), Show::json},
+          {"scale", p.scale, Show::json},
+          {"default", od_value(p.default_value)},
+          {"min", od_value(p.min)},
+          {"max", od_value(p.max)},
+          {"effect", report::text_or_null(std::string(od::name(p.effect)))},
+          {"enum", labels_record(p.labels, chinese)},
+          {"enum_zh", labels_record(p.labels, true), Show::json},
+          {"flags", p.command || p.is_volatile || p.mirror ? Value(flags_of(p)) : Value(), Show::text},
+          {"flags", words(flags_of(p)), Show::json},
+          {"assumed", report::text_or_null(p.assumed.empty() ? "" : p.assumed + " (the manual does not state it)"), Show::text},
+          {"assumed", !p.assumed.empty(), Show::json},
+          {"note", report::text_or_null(shown_name(p.note, p.note_zh, chinese)), Show::text},
+          {"note", report::text_or_null(p.note), Show::json},
+          {"note_zh", report::text_or_null(p.note_zh), Show::json},
+          {"manual_line", p.line == 0 ? Value() : Value(p.line), Show::everywhere, "manual line"}};
+}
+
+Table parameter_table(std::span<const od::Parameter* const> parameters, bool chinese) {
+  Table table;
+  table.columns = {{"id", "", Show::text},      {"name", "", Show::text},   {"range", "", Show::text}, {"default", "", Show::text},
+                   {"unit", "", Show::text},    {"access", "", Show::text}, {"effect", "", Show::text}};
+  bool first = true;
+  for (const auto* p : parameters) {
+    List row{p->id, shown_name(p->name, p->name_zh, chinese), range_of(*p), od_value(p->default_value),
+             unit_text(p->unit, p->scale), od::name(p->access), od::name(p->effect)};
+    for (auto& field : parameter_record(*p, chinese)) {
+      if (field.show == Show::text) continue;
+      if (first) table.columns.push_back({field.key, "", Show::json});
+      row.push_back(std::move(field.value));
+    }
+    first = false;
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+od::DataType type_of(const Reading& reading, ByteSpan bytes) {
+  if (reading.type) return *reading.type;
+  const auto meaning = drive::meaning(reading.target, reading.node);
+  if (meaning.type_known) return meaning.type;
+  const auto index = reading.target.address.index;
+  if (index >= 0x1008 && index <= 0x100A) return od::DataType::string;  // CiA 301, 7.5.2: device name and versions.
+  switch (bytes.size()) {
+    case 1: return od::DataType::u8;
+    case 2: return od::DataType::u16;
+    case 4: return od::DataType::u32;
+    case 8: return od::DataType::u64;
+    default: break;
+  }
+  const bool printable = !bytes.empty() && std::all_of(bytes.begin(), bytes.end(), [](std::uint8_t b) { return b == 0 || b >= 0x20; });
+  return printable ? od::DataType::string : od::DataType::bytes;
+}
+
+Table reading_table(Context& context, std::span<const Reading> readings) {
+  Table table;
+  table.columns = {{"node"},
+                   {"object", "", Show::text},
+                   {"index", "", Show::json},
+                   {"sub", "", Show::json},
+                   {"name"},
+                   {"id", "", Show::json},
+                   {"text", "value", Show::text},
+                   {"type", "", Show::json},
+                   {"value", "", Show::json},
+                   {"raw", "", Show::json},
+                   {"unit", "", Show::json},
+                   {"meaning", "label", Show::text},
+                   {"label", "", Show::json},
+                   {"hex", "", Show::text},
+                   {"bytes", "", Show::json},
+                   {"error", "", Show::json}};
+  for (const auto& reading : readings) {
+    table.rows.push_back(reading_row(reading, context.chinese));
+    if (!reading.bytes) context.errors.push_back(reading.bytes.error());
+  }
+  return table;
+}
+
+Error located(Error error, std::uint8_t node, ObjectAddress object) {
+  if (!error.node) error.node = node;
+  if (!error.object) error.object = object;
+  return error;
+}
+
+bool contains_nocase(std::string_view text, std::string_view word) { return lower(text).find(lower(word)) != std::string::npos; }
+
+bool fits(std::string_view pattern, std::string_view text) {
+  if (pattern.empty()) return text.empty();
+  if (pattern.front() == '*') {
+    for (std::size_t skip = 0; skip <= text.size(); ++skip)
+      if (fits(pattern.substr(1), text.substr(skip))) return true;
+    return false;
+  }
+  return !text.empty() && equals_nocase(pattern.substr(0, 1), text.substr(0, 1)) && fits(pattern.substr(1), text.substr(1));
+}
+
+}  // namespace servoctl::commands

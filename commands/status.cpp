@@ -1,0 +1,144 @@
+#include <algorithm>
+#include <fmt/format.h>
+
+#include "canopen/emergency.hpp"
+#include "commands/command.hpp"
+#include "commands/records.hpp"
+#include "drive/cia402.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using report::Record;
+using report::Show;
+using report::Value;
+
+constexpr ObjectAddress kStatusword{0x6041, 0};
+constexpr ObjectAddress kModeDisplay{0x6061, 0};
+constexpr ObjectAddress kErrorCode{0x603F, 0};
+constexpr ObjectAddress kErrorRegister{0x1001, 0};
+constexpr ObjectAddress kHeartbeat{0x1017, 0};
+constexpr ObjectAddress kObjects[] = {kStatusword, kModeDisplay, kErrorCode, kErrorRegister, kHeartbeat};
+constexpr std::size_t kCount = std::size(kObjects);
+
+/// Longest wait for a heartbeat that tells the NMT state.
+constexpr Duration kMostPatience = std::chrono::seconds(3);
+
+std::optional<std::uint64_t> number(const Result<Bytes>& bytes) {
+  if (!bytes || bytes->empty() || bytes->size() > 8) return std::nullopt;
+  return load_le(*bytes);
+}
+
+/// Waits until every node that sends heartbeats was heard.
+Result<void> hear_heartbeats(Context& context, std::span<const Result<Bytes>> answers) {
+  Duration longest{};
+  std::vector<std::uint8_t> expected;
+  for (std::size_t i = 0; i < context.nodes.size(); ++i) {
+    const auto period = number(answers[i * kCount + 4]);
+    if (!period || *period == 0 || context.session->watch().state(context.nodes[i])) continue;
+    expected.push_back(context.nodes[i]);
+    longest = std::max<Duration>(longest, std::chrono::milliseconds(*period) * 3 / 2);
+  }
+  if (expected.empty()) return {};
+  const auto all_heard = [&] {
+    return std::all_of(expected.begin(), expected.end(), [&](auto n) { return context.session->watch().state(n).has_value(); });
+  };
+  const auto heard = context.session->wait(all_heard, context.session->now() + std::min(longest, kMostPatience));
+  if (!heard) return tl::unexpected<Error>(heard.error());
+  return {};
+}
+
+std::string fault_text(const Context& context, std::uint64_t code) {
+  if (context.profile != nullptr)
+    for (const auto& fault : context.profile->faults)
+      if (fault.code == code) return context.chinese && !fault.name_zh.empty() ? fault.name_zh : fault.name;
+  return canopen::emergency_text(static_cast<std::uint16_t>(code));
+}
+
+std::string mode_text(const Context& context, std::int8_t mode) {
+  if (context.profile == nullptr) return {};
+  const auto meaning = drive::meaning(drive::target_at(context.profile, kModeDisplay), 0);
+  const auto* label = drive::label_of(meaning, od::Value(std::int64_t{mode}));
+  if (label == nullptr) return {};
+  return context.chinese && !label->label_zh.empty() ? label->label_zh : label->label;
+}
+
+void add_drive_state(Record& out, const Context& context, std::optional<std::uint64_t> word, std::optional<std::uint64_t> mode) {
+  if (!word) return;
+  const auto statusword = static_cast<std::uint16_t>(*word);
+  const auto state = drive::decode_state(statusword);
+  const auto mode_number = static_cast<std::int8_t>(mode.value_or(0));
+  report::List bits;
+  for (auto& bit : drive::statusword_bits(statusword, mode_number)) bits.emplace_back(std::move(bit));
+  out.push_back({"state", context.chinese ? drive::name_zh(state) : drive::name(state), Show::text, "drive state"});
+  out.push_back({"state", drive::name(state), Show::json});
+  out.push_back({"energised", drive::is_energised(state)});
+  out.push_back({"statusword", report::Hex{statusword, 4}});
+  out.push_back({"bits", std::move(bits), Show::everywhere, "statusword bits"});
+}
+
+void add_mode_and_fault(Record& out, const Context& context, std::span<const Result<Bytes>> answers) {
+  if (const auto mode = number(answers[1])) {
+    const auto value = static_cast<std::int8_t>(*mode);
+    const auto text = mode_text(context, value);
+    out.push_back({"mode", text.empty() ? fmt::format("{}", value) : fmt::format("{} {}", value, text), Show::text});
+    out.push_back({"mode", Record{{"value", value}, {"label", report::text_or_null(text)}}, Show::json});
+  }
+  if (const auto code = number(answers[2])) {
+    const auto text = fault_text(context, *code);
+    out.push_back({"fault", *code == 0 ? std::string("none") : fmt::format("0x{:04X} {}", *code, text), Show::text});
+    out.push_back({"fault", *code == 0 ? Value() : Value(Record{{"code", *code}, {"text", text}}), Show::json});
+  }
+  if (const auto bits = number(answers[3])) {
+    const auto text = canopen::error_register_text(static_cast<std::uint8_t>(*bits));
+    out.push_back({"error_register", fmt::format("0x{:02X} {}", *bits, text), Show::text, "error register"});
+    out.push_back({"error_register", *bits, Show::json});
+  }
+}
+
+Record one(Context& context, std::uint8_t node, std::span<const Result<Bytes>> answers) {
+  Record out{{"node", node}};
+  const auto nmt = context.session->watch().state(node);
+  const auto heartbeat = number(answers[4]);
+  out.push_back({"nmt", nmt ? std::string(canopen::name(*nmt))
+                            : std::string(heartbeat.value_or(0) == 0 ? "not stopped (no heartbeat tells more: 0x1017 is 0)"
+                                                                     : "not heard"),
+                 Show::text, "NMT state"});
+  out.push_back({"nmt", nmt ? Value(canopen::name(*nmt)) : Value(), Show::json});
+  add_drive_state(out, context, number(answers[0]), number(answers[1]));
+  add_mode_and_fault(out, context, answers);
+  return out;
+}
+
+Result<report::Value> run(Context& context, const Arguments&) {
+  std::vector<session::SdoRequest> requests;
+  for (const auto node : context.nodes)
+    for (const auto object : kObjects) requests.push_back({node, object, {}});
+  const auto answers = context.session->transfer(requests);
+  if (const auto heard = hear_heartbeats(context, answers); !heard) return tl::unexpected<Error>(heard.error());
+  report::List out;
+  for (std::size_t i = 0; i < context.nodes.size(); ++i) {
+    const auto mine = std::span(answers).subspan(i * kCount, kCount);
+    // A missing statusword makes the answer useless; other objects may be absent on a drive.
+    if (!mine[0]) context.errors.push_back(mine[0].error());
+    const bool silent = !mine[0] && mine[0].error().code != Errc::sdo_abort;
+    if (!silent) out.emplace_back(one(context, context.nodes[i], mine));
+  }
+  return report::Value(std::move(out));
+}
+
+}  // namespace
+
+extern const Command kStatus;
+const Command kStatus{
+    .path = "status",
+    .summary = "Show the state of a drive: NMT, CiA 402, mode, fault",
+    .details = "Reads statusword, mode, error code and error register. The NMT state is told by heartbeats; where the node sends "
+               "some, status waits for one.",
+    .parameters = {},
+    .needs = Needs::node,
+    .effect = Effect::reads,
+    .run = run,
+};
+
+}  // namespace servoctl::commands

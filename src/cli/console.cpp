@@ -1,0 +1,34 @@
+#include "cli/console.hpp"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <string>
+
+namespace servoctl::cli {
+
+void StandardConsole::out(std::string_view text) {
+  std::fwrite(text.data(), 1, text.size(), stdout);
+  std::fflush(stdout);
+}
+
+void StandardConsole::err(std::string_view text) { std::fwrite(text.data(), 1, text.size(), stderr); }
+
+bool StandardConsole::ask(std::string_view question) {
+  if (!can_ask()) return false;
+  err(std::string(question) + " [y/N] ");
+  std::string answer;
+  for (int c = std::getchar(); c != EOF && c != '\n'; c = std::getchar()) answer += static_cast<char>(c);
+  return answer == "y" || answer == "Y" || answer == "yes";
+}
+
+bool StandardConsole::can_ask() const { return ::isatty(STDIN_FILENO) == 1 && ::isatty(STDERR_FILENO) == 1; }
+
+std::size_t StandardConsole::width() const {
+  winsize size{};
+  if (::isatty(STDOUT_FILENO) != 1 || ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return 0;
+  return size.ws_col;
+}
+
+}  // namespace servoctl::cli

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+
+namespace servoctl::cli {
+
+/// Where a front end puts its text and asks its questions: the terminal, or a record of a test.
+class Console {
+ public:
+  Console() = default;
+  Console(const Console&) = delete;
+  Console& operator=(const Console&) = delete;
+  virtual ~Console() = default;
+
+  virtual void out(std::string_view text) = 0;  ///< Data.
+  virtual void err(std::string_view text) = 0;  ///< Errors, notices, progress.
+  /// Asks a yes-or-no question; false when there is nobody to ask or the answer is no.
+  virtual bool ask(std::string_view question) = 0;
+  virtual bool can_ask() const = 0;      ///< Whether there is a person at a terminal.
+  virtual std::size_t width() const = 0;  ///< Columns of the terminal text goes to; 0: no terminal.
+};
+
+/// Standard streams of the process.
+class StandardConsole final : public Console {
+ public:
+  void out(std::string_view text) override;
+  void err(std::string_view text) override;
+  bool ask(std::string_view question) override;
+  bool can_ask() const override;
+  std::size_t width() const override;
+};
+
+}  // namespace servoctl::cli

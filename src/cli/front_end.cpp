@@ -1,0 +1,69 @@
+#include "cli/front_end.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <exception>
+#include <iostream>
+
+#include "cli/console.hpp"
+#include "cli/line_runner.hpp"
+#include "cli/parse.hpp"
+#include "cli/prompt.hpp"
+#include "cli/shell.hpp"
+#include "cli/signals.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+/// Lines from a pipe or file: stops at the first that fails, whose exit code is the answer.
+int run_pipe(Shell& shell, Console& console) {
+  LineRunner runner(shell, console);
+  std::string line;
+  while (!runner.wants_exit() && !interrupted() && std::getline(std::cin, line))
+    if (const int code = runner.run(line); code != 0) return code;
+  return interrupted() ? exit_code(Errc::interrupted) : 0;
+}
+
+/// Options without a command hold for all lines that follow. They are read as those of the command that needs nothing else.
+Result<Settings> settings_for_lines(const Settings& defaults, std::vector<std::string> words) {
+  words.emplace_back("help");
+  const auto parsed = parse_line(words);
+  if (!parsed) return tl::unexpected<Error>(parsed.error());
+  return apply_options(defaults, parsed->arguments);
+}
+
+int run(const std::vector<std::string>& words) {
+  StandardConsole console;
+  Shell::Options options;
+  options.defaults = settings_from_environment();
+  options.drive_folders = drive::drive_folders();
+  options.cancelled = interrupted;
+  Shell shell(console, std::move(options));
+  if (words.size() == 1 && words.front() == "--version") {
+    console.out("servoctl " SERVOCTL_VERSION "\n");
+    return 0;
+  }
+  install_signal_handlers();
+  if (match_command(words).first < words.size() || asks_for_help(words)) return shell.run(words);
+  auto settings = settings_for_lines(shell.defaults(), words);
+  if (!settings) return shell.report_error(settings.error(), false);
+  shell.defaults() = std::move(*settings);
+  if (::isatty(STDIN_FILENO) != 1) return run_pipe(shell, console);
+  if (!shell.defaults().bus.empty())
+    if (const auto opened = shell.open(shell.defaults()); !opened) return shell.report_error(opened.error(), false);
+  return run_prompt(shell, console);
+}
+
+}  // namespace
+
+int run_program(const std::vector<std::string>& words) {
+  try {
+    return run(words);
+  } catch (const std::exception& e) {
+    std::cerr << "error: servoctl failed: " << e.what() << "\n  hint: this is a bug; please report it with the command line\n";
+    return exit_code(Errc::bug);
+  }
+}
+
+}  // namespace servoctl::cli

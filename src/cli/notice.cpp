@@ -1,0 +1,44 @@
+#include "cli/notice.hpp"
+
+#include <fmt/format.h>
+
+#include "base/bytes.hpp"
+#include "base/duration.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+std::string emergency_words(const canopen::Emergency& e, const drive::Profile* profile, bool chinese) {
+  if (profile != nullptr)
+    for (const auto& fault : profile->faults)
+      if (fault.code == e.code) return chinese && !fault.name_zh.empty() ? fault.name_zh : fault.name;
+  return canopen::emergency_text(e.code);
+}
+
+struct Words {
+  const canopen::NodeEvent& event;
+  const drive::Profile* profile;
+  bool chinese;
+
+  std::string operator()(const canopen::NodeEvent::BootUp&) const { return "boot-up"; }
+  std::string operator()(const canopen::NodeEvent::StateChange& change) const {
+    return fmt::format("NMT state is now {}", canopen::name(change.state));
+  }
+  std::string operator()(const canopen::NodeEvent::HeartbeatLost& lost) const {
+    const auto silence = std::chrono::duration_cast<std::chrono::milliseconds>(lost.silence);
+    return fmt::format("heartbeat lost: silent for {} ms", silence.count());
+  }
+  std::string operator()(const canopen::Emergency& e) const {
+    if (e.is_reset()) return "EMCY 0x0000: error reset or no error";
+    return fmt::format("EMCY 0x{:04X} {}; error register 0x{:02X} ({}); vendor bytes {}", e.code, emergency_words(e, profile, chinese),
+                       e.error_register, canopen::error_register_text(e.error_register), to_hex(e.vendor));
+  }
+};
+
+}  // namespace
+
+std::string notice_text(const canopen::NodeEvent& event, const drive::Profile* profile, bool chinese) {
+  return fmt::format("node {}: {}", event.node, std::visit(Words{event, profile, chinese}, event.what));
+}
+
+}  // namespace servoctl::cli

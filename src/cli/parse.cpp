@@ -1,0 +1,185 @@
+#include "cli/parse.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <deque>
+#include <fmt/format.h>
+
+#include "base/text.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+using commands::Command;
+using commands::Kind;
+using commands::Parameter;
+
+const Parameter* global_option(std::string_view word) {
+  const auto name = word.substr(0, word.find('='));
+  for (const auto& option : commands::global_options())
+    if (option.name == name || (!option.short_name.empty() && option.short_name == name)) return &option;
+  return nullptr;
+}
+
+/// Number of words of `path` that stand in `words` from `first` on; 0 when one differs.
+std::size_t words_that_fit(std::string_view path, const std::vector<std::string>& words, std::size_t first) {
+  const auto parts = split(path, ' ');
+  if (first + parts.size() > words.size()) return 0;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    if (parts[i] != words[first + i]) return 0;
+  return parts.size();
+}
+
+/// Position of the first word that is neither a global option nor its value.
+std::size_t first_plain_word(const std::vector<std::string>& words) {
+  std::size_t i = 0;
+  while (i < words.size() && words[i].size() > 1 && words[i].front() == '-') {
+    const auto* option = global_option(words[i]);
+    const bool takes_next = option != nullptr && option->kind != Kind::flag && words[i].find('=') == std::string::npos;
+    i += takes_next ? 2 : 1;
+  }
+  return std::min(i, words.size());
+}
+
+/// One fresh CLI::App a line: no value can leak from one line of the prompt to the next. Every value stays text, because
+/// CLI11 reads "010" as 8 and refuses "6040h".
+class Parser {
+ public:
+  explicit Parser(const Command& command) : command_(&command), app_(std::string(command.summary), std::string(command.path)) {
+    app_.set_help_flag();
+    app_.allow_extras();
+    for (const auto& parameter : command.parameters) bind(parameter);
+    for (const auto& parameter : commands::global_options()) bind(parameter);
+  }
+
+  Result<commands::Arguments> parse(std::vector<std::string> words) {
+    std::reverse(words.begin(), words.end());  // CLI11 takes them from the back.
+    try {
+      app_.parse(std::move(words));
+    } catch (const CLI::ArgumentMismatch& e) {
+      return fail(Errc::usage, fmt::format("{}: {}", command_->path, e.what()), help_hint());
+    } catch (const CLI::ParseError& e) {
+      return fail(Errc::usage, fmt::format("{}: {}", command_->path, e.what()), help_hint());
+    }
+    if (const auto rest = app_.remaining(); !rest.empty()) return superfluous(rest.front());
+    return collect();
+  }
+
+ private:
+  struct Bound {
+    const Parameter* parameter;
+    CLI::Option* option;
+    std::vector<std::string>* values;
+  };
+
+  void bind(const Parameter& parameter) {
+    const auto names = parameter.short_name.empty() ? std::string(parameter.name)
+                                                    : fmt::format("{},{}", parameter.short_name, parameter.name);
+    auto& values = values_.emplace_back();
+    CLI::Option* option = nullptr;
+    if (parameter.kind == Kind::flag)
+      option = app_.add_flag(names);
+    else
+      option = app_.add_option(names, values)->expected(1, parameter.many ? CLI::detail::expected_max_vector_size : 1)->multi_option_policy(parameter.many ? CLI::MultiOptionPolicy::TakeAll : CLI::MultiOptionPolicy::TakeLast);
+    bound_.push_back({&parameter, option, &values});
+  }
+
+  Result<commands::Arguments> collect() const {
+    commands::Arguments out;
+    for (const auto& entry : bound_) {
+      const auto& parameter = *entry.parameter;
+      if (entry.option->count() == 0) {
+        if (parameter.required)
+          return fail(Errc::usage, fmt::format("{}: {} is missing", command_->path, parameter.name),
+                      fmt::format("{}: {}; {}", parameter.name, parameter.help, help_hint()));
+        continue;
+      }
+      if (parameter.kind == Kind::flag) out.add(parameter.name, "true");
+      for (const auto& value : *entry.values) {
+        if (parameter.kind == Kind::choice && std::find(parameter.choices.begin(), parameter.choices.end(), value) == parameter.choices.end())
+          return bad_choice(parameter, value);
+        out.add(parameter.name, value);
+      }
+    }
+    return out;
+  }
+
+  tl::unexpected<Error> bad_choice(const Parameter& parameter, const std::string& value) const {
+    const std::vector<std::string> choices(parameter.choices.begin(), parameter.choices.end());
+    return fail(Errc::usage, fmt::format("{}: '{}' is no value of {}", command_->path, value, parameter.name), "write " + one_of(choices));
+  }
+
+  tl::unexpected<Error> superfluous(const std::string& word) const {
+    if (word.size() < 2 || word.front() != '-')
+      return fail(Errc::usage, fmt::format("{}: '{}' is one word too many", command_->path, word), help_hint());
+    std::vector<std::string> known;
+    for (const auto& entry : bound_)
+      if (entry.parameter->name.starts_with("-")) known.emplace_back(entry.parameter->name);
+    auto hint = did_you_mean(word, known);
+    return fail(Errc::usage, fmt::format("{}: there is no option '{}'", command_->path, word), hint.empty() ? help_hint() : hint);
+  }
+
+  std::string help_hint() const { return fmt::format("`help {}` shows how it is used", command_->path); }
+
+  const Command* command_;
+  CLI::App app_;
+  std::deque<std::vector<std::string>> values_;
+  std::vector<Bound> bound_;
+};
+
+tl::unexpected<Error> unknown_command(const std::vector<std::string>& words, std::size_t first) {
+  std::vector<std::string> paths;
+  std::vector<std::string> in_group;
+  for (const auto* command : commands::registry()) {
+    paths.emplace_back(command->path);
+    if (split(command->path, ' ').size() > 1 && split(command->path, ' ').front() == words[first]) in_group.emplace_back(command->path);
+  }
+  if (!in_group.empty()) {
+    const auto said = first + 1 < words.size() ? words[first] + " " + words[first + 1] : words[first];
+    return fail(Errc::usage, fmt::format("'{}' is no command", said), "there are " + one_of(in_group));
+  }
+  auto hint = did_you_mean(words[first], paths);
+  if (hint.empty()) hint = "`help` lists the commands";
+  return fail(Errc::usage, fmt::format("'{}' is no command", words[first]), std::move(hint));
+}
+
+}  // namespace
+
+CommandMatch match_command(const std::vector<std::string>& words) {
+  CommandMatch best;
+  best.first = first_plain_word(words);
+  for (const auto* command : commands::registry()) {
+    const auto used = words_that_fit(command->path, words, best.first);
+    if (used > best.used) {
+      best.command = command;
+      best.used = used;
+    }
+  }
+  return best;
+}
+
+Result<ParsedLine> parse_line(const std::vector<std::string>& words) {
+  const auto match = match_command(words);
+  if (match.first == words.size()) {
+    for (const auto& word : words)
+      if (global_option(word) == nullptr && word.front() == '-') {
+        std::vector<std::string> known;
+        for (const auto& option : commands::global_options()) known.emplace_back(option.name);
+        return fail(Errc::usage, fmt::format("there is no option '{}'", word), did_you_mean(word, known));
+      }
+    return fail(Errc::usage, "a command is missing", "`help` lists the commands");
+  }
+  if (match.command == nullptr) return unknown_command(words, match.first);
+  auto rest = words;
+  const auto begin = rest.begin() + static_cast<std::ptrdiff_t>(match.first);
+  rest.erase(begin, begin + static_cast<std::ptrdiff_t>(match.used));
+  auto arguments = Parser(*match.command).parse(std::move(rest));
+  if (!arguments) return tl::unexpected<Error>(arguments.error());
+  return ParsedLine{match.command, std::move(*arguments)};
+}
+
+bool asks_for_help(const std::vector<std::string>& words) {
+  return std::any_of(words.begin(), words.end(), [](const std::string& w) { return w == "--help" || w == "-h"; });
+}
+
+}  // namespace servoctl::cli

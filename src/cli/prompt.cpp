@@ -1,0 +1,169 @@
+#include "cli/prompt.hpp"
+
+#include <editline/readline.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <fmt/format.h>
+
+#include "cli/completer.hpp"
+#include "cli/history.hpp"
+#include "cli/line_runner.hpp"
+#include "cli/signals.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+constexpr int kHistoryLines = 2000;
+
+class Prompt {
+ public:
+  Prompt(Shell& shell, Console& console) : shell_(&shell), console_(&console), runner_(shell, console) {}
+  Prompt(const Prompt&) = delete;
+  Prompt& operator=(const Prompt&) = delete;
+  ~Prompt() {
+    rl_callback_handler_remove();
+    if (!history_.empty()) write_history(history_.c_str());
+    active_ = nullptr;
+  }
+
+  int run();
+
+ private:
+  /// The editor calls back without any argument of ours; only one prompt is active at a time.
+  static Prompt* active_;
+
+  static void on_line(char* line) { active_->take_line(line); }
+  static char** on_complete(const char* text, int start, int end) { return active_->candidates(text, start, end); }
+  static char* next_candidate(const char* text, int state);
+
+  void take_line(char* line);
+  char** candidates(const char* text, int start, int end);
+  void install() {
+    text_ = prompt_text();
+    rl_callback_handler_install(text_.c_str(), on_line);
+  }
+  std::string prompt_text() const;
+  bool wait_for_key();
+  void show_notices();
+  void drop_line();
+
+  Shell* shell_;
+  Console* console_;
+  LineRunner runner_;
+  std::string text_;
+  std::string history_;
+  Completions completions_;
+  std::size_t next_ = 0;
+  bool done_ = false;
+};
+
+Prompt* Prompt::active_ = nullptr;
+
+std::string Prompt::prompt_text() const {
+  const auto& settings = shell_->defaults();
+  std::string out = "servoctl";
+  if (!settings.bus.empty()) out += " " + settings.bus.substr(0, settings.bus.find('?'));
+  if (!settings.nodes.empty()) out += " node " + settings.nodes;
+  if (!settings.drive.empty()) out += " " + settings.drive;
+  return out + "> ";
+}
+
+int Prompt::run() {
+  active_ = this;
+  rl_readline_name = const_cast<char*>("servoctl");  // NOLINT: the library's type is not const.
+  rl_initialize();
+  rl_catch_signals = 0;
+  rl_attempted_completion_function = on_complete;
+  // Names hold points and colons, options dashes: only a blank ends a word.
+  rl_completer_word_break_characters = const_cast<char*>(" \t");  // NOLINT
+  using_history();
+  stifle_history(kHistoryLines);
+  history_ = history_file().string();
+  if (!history_.empty()) read_history(history_.c_str());
+  install();
+  while (!done_) {
+    if (interrupted()) drop_line();
+    if (wait_for_key()) rl_callback_read_char();
+    if (!done_) show_notices();
+  }
+  return 0;
+}
+
+/// True when a key waits; frames and timers of the bus are served meanwhile.
+bool Prompt::wait_for_key() {
+  auto* session = shell_->session();
+  pollfd fds[2] = {{STDIN_FILENO, POLLIN, 0}, {session == nullptr ? -1 : session->bus().poll_fd(), POLLIN, 0}};
+  int wait = -1;
+  if (session != nullptr && session->next_event() != kNever) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(session->next_event() - session->now()).count();
+    wait = static_cast<int>(std::clamp<long long>(left, 0, 60'000));
+  }
+  if (::poll(fds, 2, wait) < 0) return false;
+  if (session != nullptr)
+    if (const auto heard = session->listen(); !heard && heard.error().code == Errc::bus) {
+      console_->err("\r\033[K");
+      shell_->report_error(heard.error(), false);
+      shell_->close_bus();
+      rl_forced_update_display();
+    }
+  return (fds[0].revents & (POLLIN | POLLHUP)) != 0;
+}
+
+void Prompt::show_notices() {
+  const auto& settings = shell_->defaults();
+  const auto loaded = settings.drive.empty() ? Result<const drive::Profile*>(nullptr) : shell_->profile(settings.drive);
+  const auto notices = shell_->take_notices(loaded ? *loaded : nullptr, settings.chinese);
+  if (notices.empty()) return;
+  console_->out("\r\033[K");
+  for (const auto& notice : notices) console_->out("* " + notice + "\n");
+  rl_forced_update_display();
+}
+
+void Prompt::drop_line() {
+  clear_interrupt();
+  rl_callback_handler_remove();
+  console_->out("^C\n");
+  install();
+}
+
+void Prompt::take_line(char* line) {
+  rl_callback_handler_remove();
+  if (line == nullptr) {
+    console_->out("\n");
+    done_ = true;
+    return;
+  }
+  const std::string text(line);
+  std::free(line);  // NOLINT: allocated by the library.
+  if (text.find_first_not_of(" \t") != std::string::npos) add_history(text.c_str());
+  runner_.run(text);
+  clear_interrupt();
+  done_ = runner_.wants_exit();
+  if (!done_) install();
+}
+
+char* Prompt::next_candidate(const char*, int state) {
+  auto& self = *active_;
+  if (state == 0) self.next_ = 0;
+  if (self.next_ >= self.completions_.words.size()) return nullptr;
+  return ::strdup(self.completions_.words[self.next_++].c_str());
+}
+
+char** Prompt::candidates(const char* text, int, int end) {
+  completions_ = complete(std::string_view(rl_line_buffer, static_cast<std::size_t>(end)), *shell_);
+  rl_attempted_completion_over = completions_.files ? 0 : 1;
+  if (completions_.words.empty()) return nullptr;
+  const bool opens = completions_.words.size() == 1 && completions_.words.front().back() == ':';
+  rl_completion_append_character = opens ? '\0' : ' ';
+  return rl_completion_matches(text, next_candidate);
+}
+
+}  // namespace
+
+int run_prompt(Shell& shell, Console& console) { return Prompt(shell, console).run(); }
+
+}  // namespace servoctl::cli

@@ -1,0 +1,83 @@
+#include "cli/settings.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <fmt/format.h>
+
+#include "base/duration.hpp"
+#include "base/number.hpp"
+#include "base/text.hpp"
+#include "canopen/cob_id.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+std::string variable(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? std::string() : std::string(value);
+}
+
+tl::unexpected<Error> bad_nodes(std::string_view text) {
+  return fail(Errc::usage, fmt::format("'{}' is no node-ID", text), "write -n 1, -n 1,3,5-8 or -n all; node-IDs are 1 to 127");
+}
+
+}  // namespace
+
+Settings settings_from_environment() {
+  Settings out;
+  out.bus = variable("SERVOCTL_BUS");
+  out.nodes = variable("SERVOCTL_NODE");
+  out.drive = variable("SERVOCTL_DRIVE");
+  const auto language = variable("SERVOCTL_LANG");
+  out.chinese = language.empty() ? variable("LANG").starts_with("zh") : language == "zh";
+  return out;
+}
+
+Result<Settings> apply_options(Settings base, const commands::Arguments& arguments) {
+  const auto text = [&](std::string_view name, std::string& into) {
+    if (arguments.has(name)) into = std::string(arguments.text(name));
+  };
+  text("--bus", base.bus);
+  text("--node", base.nodes);
+  text("--drive", base.drive);
+  if (arguments.has("--timeout")) {
+    const auto timeout = parse_duration(arguments.text("--timeout"));
+    if (!timeout || *timeout == Duration::zero())
+      return fail(Errc::usage, fmt::format("--timeout: '{}' is no time", arguments.text("--timeout")), "write 500ms or 2s");
+    base.timeout = *timeout;
+  }
+  if (arguments.has("--retries")) {
+    const auto retries = parse_digits(arguments.text("--retries"), 10);
+    if (!retries || *retries > 100)
+      return fail(Errc::usage, fmt::format("--retries: '{}' is no number of 0 to 100", arguments.text("--retries")));
+    base.retries = static_cast<std::uint32_t>(*retries);
+  }
+  base.json = arguments.has("--json") || arguments.text("--output").starts_with("json");
+  if (arguments.has("--lang")) base.chinese = arguments.text("--lang") == "zh";
+  base.yes = base.yes || arguments.has("--yes");
+  base.read_only = base.read_only || arguments.has("--read-only");
+  base.dry_run = arguments.has("--dry-run");
+  if (arguments.has("--trace")) base.trace = std::string(arguments.text("--trace"));
+  return base;
+}
+
+Result<std::vector<std::uint8_t>> parse_nodes(std::string_view text) {
+  if (equals_nocase(text, "all")) return std::vector<std::uint8_t>{0};
+  std::vector<std::uint8_t> out;
+  for (const auto part : split(text, ',')) {
+    const auto dash = part.find('-', 1);
+    const auto first = parse_integer(trim(part.substr(0, dash)));
+    const auto last = dash == std::string_view::npos ? first : parse_integer(trim(part.substr(dash + 1)));
+    const auto valid = [](const auto& n) {
+      return n && !n->negative && n->magnitude >= canopen::kFirstNode && n->magnitude <= canopen::kLastNode;
+    };
+    if (!valid(first) || !valid(last) || first->magnitude > last->magnitude) return bad_nodes(part);
+    for (auto node = first->magnitude; node <= last->magnitude; ++node) out.push_back(static_cast<std::uint8_t>(node));
+  }
+  if (out.empty()) return bad_nodes(text);
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
+}  // namespace servoctl::cli

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/result.hpp"
+#include "base/time.hpp"
+#include "commands/command.hpp"
+
+namespace servoctl::cli {
+
+/// What holds for one command line: its global options over what the prompt has set over the environment.
+struct Settings {
+  std::string bus;    ///< URL; empty: none given.
+  std::string nodes;  ///< As written: `1,3,5-8`, `all`; empty: none given.
+  std::string drive;  ///< Family or file; empty: none given.
+  Duration timeout = std::chrono::milliseconds(500);
+  std::uint32_t retries = 1;
+  bool json = false;
+  bool chinese = false;
+  bool yes = false;
+  bool read_only = false;
+  bool dry_run = false;
+  std::filesystem::path trace;
+};
+
+/// Defaults from $SERVOCTL_BUS, $SERVOCTL_NODE, $SERVOCTL_DRIVE and $SERVOCTL_LANG (or a Chinese $LANG).
+Settings settings_from_environment();
+
+/// `base` with the global options of one line on top. Errc::usage for a value that is none.
+Result<Settings> apply_options(Settings base, const commands::Arguments& arguments);
+
+/// Reads `1`, `1,3,5-8` (rising, without doubles) or `all` ({0}). Errc::usage for anything else or an ID outside 1..127.
+Result<std::vector<std::uint8_t>> parse_nodes(std::string_view text);
+
+}  // namespace servoctl::cli

@@ -1,0 +1,253 @@
+#include "cli/shell.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <numeric>
+
+#include "base/text.hpp"
+#include "canopen/cob_id.hpp"
+#include "can/socketcan.hpp"
+#include "cli/notice.hpp"
+#include "commands/help.hpp"
+#include "commands/identity.hpp"
+#include "commands/records.hpp"
+#include "session/open_bus.hpp"
+#include "session/scan.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+using commands::Effect;
+using commands::Needs;
+using report::Value;
+
+Error no_bus() {
+  Error error;
+  error.code = Errc::usage;
+  error.message = "which bus?";
+  const auto interfaces = can::can_interfaces();
+  error.hint = interfaces.empty() ? "this machine has no CAN interface now; try `--bus sim:FAMILY@1` (`drives` lists families), or local:NAME"
+                                  : fmt::format("add --bus {} or set SERVOCTL_BUS", one_of(interfaces));
+  return error;
+}
+
+/// Errors as people read them: what happened, then what to do.
+std::string error_text(const Error& error) {
+  auto out = "error: " + error.message + "\n";
+  if (!error.hint.empty()) out += "  hint: " + error.hint + "\n";
+  return out;
+}
+
+bool wants_json(const std::vector<std::string>& words) {
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (words[i] == "--json" || words[i] == "--output=json" || words[i] == "--output=jsonl" || words[i] == "-ojson") return true;
+    if ((words[i] == "-o" || words[i] == "--output") && i + 1 < words.size() && words[i + 1].starts_with("json")) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+int Shell::run(const std::vector<std::string>& words) {
+  if (asks_for_help(words)) {
+    const auto match = match_command(words);
+    const std::string path = match.command != nullptr ? std::string(match.command->path) : match.first < words.size() ? words[match.first] : std::string();
+    const auto text = commands::help_text(path, console_->width());
+    if (!text) return report_error(text.error(), wants_json(words));
+    console_->out(*text);
+    return 0;
+  }
+  auto parsed = parse_line(words);
+  if (!parsed) {
+    const auto match = match_command(words);
+    return report_error(parsed.error(), wants_json(words), match.command != nullptr ? match.command->path : std::string_view());
+  }
+  auto settings = apply_options(options_.defaults, parsed->arguments);
+  if (!settings) return report_error(settings.error(), wants_json(words), parsed->command->path);
+  Run run{parsed->command, std::move(*settings), {}};
+  const auto result = execute(run, parsed->arguments);
+  return finish(run, result);
+}
+
+Result<Value> Shell::execute(Run& run, const commands::Arguments& arguments) {
+  if (const auto ready = prepare(run); !ready) return tl::unexpected<Error>(ready.error());
+  auto& context = run.context;
+  context.chinese = run.settings.chinese;
+  context.dry_run = run.settings.dry_run;
+  context.drive_folders = options_.drive_folders;
+  context.confirm = [this, &run](std::string_view question) -> Result<void> {
+    if (run.settings.yes) return {};
+    if (!console_->can_ask())
+      return fail(Errc::refused, fmt::format("this needs a confirmation: {}", question), "add --yes when you mean it");
+    if (console_->ask(question)) return {};
+    return fail(Errc::refused, "not confirmed; nothing was sent");
+  };
+  context.emit = [this, &run](const Value& value) {
+    console_->out(run.settings.json ? report::to_json(value) + "\n" : report::to_text(value, console_->width()));
+  };
+  return run.command->run(context, arguments);
+}
+
+Result<void> Shell::prepare(Run& run) {
+  const auto& command = *run.command;
+  // A command that asks for more than reading is refused as a whole, before anything is opened.
+  if (run.settings.read_only && command.effect >= Effect::writes && !run.settings.dry_run)
+    return fail(Errc::refused, fmt::format("'{}' changes a drive, and --read-only forbids it", command.path), "leave --read-only out when you mean it");
+  if (!run.settings.drive.empty() || includes(command.needs, Needs::dictionary))
+    if (const auto ready = prepare_profile(run); !ready) return ready;
+  if (!includes(command.needs, Needs::bus)) return {};
+  // What is wrong in the line itself is told before a bus is opened.
+  if (includes(command.needs, Needs::node) && run.settings.nodes.empty())
+    return fail(Errc::usage, fmt::format("'{}' needs a node", command.path), "add -n 1 (or a list, or all); `scan` shows who is there");
+  if (!run.settings.nodes.empty())
+    if (const auto nodes = parse_nodes(run.settings.nodes); !nodes) return tl::unexpected<Error>(nodes.error());
+  const auto opened = open(run.settings);
+  if (!opened) return tl::unexpected<Error>(opened.error());
+  run.context.session = *opened;
+  return prepare_nodes(run);
+}
+
+Result<void> Shell::prepare_profile(Run& run) {
+  if (run.settings.drive.empty()) return ask_for_family(run);
+  const auto loaded = profile(run.settings.drive);
+  if (!loaded) return tl::unexpected<Error>(loaded.error());
+  run.context.profile = *loaded;
+  for (const auto& warning : (*loaded)->warnings) run.context.notices.push_back(warning);
+  return {};
+}
+
+/// Says which families fit the node where that can be found out; a guess is offered, never taken.
+tl::unexpected<Error> Shell::ask_for_family(Run& run) {
+  const auto families = drive::find_families(options_.drive_folders);
+  std::vector<std::string> names;
+  for (const auto& family : families) names.push_back(family.name);
+  auto hint = names.empty() ? std::string("add -d FILE.eds") : "add -d " + one_of(names) + ", or -d FILE.eds";
+  const bool can_look = includes(run.command->needs, Needs::node) && !run.settings.nodes.empty() && !run.settings.bus.empty();
+  const auto nodes = can_look ? parse_nodes(run.settings.nodes) : Result<std::vector<std::uint8_t>>(std::vector<std::uint8_t>{});
+  if (nodes && !nodes->empty() && nodes->front() != 0) {
+    if (const auto opened = open(run.settings)) {
+      const auto found = session::scan(**opened, *nodes);
+      if (found && !found->empty()) {
+        const auto guess = commands::guess_text(session::guess_families(found->front(), families));
+        if (!guess.empty())
+          hint = fmt::format("by its device type node {} may be a {} (a guess): add -d {}", found->front().node, guess,
+                             guess.substr(0, guess.find('?')));
+      }
+    }
+  }
+  return fail(Errc::usage, fmt::format("'{}' needs to know the drive family", run.command->path), std::move(hint));
+}
+
+Result<void> Shell::prepare_nodes(Run& run) {
+  if (run.settings.nodes.empty()) return {};
+  auto nodes = parse_nodes(run.settings.nodes);
+  if (!nodes) return tl::unexpected<Error>(nodes.error());
+  const bool takes_all = run.command->path.starts_with("nmt ") || !includes(run.command->needs, Needs::node);
+  if (nodes->front() == 0 && !takes_all) {
+    std::vector<std::uint8_t> every(canopen::kLastNode);
+    std::iota(every.begin(), every.end(), canopen::kFirstNode);
+    const auto found = session::scan(*run.context.session, every);
+    if (!found) return tl::unexpected<Error>(found.error());
+    nodes->clear();
+    for (const auto& node : *found) nodes->push_back(node.node);
+    if (nodes->empty())
+      return fail(Errc::timeout, fmt::format("no node answered on {}", run.settings.bus), "check power, cable, termination and bitrate");
+  }
+  run.context.nodes = std::move(*nodes);
+  return {};
+}
+
+Result<session::Session*> Shell::open(const Settings& settings) {
+  if (settings.bus.empty()) return fail(no_bus());
+  if (session_ == nullptr || session_->url() != settings.bus || trace_ != settings.trace) {
+    session_.reset();
+    session::BusOptions bus_options;
+    bus_options.drive_folders = options_.drive_folders;
+    bus_options.trace = settings.trace;
+    bus_options.clock = options_.clock;
+    auto bus = session::open_bus(settings.bus, bus_options);
+    if (!bus) return tl::unexpected<Error>(bus.error());
+    trace_ = settings.trace;
+    session_ = std::make_unique<session::Session>(std::move(*bus), settings.bus, session::Options{});
+    session_->options().cancelled = options_.cancelled;
+    // Boot-ups of drives that are simulated in this process are no news.
+    if (const auto heard = session_->listen(); !heard) return tl::unexpected<Error>(heard.error());
+    (void)session_->take_events();
+  }
+  session_->options().timeout = settings.timeout;
+  session_->options().retries = settings.retries;
+  return session_.get();
+}
+
+Result<const drive::Profile*> Shell::profile(const std::string& family) {
+  const auto known = profiles_.find(family);
+  if (known != profiles_.end()) return known->second.get();
+  auto loaded = drive::load_profile(family, options_.drive_folders);
+  if (!loaded) return tl::unexpected<Error>(loaded.error());
+  auto& place = profiles_[family];
+  place = std::make_unique<drive::Profile>(std::move(*loaded));
+  return place.get();
+}
+
+std::vector<std::string> Shell::take_notices(const drive::Profile* profile, bool chinese) {
+  std::vector<std::string> out;
+  if (session_ == nullptr) return out;
+  for (const auto& event : session_->take_events()) out.push_back(notice_text(event, profile, chinese));
+  return out;
+}
+
+int Shell::finish(Run& run, const Result<Value>& result) {
+  auto& errors = run.context.errors;
+  if (!result) errors.insert(errors.begin(), result.error());
+  for (auto& notice : take_notices(run.context.profile, run.settings.chinese)) run.context.notices.push_back(std::move(notice));
+  if (run.context.profile != nullptr && run.settings.chinese)
+    for (auto& error : errors) {
+      const auto& texts = run.context.profile->rules.abort_texts_zh;
+      const auto text = error.abort_code ? texts.find(*error.abort_code) : texts.end();
+      if (text != texts.end()) error.message += " — " + text->second;
+    }
+  const int code = errors.empty() ? 0 : exit_code(errors.front().code);
+  const auto& value = result ? *result : Value();
+  // A lost interface does not come back by itself: the next line opens it again.
+  if (!errors.empty() && errors.front().code == Errc::bus) close_bus();
+  return run.settings.json ? finish_json(run, value, code) : finish_text(run, value, code);
+}
+
+int Shell::finish_json(Run& run, const Value& value, int code) {
+  report::Record out{{"servoctl", 1}, {"command", run.command->path}, {"ok", code == 0}};
+  out.push_back({"bus", includes(run.command->needs, Needs::bus) ? report::text_or_null(run.settings.bus) : Value()});
+  if (code != 0) out.push_back({"error", commands::error_record(run.context.errors.front())});
+  out.push_back({"result", value});
+  report::List notices;
+  for (const auto& notice : run.context.notices) notices.emplace_back(notice);
+  out.push_back({"notices", std::move(notices)});
+  console_->out(report::to_json(out) + "\n");
+  return code;
+}
+
+int Shell::finish_text(Run& run, const Value& value, int code) {
+  console_->out(report::to_text(value, console_->width()));
+  for (const auto& notice : run.context.notices) console_->err("notice: " + notice + "\n");
+  // The same cause at many objects is told once.
+  std::string last;
+  for (const auto& error : run.context.errors) {
+    const auto text = error_text(error);
+    if (text != last) console_->err(text);
+    last = text;
+  }
+  return code;
+}
+
+int Shell::report_error(const Error& error, bool json, std::string_view command) {
+  const int code = exit_code(error.code);
+  if (!json) {
+    console_->err(error_text(error));
+    return code;
+  }
+  report::Record out{{"servoctl", 1}, {"command", command.empty() ? Value() : Value(command)}, {"ok", false}, {"bus", Value()},
+                     {"error", commands::error_record(error)}, {"result", Value()}, {"notices", report::List{}}};
+  console_->out(report::to_json(out) + "\n");
+  return code;
+}
+
+}  // namespace servoctl::cli

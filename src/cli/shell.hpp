@@ -1,0 +1,73 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/console.hpp"
+#include "cli/parse.hpp"
+#include "cli/settings.hpp"
+#include "session/session.hpp"
+#include "sim/sim_bus.hpp"
+
+namespace servoctl::cli {
+
+/// Runs command lines, one after the other: opens what a command needs, runs it, renders its result. Keeps the bus and the
+/// drive data open from one line to the next. Every front end runs its lines here.
+class Shell {
+ public:
+  struct Options {
+    Settings defaults;
+    std::vector<std::filesystem::path> drive_folders;
+    sim::SimBus::Clock clock = sim::SimBus::Clock::real_time;
+    std::function<bool()> cancelled;
+  };
+
+  Shell(Console& console, Options options) : console_(&console), options_(std::move(options)) {}
+
+  /// Runs one command line; the answer is the exit code.
+  int run(const std::vector<std::string>& words);
+
+  /// Shows an error as `run` would; for front ends that fail before a command is known.
+  int report_error(const Error& error, bool json, std::string_view command = {});
+
+  Settings& defaults() { return options_.defaults; }
+  /// The bus as it is open now; null when none is.
+  session::Session* session() { return session_.get(); }
+  void close_bus() { session_.reset(); }
+
+  /// The family's data, loaded once. Errors as load_profile().
+  Result<const drive::Profile*> profile(const std::string& family);
+  Result<session::Session*> open(const Settings& settings);
+  const std::vector<std::filesystem::path>& drive_folders() const { return options_.drive_folders; }
+
+  /// Lines about what nodes told since the last call.
+  std::vector<std::string> take_notices(const drive::Profile* profile, bool chinese);
+
+ private:
+  struct Run {
+    const commands::Command* command;
+    Settings settings;
+    commands::Context context;
+  };
+
+  Result<report::Value> execute(Run& run, const commands::Arguments& arguments);
+  Result<void> prepare(Run& run);
+  Result<void> prepare_profile(Run& run);
+  Result<void> prepare_nodes(Run& run);
+  tl::unexpected<Error> ask_for_family(Run& run);
+  int finish(Run& run, const Result<report::Value>& result);
+  int finish_json(Run& run, const report::Value& value, int code);
+  int finish_text(Run& run, const report::Value& value, int code);
+
+  Console* console_;
+  Options options_;
+  std::unique_ptr<session::Session> session_;
+  std::filesystem::path trace_;
+  std::map<std::string, std::unique_ptr<drive::Profile>> profiles_;
+};
+
+}  // namespace servoctl::cli

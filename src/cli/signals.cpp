@@ -1,0 +1,34 @@
+#include "cli/signals.hpp"
+
+#include <csignal>
+#include <initializer_list>
+#include <unistd.h>
+
+namespace servoctl::cli {
+namespace {
+
+// A signal handler can reach nothing else.
+volatile std::sig_atomic_t g_interrupted = 0;
+
+extern "C" void on_signal(int) {
+  if (g_interrupted != 0) ::_exit(130);
+  g_interrupted = 1;
+}
+
+}  // namespace
+
+void install_signal_handlers() {
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  sigemptyset(&action.sa_mask);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaction(signal, &action, nullptr);
+  struct sigaction ignore {};
+  ignore.sa_handler = SIG_IGN;
+  sigemptyset(&ignore.sa_mask);
+  sigaction(SIGPIPE, &ignore, nullptr);
+}
+
+bool interrupted() { return g_interrupted != 0; }
+void clear_interrupt() { g_interrupted = 0; }
+
+}  // namespace servoctl::cli
