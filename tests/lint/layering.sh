@@ -1,0 +1,47 @@
+#!/usr/bin/env bash
+# Checks every #include against the table of layers: an arrow may only point down.
+# usage: layering.sh SOURCE_DIR
+set -euo pipefail
+cd "$1"
+
+# What each folder may include, itself not named.
+declare -A may=(
+  [base]=""
+  [can]="base"
+  [canopen]="base can"
+  [od]="base"
+  [drive]="base od"
+  [report]="base"
+  [sim]="base can canopen od drive"
+  [session]="base can canopen od drive sim"
+  [commands]="base can canopen od drive sim session report"
+  [cli]="base can canopen od drive sim session report commands"
+  [main.cpp]="cli"
+)
+checked=0
+bad=0
+while IFS=: read -r file line text; do
+  case "$file" in
+    commands/*) layer=commands ;;
+    src/main.cpp) layer=main.cpp ;;
+    *) layer=${file#src/}; layer=${layer%%/*} ;;
+  esac
+  target=$(sed -E 's/.*"([a-z]+)\/.*/\1/' <<<"$text")
+  checked=$((checked + 1))
+  [ -n "${may[$layer]+set}" ] || { echo "$file: the folder is not in the table of layers"; bad=1; continue; }
+  [ "$target" = "$layer" ] && continue
+  [[ " ${may[$layer]} " == *" $target "* ]] || { echo "$file:$line: $layer must not include $target: $text"; bad=1; }
+done < <(grep -rnE '^#include "[a-z]+/' src commands --include='*.cpp' --include='*.hpp')
+
+# canopen knows frames, not buses: no I/O and no clock.
+if grep -rnE '#include "can/(bus|socketcan|local|trace|descriptor)' src/canopen; then echo "canopen must know can/frame.hpp only"; bad=1; fi
+if grep -rnE 'steady_now|steady_clock::now|system_clock' src/canopen src/od src/drive; then echo "no clock in these layers"; bad=1; fi
+
+# The three heavy headers each stand in one file.
+for header in 'CLI/CLI.hpp' 'nlohmann/json.hpp' 'toml++/toml.h'; do
+  count=$(grep -rlF "<$header>" src commands | wc -l)
+  [ "$count" -eq 1 ] || { echo "<$header> stands in $count files, it must stand in one"; bad=1; }
+done
+[ "$checked" -gt 100 ] || { echo "only $checked includes were found: the check itself is broken"; bad=1; }
+echo "checked $checked includes"
+exit "$bad"
