@@ -1,0 +1,48 @@
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "base/time.hpp"
+
+namespace servoctl::can {
+
+/// Owns a file descriptor; -1 when it owns none.
+class Descriptor {
+ public:
+  Descriptor() = default;
+  explicit Descriptor(int fd) : fd_(fd) {}
+  Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    std::swap(fd_, other.fd_);
+    return *this;
+  }
+  ~Descriptor();
+
+  int get() const { return fd_; }
+  explicit operator bool() const { return fd_ >= 0; }
+  /// Gives the descriptor away; the caller closes it.
+  int release() { return std::exchange(fd_, -1); }
+
+ private:
+  int fd_ = -1;
+};
+
+/// Why a wait ended.
+enum class Wake {
+  ready,        ///< One of the events happened, or an error that the next call on the descriptor tells.
+  elapsed,      ///< The deadline passed.
+  interrupted,  ///< A signal handler ran.
+};
+
+/// Waits for `events` (POLLIN, POLLOUT) on the descriptor, with the precision of the clock; kNever waits for
+/// ever.
+Wake wait_for(int fd, short events, TimePoint deadline);
+
+/// Waits for `time`, or for a signal.
+void nap(Duration time);
+
+/// The system's text for a value of errno.
+std::string system_text(int error);
+
+}  // namespace servoctl::can

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/result.hpp"
+#include "base/time.hpp"
+#include "can/bus.hpp"
+#include "can/descriptor.hpp"
+#include "can/frame.hpp"
+
+namespace servoctl::can {
+
+/// Lets a frame with an 11-bit identifier pass when `(identifier & mask) == (id & mask)`.
+struct Filter {
+  std::uint32_t id = 0;
+  std::uint32_t mask = 0x7FF;
+};
+
+/// How long send() tries while the transmit queue is full.
+inline constexpr Duration kSendLimit = std::chrono::seconds(1);
+
+/// Opens a CAN interface of the kernel, such as `can0`. Received are data and remote frames with an 11-bit
+/// identifier (those that pass one of the filters, if there are any; CAN_RAW_FILTER_MAX = 512 at most, more
+/// are as none), also those that other programs of this machine send, and reports of the controller: bus-off,
+/// restart, error state, transmit time-out. Frames that were lost because receive() came too late are
+/// reported as an overflow of the controller (class 004h, data[1] = 01h). Errc::usage when the name cannot be
+/// that of an interface; Errc::bus when the interface is missing, down or no CAN interface, or when the
+/// kernel has no CAN.
+Result<std::unique_ptr<Bus>> open_socketcan(std::string_view interface_name,
+                                            std::span<const Filter> filters = {});
+
+/// The CAN interfaces of this machine, up or down, in alphabetical order.
+std::vector<std::string> can_interfaces();
+
+/// A bus on a socket that carries `struct can_frame`, one a datagram: CAN_RAW, or one end of a socketpair in
+/// tests.
+class SocketCanBus final : public Bus {
+ public:
+  /// `socket` must be non-blocking; `interface_name` is used in messages.
+  SocketCanBus(Descriptor socket, std::string interface_name, Duration send_limit = kSendLimit);
+
+  TimePoint now() const override { return steady_now(); }
+  /// Errc::bug for a frame that is not one of ISO 11898-1: a report of the controller, or an identifier or a
+  /// size out of range. A driver would put something else on the bus for it. Errc::bus also from the report
+  /// of a bus-off to that of a restart: the kernel drops such frames in silence.
+  Result<void> send(const Frame& frame) override;
+  Result<std::optional<Frame>> receive(TimePoint deadline) override;
+  int poll_fd() const override { return socket_.get(); }
+  TimePoint next_event() const override { return held_back_ ? TimePoint::min() : kNever; }
+
+ private:
+  Result<std::optional<Frame>> take();
+  bool lost_some(std::optional<std::uint32_t> total);
+  tl::unexpected<Error> lost(int error) const;
+  tl::unexpected<Error> queue_full() const;
+
+  Descriptor socket_;
+  std::string interface_name_;
+  Duration send_limit_;
+  std::uint32_t lost_frames_ = 0;   ///< As last told by the kernel.
+  bool is_bus_off_ = false;         ///< As last reported.
+  std::optional<Frame> held_back_;  ///< Received, to be given after the report of a loss.
+};
+
+}  // namespace servoctl::can

@@ -1,0 +1,143 @@
+#include "can/trace.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cerrno>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "base/number.hpp"
+#include "base/text.hpp"
+
+namespace servoctl::can {
+namespace {
+
+using std::chrono::microseconds;
+
+constexpr Duration kFlushAfter = std::chrono::milliseconds(100);
+constexpr std::size_t kFlushBytes = std::size_t{64} << 10U;
+
+std::vector<std::string_view> words_of(std::string_view line) {
+  std::vector<std::string_view> words;
+  for (const auto word : split(trim(line), ' '))
+    if (!word.empty()) words.push_back(word);
+  return words;
+}
+
+/// `(1736412345.123456)`, with one to nine digits behind the point.
+std::optional<Duration> parse_time(std::string_view text) {
+  if (text.size() < 2 || text.front() != '(' || text.back() != ')') return std::nullopt;
+  text = text.substr(1, text.size() - 2);
+  const auto point = text.find('.');
+  if (point == std::string_view::npos || point > 12) return std::nullopt;
+  const auto seconds = parse_digits(text.substr(0, point), 10);
+  const auto behind = text.substr(point + 1);
+  const auto digits = parse_digits(behind, 10);
+  if (!seconds || !digits || behind.size() > 9) return std::nullopt;
+  auto fraction = *digits;
+  for (std::size_t i = behind.size(); i < 9; ++i) fraction *= 10;
+  return microseconds(static_cast<std::int64_t>(*seconds * 1'000'000 + fraction / 1000));
+}
+
+}  // namespace
+
+std::string to_string(const LogFrame& line) {
+  const auto time = line.time.count();
+  return fmt::format("({:010}.{:06}) {} {}", time / 1'000'000, time % 1'000'000, line.interface_name,
+                     to_string(line.frame));
+}
+
+std::optional<LogFrame> parse_log_line(std::string_view line) {
+  const auto words = words_of(line);
+  const bool has_direction = words.size() == 4 && (words[3] == "R" || words[3] == "T");
+  if (words.size() != 3 && !has_direction) return std::nullopt;
+  const auto time = parse_time(words[0]);
+  const auto frame = parse_frame(words[2]);
+  if (!time || !frame) return std::nullopt;
+  return LogFrame{*time, std::string(words[1]), *frame};
+}
+
+TraceBus::TraceBus(std::unique_ptr<Bus> inner, Descriptor file, std::string file_name,
+                   std::string interface_name, Duration clock_offset)
+    : inner_(std::move(inner)),
+      file_(std::move(file)),
+      file_name_(std::move(file_name)),
+      interface_name_(std::move(interface_name)),
+      clock_offset_(clock_offset) {}
+
+TraceBus::~TraceBus() { flush(); }
+
+Result<void> TraceBus::send(const Frame& frame) {
+  auto result = inner_->send(frame);
+  if (result)
+    record(frame);
+  else
+    flush();
+  return result;
+}
+
+Result<std::optional<Frame>> TraceBus::receive(TimePoint deadline) {
+  if (failure_) return fail(*std::exchange(failure_, std::nullopt));
+  auto result = inner_->receive(std::min(deadline, flush_due()));
+  const bool woken_to_flush = result && !*result && now() >= flush_due() && now() < deadline;
+  flush_when_due();
+  if (woken_to_flush) result = inner_->receive(deadline);
+  if (!result)
+    flush();
+  else if (*result)
+    record(**result);
+  return result;
+}
+
+TimePoint TraceBus::next_event() const { return std::min(inner_->next_event(), flush_due()); }
+
+void TraceBus::record(const Frame& frame) {
+  if (!file_) return;
+  if (buffer_.empty()) oldest_ = now();
+  buffer_ += to_string(LogFrame{now().time_since_epoch() + clock_offset_, interface_name_, frame});
+  buffer_ += '\n';
+  flush_when_due();
+}
+
+TimePoint TraceBus::flush_due() const { return buffer_.empty() ? kNever : oldest_ + kFlushAfter; }
+
+void TraceBus::flush_when_due() {
+  if (buffer_.size() >= kFlushBytes || now() >= flush_due()) flush();
+}
+
+void TraceBus::flush() {
+  std::string_view rest = buffer_;
+  while (!rest.empty()) {
+    const auto wrote = ::write(file_.get(), rest.data(), rest.size());
+    if (wrote >= 0) {
+      rest.remove_prefix(static_cast<std::size_t>(wrote));
+    } else if (errno != EINTR) {
+      failure_ =
+          fail(Errc::file, fmt::format("cannot write the trace {}: {}", file_name_, system_text(errno)),
+               "the trace ends here; the bus goes on without it")
+              .value();
+      file_ = Descriptor();
+      break;
+    }
+  }
+  buffer_.clear();
+}
+
+Result<std::unique_ptr<Bus>> trace_to(std::unique_ptr<Bus> inner, const std::filesystem::path& file,
+                                      std::string_view interface_name, TraceClock clock) {
+  Descriptor log(::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
+  if (!log)
+    return fail(Errc::file, fmt::format("cannot write the trace {}: {}", file.string(), system_text(errno)),
+                "choose a folder that exists and that you may write to");
+  // Taken once, so that a step of the system clock does not tear the trace apart.
+  const auto wall = std::chrono::duration_cast<Duration>(std::chrono::system_clock::now().time_since_epoch());
+  const auto offset = clock == TraceClock::wall ? wall - inner->now().time_since_epoch() : Duration::zero();
+  return std::make_unique<TraceBus>(std::move(inner), std::move(log), file.string(),
+                                    std::string(interface_name), offset);
+}
+
+}  // namespace servoctl::can

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "base/result.hpp"
+#include "base/time.hpp"
+#include "can/bus.hpp"
+#include "can/descriptor.hpp"
+#include "can/frame.hpp"
+
+namespace servoctl::can {
+
+/// What the times in a trace count from.
+enum class TraceClock {
+  wall,  ///< 1970-01-01 UTC, as candump does; steps of the system clock during the trace are not followed.
+  bus,   ///< Zero of the bus's own now(): for simulated buses.
+};
+
+/// A bus that passes everything on to `inner` and writes every frame, sent and received, to `file` in the
+/// form of `candump -L`, which canplayer and log2asc read: `(1736412345.123456) can0 601#4041600000000000`.
+/// An existing file is replaced. A frame reaches the file at most 100 ms late while the bus is in use, as
+/// next_event() asks for. Errc::file when the file cannot be made. When it cannot be written later on, the
+/// next receive() says so, once, and the bus goes on without a trace.
+Result<std::unique_ptr<Bus>> trace_to(std::unique_ptr<Bus> inner, const std::filesystem::path& file,
+                                      std::string_view interface_name, TraceClock clock = TraceClock::wall);
+
+/// One line of a trace.
+struct LogFrame {
+  Duration time{};             ///< Since 1970 or since the bus began.
+  std::string interface_name;  ///< Such as `can0`.
+  Frame frame;
+  bool operator==(const LogFrame&) const = default;
+};
+
+/// The line in the form of `candump -L`, without the line break. Times are not negative.
+std::string to_string(const LogFrame& line);
+
+/// Reads such a line, with or without its line break; what candump appends (`R` or `T`: received, sent) is
+/// ignored. Empty for anything else, CAN FD frames included.
+std::optional<LogFrame> parse_log_line(std::string_view line);
+
+/// See trace_to().
+class TraceBus final : public Bus {
+ public:
+  TraceBus(std::unique_ptr<Bus> inner, Descriptor file, std::string file_name, std::string interface_name,
+           Duration clock_offset);
+  ~TraceBus() override;
+
+  TimePoint now() const override { return inner_->now(); }
+  Result<void> send(const Frame& frame) override;
+  Result<std::optional<Frame>> receive(TimePoint deadline) override;
+  int poll_fd() const override { return inner_->poll_fd(); }
+  TimePoint next_event() const override;
+
+ private:
+  void record(const Frame& frame);
+  void flush();
+  void flush_when_due();
+  TimePoint flush_due() const;
+
+  std::unique_ptr<Bus> inner_;
+  Descriptor file_;
+  std::string file_name_;
+  std::string interface_name_;
+  Duration clock_offset_;  ///< From the bus's clock to the times in the file.
+  std::string buffer_;
+  TimePoint oldest_{};  ///< When the first line in the buffer was put there.
+  std::optional<Error> failure_;
+};
+
+}  // namespace servoctl::can

@@ -1,0 +1,258 @@
+#include "can/trace.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+#include <rapidcheck/gtest.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/file.hpp"
+
+namespace servoctl::can {
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+Frame frame_of(const char* text) { return parse_frame(text).value(); }
+
+/// A bus in virtual time: gives what the test put in, each at its time, and lets time pass while it waits.
+class ScriptedBus final : public Bus {
+ public:
+  explicit ScriptedBus(TimePoint start) : now_(start) {}
+
+  TimePoint now() const override { return now_; }
+  Result<void> send(const Frame&) override {
+    if (broken) return fail(Errc::bus, "can0 went down");
+    return {};
+  }
+  Result<std::optional<Frame>> receive(TimePoint deadline) override {
+    deadlines.push_back(deadline);
+    if (broken) return fail(Errc::bus, "can0 went down");
+    if (interrupted) return std::optional<Frame>();
+    if (!coming.empty() && coming.front().first <= std::max(deadline, now_)) {
+      const auto [time, frame] = coming.front();
+      coming.pop_front();
+      now_ = std::max(now_, time);
+      return frame;
+    }
+    now_ = std::max(now_, deadline);
+    return std::optional<Frame>();
+  }
+  int poll_fd() const override { return 77; }
+  TimePoint next_event() const override { return next; }
+
+  std::deque<std::pair<TimePoint, Frame>> coming;
+  std::vector<TimePoint> deadlines;  ///< Of every receive().
+  TimePoint next = kNever;
+  bool broken = false;
+  bool interrupted = false;
+
+ private:
+  TimePoint now_;
+};
+
+class Trace : public testing::Test {
+ protected:
+  Trace() {
+    std::string name = testing::TempDir() + "servoctl-trace-XXXXXX";
+    ::close(::mkstemp(name.data()));
+    file_ = name;
+  }
+  ~Trace() override { std::filesystem::remove(file_); }
+
+  std::unique_ptr<Bus> trace(TimePoint start, TraceClock clock = TraceClock::bus) {
+    auto inner = std::make_unique<ScriptedBus>(start);
+    inner_ = inner.get();
+    return trace_to(std::move(inner), file_, "can0", clock).value();
+  }
+  std::string written() const { return read_file(file_).value(); }
+
+  std::ptrdiff_t lines() const {
+    const auto text = written();
+    return std::count(text.begin(), text.end(), '\n');
+  }
+
+  std::filesystem::path file_;
+  ScriptedBus* inner_ = nullptr;
+};
+
+constexpr TimePoint kStart{microseconds(1'736'412'345'123'456)};
+
+TEST_F(Trace, HasALineForEveryFrameSentAndReceived) {
+  auto bus = trace(kStart);
+  inner_->coming.emplace_back(kStart + microseconds(900), frame_of("581#4341600037020000"));
+  inner_->coming.emplace_back(kStart + seconds(1), frame_of("20000040#0000000000000000"));
+  ASSERT_TRUE(bus->send(frame_of("601#4041600000000000")));
+  EXPECT_EQ(bus->receive(kStart + seconds(2)).value(), frame_of("581#4341600037020000"));
+  EXPECT_EQ(bus->receive(kStart + seconds(2)).value(), frame_of("20000040#0000000000000000"));
+  ASSERT_TRUE(bus->send(frame_of("701#R")));
+  ASSERT_TRUE(bus->send(frame_of("00000123#")));
+  bus.reset();
+  EXPECT_EQ(written(),
+            "(1736412345.123456) can0 601#4041600000000000\n"
+            "(1736412345.124356) can0 581#4341600037020000\n"
+            "(1736412346.123456) can0 20000040#0000000000000000\n"
+            "(1736412346.123456) can0 701#R\n"
+            "(1736412346.123456) can0 00000123#\n");
+}
+
+TEST_F(Trace, OfASimulatedBusCountsFromItsZero) {
+  auto bus = trace(TimePoint{});
+  ASSERT_TRUE(bus->send(frame_of("000#8100")));
+  bus.reset();
+  EXPECT_EQ(written(), "(0000000000.000000) can0 000#8100\n");
+}
+
+TEST_F(Trace, OfARealBusShowsTheTimeOfDay) {
+  auto bus = trace(TimePoint{seconds(3)}, TraceClock::wall);
+  const auto before = std::chrono::system_clock::now().time_since_epoch();
+  ASSERT_TRUE(bus->send(frame_of("000#8100")));
+  bus.reset();
+  const auto line = parse_log_line(written());
+  ASSERT_TRUE(line);
+  EXPECT_LT(std::chrono::abs(line->time - before), seconds(60));
+}
+
+TEST_F(Trace, ReplacesAnOlderFile) {
+  EXPECT_TRUE(trace(kStart)->send(frame_of("080#0102")));
+  EXPECT_TRUE(trace(kStart)->send(frame_of("081#")));
+  EXPECT_EQ(written(), "(1736412345.123456) can0 081#\n");
+}
+
+TEST_F(Trace, ReachesTheFileWithinATenthOfASecondOfWaiting) {
+  const auto bus = trace(kStart);
+  ASSERT_TRUE(bus->send(frame_of("080#")));
+  EXPECT_EQ(written(), "");
+  EXPECT_EQ(bus->receive(kStart + milliseconds(99)).value(), std::nullopt);
+  EXPECT_EQ(written(), "");
+  inner_->coming.emplace_back(kStart + seconds(1), frame_of("701#00"));
+  EXPECT_EQ(bus->receive(kStart + seconds(5)).value(), frame_of("701#00"));
+  EXPECT_EQ(written(), "(1736412345.123456) can0 080#\n");
+  const std::vector waits{kStart + milliseconds(99), kStart + milliseconds(100), kStart + seconds(5)};
+  EXPECT_EQ(inner_->deadlines, waits);
+}
+
+TEST_F(Trace, ReachesTheFileWhileFramesKeepComing) {
+  const auto bus = trace(kStart);
+  for (int i = 0; i < 3; ++i) inner_->coming.emplace_back(kStart + milliseconds(60 * i), frame_of("181#00"));
+  for (int i = 0; i < 3; ++i) ASSERT_EQ(bus->receive(kStart + seconds(5)).value(), frame_of("181#00"));
+  EXPECT_EQ(lines(), 2);
+}
+
+TEST_F(Trace, ReachesTheFileWhileFramesAreSentWithoutWaiting) {
+  const auto bus = trace(kStart);
+  ASSERT_TRUE(bus->send(frame_of("080#")));
+  ASSERT_TRUE(inner_->receive(kStart + milliseconds(100)));
+  ASSERT_TRUE(bus->send(frame_of("080#")));
+  EXPECT_EQ(lines(), 2);
+}
+
+TEST_F(Trace, DoesNotChangeWhatReceiveReturnsOrWhen) {
+  const auto bus = trace(kStart);
+  ASSERT_TRUE(bus->send(frame_of("080#")));
+  EXPECT_EQ(bus->receive(kStart + seconds(5)).value(), std::nullopt);
+  EXPECT_EQ(bus->now(), kStart + seconds(5));
+  ASSERT_TRUE(bus->send(frame_of("080#")));
+  inner_->interrupted = true;
+  inner_->deadlines.clear();
+  EXPECT_EQ(bus->receive(kStart + seconds(9)).value(), std::nullopt);
+  EXPECT_EQ(inner_->deadlines.size(), 1U);
+  EXPECT_EQ(bus->now(), kStart + seconds(5));
+}
+
+TEST_F(Trace, TellsAPollLoopWhenItWantsToBeWritten) {
+  const auto bus = trace(kStart);
+  EXPECT_EQ(bus->poll_fd(), 77);
+  EXPECT_EQ(bus->next_event(), kNever);
+  ASSERT_TRUE(bus->send(frame_of("080#")));
+  EXPECT_EQ(bus->next_event(), kStart + milliseconds(100));
+  inner_->next = kStart + milliseconds(10);
+  EXPECT_EQ(bus->next_event(), kStart + milliseconds(10));
+}
+
+TEST_F(Trace, IsCompleteWhenTheBusFails) {
+  const auto bus = trace(kStart);
+  ASSERT_TRUE(bus->send(frame_of("080#")));
+  inner_->broken = true;
+  EXPECT_EQ(bus->send(frame_of("081#")).error().code, Errc::bus);
+  EXPECT_EQ(written(), "(1736412345.123456) can0 080#\n");
+  inner_->broken = false;
+  ASSERT_TRUE(bus->send(frame_of("082#")));
+  inner_->broken = true;
+  EXPECT_EQ(bus->receive(kStart + seconds(1)).error().code, Errc::bus);
+  EXPECT_EQ(lines(), 2);
+}
+
+TEST_F(Trace, ThatCannotBeWrittenSaysSoOnceAndLeavesTheBusUsable) {
+  auto inner = std::make_unique<ScriptedBus>(kStart);
+  const auto bus = trace_to(std::move(inner), "/dev/full", "can0").value();
+  ASSERT_TRUE(bus->send(frame_of("080#")));
+  EXPECT_TRUE(bus->receive(kStart + milliseconds(200)));
+  const auto told = bus->receive(kStart + milliseconds(300));
+  ASSERT_FALSE(told);
+  EXPECT_EQ(told.error().code, Errc::file);
+  EXPECT_NE(told.error().message.find("/dev/full"), std::string::npos);
+  EXPECT_TRUE(bus->send(frame_of("080#")));
+  EXPECT_TRUE(bus->receive(kStart + milliseconds(900)));
+  EXPECT_TRUE(bus->receive(kStart + milliseconds(900)));
+}
+
+TEST_F(Trace, IsRefusedWhenTheFileCannotBeMade) {
+  const auto bus = trace_to(std::make_unique<ScriptedBus>(kStart), "/nosuchfolder/trace.log", "can0");
+  ASSERT_FALSE(bus);
+  EXPECT_EQ(bus.error().code, Errc::file);
+  EXPECT_NE(bus.error().message.find("/nosuchfolder/trace.log"), std::string::npos);
+}
+
+TEST(LogLine, IsReadAsCandumpWritesIt) {
+  const auto line = parse_log_line("(1736412345.123456) vcan0 601#4041600000000000\r\n");
+  ASSERT_TRUE(line);
+  EXPECT_EQ(line->time, microseconds(1'736'412'345'123'456));
+  EXPECT_EQ(line->interface_name, "vcan0");
+  EXPECT_EQ(line->frame, frame_of("601#4041600000000000"));
+}
+
+TEST(LogLine, IsReadWithDirectionNanosecondsAndMoreSpaces) {
+  const auto line = parse_log_line(" (0000000001.500000999)  can0   701#R  T");
+  ASSERT_TRUE(line);
+  EXPECT_EQ(line->time, microseconds(1'500'000));
+  EXPECT_EQ(line->frame, frame_of("701#R"));
+  EXPECT_TRUE(parse_log_line("(1.5) can0 080# R"));
+  EXPECT_EQ(parse_log_line("(1.5) can0 080#")->time, milliseconds(1500));
+}
+
+TEST(LogLine, IsRefusedWhenItIsSomethingElse) {
+  for (const auto* text :
+       {"", "can0 080#", "(1.0) can0", "(1.0) can0 080# X", "(1.0) can0 080# R R", "1.0 can0 080#",
+        "(1) can0 080#", "(.5) can0 080#", "(1.) can0 080#", "(1.0000000000) can0 080#", "(-1.0) can0 080#",
+        "(1.0) can0 123##10", "(9999999999999.0) can0 080#", "() can0 080#", "( can0 080#", "(1.0)can0 080#",
+        "# (1.0) can0 080#"})
+    EXPECT_EQ(parse_log_line(text), std::nullopt) << text;
+}
+
+RC_GTEST_PROP(LogLine, SurvivesBeingWrittenAndRead, ()) {
+  LogFrame line;
+  line.time = microseconds(*rc::gen::inRange<std::int64_t>(0, 4'000'000'000'000'000));
+  line.interface_name = "can1";
+  line.frame = make_frame(*rc::gen::inRange<std::uint32_t>(0, 0x800),
+                          *rc::gen::arbitrary<std::vector<std::uint8_t>>());
+  RC_ASSERT(parse_log_line(to_string(line)) == line);
+}
+
+RC_GTEST_PROP(LogLine, NeverMakesTheReaderFail, ()) {
+  parse_log_line(*rc::gen::container<std::string>(rc::gen::elementOf(std::string("(1.) can#R\n\xff"))));
+}
+
+}  // namespace
+}  // namespace servoctl::can

@@ -1,0 +1,115 @@
+#include "drive/cia402.hpp"
+
+#include <gtest/gtest.h>
+
+namespace servoctl::drive {
+namespace {
+
+constexpr DriveState kAll[] = {DriveState::not_ready_to_switch_on, DriveState::switch_on_disabled,
+                               DriveState::ready_to_switch_on,     DriveState::switched_on,
+                               DriveState::operation_enabled,      DriveState::quick_stop_active,
+                               DriveState::fault_reaction_active,  DriveState::fault};
+
+TEST(DriveState, IsDecodedFromEveryStatuswordByTheMasksOfTheProfile) {
+  // CiA 402-2, table 30, written out bit by bit: x means any.
+  const auto expected = [](unsigned w) {
+    const bool b0 = w & 1, b1 = w & 2, b2 = w & 4, b3 = w & 8, b5 = w & 32, b6 = w & 64;
+    if (!b6 && !b3 && !b2 && !b1 && !b0) return DriveState::not_ready_to_switch_on;
+    if (b6 && !b3 && !b2 && !b1 && !b0) return DriveState::switch_on_disabled;
+    if (!b6 && b5 && !b3 && !b2 && !b1 && b0) return DriveState::ready_to_switch_on;
+    if (!b6 && b5 && !b3 && !b2 && b1 && b0) return DriveState::switched_on;
+    if (!b6 && b5 && !b3 && b2 && b1 && b0) return DriveState::operation_enabled;
+    if (!b6 && !b5 && !b3 && b2 && b1 && b0) return DriveState::quick_stop_active;
+    if (!b6 && b3 && b2 && b1 && b0) return DriveState::fault_reaction_active;
+    if (!b6 && b3 && !b2 && !b1 && !b0) return DriveState::fault;
+    return DriveState::unknown;
+  };
+  for (unsigned word = 0; word <= 0xFFFF; ++word)
+    ASSERT_EQ(decode_state(static_cast<std::uint16_t>(word)), expected(word)) << std::hex << word;
+}
+
+TEST(DriveState, OfStatuswordsPrintedInManualsIsFoundWhateverTheOtherBits) {
+  EXPECT_EQ(decode_state(0x0270), DriveState::switch_on_disabled);
+  EXPECT_EQ(decode_state(0x0250), DriveState::switch_on_disabled);
+  EXPECT_EQ(decode_state(0x1231), DriveState::ready_to_switch_on);
+  EXPECT_EQ(decode_state(0x9637), DriveState::operation_enabled);
+  EXPECT_EQ(decode_state(0x0217), DriveState::quick_stop_active);
+  EXPECT_EQ(decode_state(0x0088), DriveState::fault);
+}
+
+TEST(ControlCommand, IsDecodedByTheBitsOfTheProfile) {
+  EXPECT_EQ(decode_command(0x06, 0), ControlCommand::shutdown);
+  EXPECT_EQ(decode_command(0x0E, 0), ControlCommand::shutdown);
+  EXPECT_EQ(decode_command(0x07, 0), ControlCommand::switch_on);
+  EXPECT_EQ(decode_command(0x0F, 0), ControlCommand::enable_operation);
+  EXPECT_EQ(decode_command(0x1F, 0), ControlCommand::enable_operation);
+  EXPECT_EQ(decode_command(0x00, 0), ControlCommand::disable_voltage);
+  EXPECT_EQ(decode_command(0x0D, 0), ControlCommand::disable_voltage);
+  EXPECT_EQ(decode_command(0x02, 0), ControlCommand::quick_stop);
+  EXPECT_EQ(decode_command(0x0B, 0), ControlCommand::quick_stop);
+}
+
+TEST(ControlCommand, OfAFaultResetIsTheRisingEdgeOfBitSevenOnly) {
+  EXPECT_EQ(decode_command(0x80, 0x00), ControlCommand::fault_reset);
+  EXPECT_EQ(decode_command(0x80, 0x80), ControlCommand::none);
+  EXPECT_EQ(decode_command(0x8F, 0x80), ControlCommand::none);
+  EXPECT_EQ(decode_command(0x0F, 0x80), ControlCommand::enable_operation);
+}
+
+TEST(NextState, FollowsEveryTransitionOfTheProfileAndNoOther) {
+  struct Arrow {
+    DriveState from;
+    ControlCommand command;
+    DriveState to;
+  };
+  using S = DriveState;
+  using C = ControlCommand;
+  const Arrow arrows[] = {
+      {S::switch_on_disabled, C::shutdown, S::ready_to_switch_on},           // 2
+      {S::ready_to_switch_on, C::switch_on, S::switched_on},                 // 3
+      {S::ready_to_switch_on, C::enable_operation, S::operation_enabled},    // 3 + 4
+      {S::switched_on, C::enable_operation, S::operation_enabled},           // 4
+      {S::operation_enabled, C::switch_on, S::switched_on},                  // 5
+      {S::switched_on, C::shutdown, S::ready_to_switch_on},                  // 6
+      {S::ready_to_switch_on, C::disable_voltage, S::switch_on_disabled},    // 7
+      {S::ready_to_switch_on, C::quick_stop, S::switch_on_disabled},         // 7
+      {S::operation_enabled, C::shutdown, S::ready_to_switch_on},            // 8
+      {S::operation_enabled, C::disable_voltage, S::switch_on_disabled},     // 9
+      {S::switched_on, C::disable_voltage, S::switch_on_disabled},           // 10
+      {S::switched_on, C::quick_stop, S::switch_on_disabled},                // 10
+      {S::operation_enabled, C::quick_stop, S::quick_stop_active},           // 11
+      {S::quick_stop_active, C::disable_voltage, S::switch_on_disabled},     // 12
+      {S::fault, C::fault_reset, S::switch_on_disabled},                     // 15
+      {S::quick_stop_active, C::enable_operation, S::operation_enabled},     // 16
+  };
+  const C commands[] = {C::none, C::shutdown, C::switch_on, C::enable_operation, C::disable_voltage, C::quick_stop, C::fault_reset};
+  for (const auto from : kAll) {
+    for (const auto command : commands) {
+      auto expected = from;
+      for (const auto& arrow : arrows)
+        if (arrow.from == from && arrow.command == command) expected = arrow.to;
+      EXPECT_EQ(next_state(from, command), expected) << name(from) << " " << static_cast<int>(command);
+    }
+  }
+}
+
+TEST(DriveState, ThatIsUnknownCountsAsEnergised) {
+  for (const auto state : kAll) {
+    const bool energised = state == DriveState::operation_enabled || state == DriveState::quick_stop_active ||
+                           state == DriveState::fault_reaction_active;
+    EXPECT_EQ(is_energised(state), energised) << name(state);
+    EXPECT_FALSE(name(state).empty());
+    EXPECT_FALSE(name_zh(state).empty());
+  }
+  EXPECT_TRUE(is_energised(DriveState::unknown));
+}
+
+TEST(StatuswordBits, AreNamedByModeWhereTheirMeaningDependsOnIt) {
+  EXPECT_EQ(statusword_bits(0x1637, 1), (std::vector<std::string>{"voltage enabled", "remote", "target reached", "set-point acknowledge"}));
+  EXPECT_EQ(statusword_bits(0x1231, 3), (std::vector<std::string>{"voltage enabled", "remote", "speed is zero"}));
+  EXPECT_EQ(statusword_bits(0x2000, 6), (std::vector<std::string>{"homing error"}));
+  EXPECT_EQ(statusword_bits(0x0000, 1), std::vector<std::string>{});
+}
+
+}  // namespace
+}  // namespace servoctl::drive

@@ -1,0 +1,123 @@
+#include "drive/quantity.hpp"
+
+#include <gtest/gtest.h>
+
+namespace servoctl::drive {
+namespace {
+
+Meaning hertz() {
+  Meaning m;
+  m.type = od::DataType::u16;
+  m.type_known = true;
+  m.unit = "Hz";
+  m.scale = 0.1;
+  m.min = od::Value(std::uint64_t{1});
+  m.max = od::Value(std::uint64_t{20000});
+  return m;
+}
+
+Meaning rpm() {
+  Meaning m = hertz();
+  m.type = od::DataType::i16;
+  m.unit = "rpm";
+  m.scale = 1;
+  m.min = od::Value(std::int64_t{-3000});
+  m.max = od::Value(std::int64_t{3000});
+  return m;
+}
+
+std::uint64_t unsigned_of(const Result<od::Value>& value) {
+  EXPECT_TRUE(value) << (value ? "" : value.error().message);
+  return value ? std::get<std::uint64_t>(*value) : 0;
+}
+
+std::int64_t signed_of(const Result<od::Value>& value) {
+  EXPECT_TRUE(value) << (value ? "" : value.error().message);
+  return value ? std::get<std::int64_t>(*value) : 0;
+}
+
+void expect_refused(const Meaning& meaning, std::string_view text, std::string_view message, std::string_view hint) {
+  const auto value = parse_quantity(meaning, text);
+  ASSERT_FALSE(value) << text;
+  EXPECT_EQ(value.error().code, Errc::usage);
+  EXPECT_EQ(value.error().message, message);
+  EXPECT_EQ(value.error().hint, hint);
+}
+
+TEST(Quantity, OfAPlainNumberIsTheRawNumberOfThePanel) {
+  EXPECT_EQ(unsigned_of(parse_quantity(hertz(), "400")), 400U);
+  EXPECT_EQ(unsigned_of(parse_quantity(hertz(), "0x64")), 100U);
+  EXPECT_EQ(unsigned_of(parse_quantity(hertz(), "64h")), 100U);
+  EXPECT_EQ(unsigned_of(parse_quantity(hertz(), " 010 ")), 10U);
+  EXPECT_EQ(signed_of(parse_quantity(rpm(), "-5")), -5);
+}
+
+TEST(Quantity, WithAUnitIsConvertedExactly) {
+  EXPECT_EQ(unsigned_of(parse_quantity(hertz(), "40Hz")), 400U);
+  EXPECT_EQ(unsigned_of(parse_quantity(hertz(), "40.1 Hz")), 401U);
+  EXPECT_EQ(unsigned_of(parse_quantity(hertz(), "0.5kHz")), 5000U);
+  EXPECT_EQ(signed_of(parse_quantity(rpm(), "1.5rev/s")), 90);
+  EXPECT_EQ(signed_of(parse_quantity(rpm(), "-360deg/s")), -60);
+  EXPECT_EQ(signed_of(parse_quantity(rpm(), "60RPM")), 60);
+}
+
+TEST(Quantity, ThatDoesNotComeOutExactIsRefusedWithTheNearest) {
+  expect_refused(hertz(), "40.05Hz", "'40.05Hz' is 400.5 steps of 0.1 Hz: not a whole number", "the nearest value is 40 Hz");
+}
+
+TEST(Quantity, InAForeignUnitIsRefused) {
+  expect_refused(hertz(), "45rpm", "'45rpm': the unit of this object is Hz, which rpm cannot be converted to",
+                 "write a value in Hz or the raw number");
+  auto plain = hertz();
+  plain.unit = "";
+  expect_refused(plain, "45Hz", "'45Hz' carries a unit, but this object has none", "write the plain number");
+}
+
+TEST(Quantity, OutOfRangeIsRefusedBeforeTheBus) {
+  expect_refused(hertz(), "0", "0 is out of range: 1..20000", "one step is 0.1 Hz");
+  expect_refused(rpm(), "3001", "3001 is out of range: -3000..3000", "");
+  EXPECT_EQ(unsigned_of(parse_quantity(hertz(), "1")), 1U);
+  EXPECT_EQ(unsigned_of(parse_quantity(hertz(), "20000")), 20000U);
+}
+
+TEST(Quantity, MayBeALabelInEitherLanguage) {
+  const std::vector<od::EnumLabel> labels{{0, "Position mode", "位置模式"}, {8, "CANopen", ""}};
+  auto mode = hertz();
+  mode.unit = "";
+  mode.scale = 1;
+  mode.min.reset();
+  mode.labels = &labels;
+  EXPECT_EQ(unsigned_of(parse_quantity(mode, "canopen")), 8U);
+  EXPECT_EQ(unsigned_of(parse_quantity(mode, "位置模式")), 0U);
+  expect_refused(mode, "speed", "'speed' is no value of this object", "values: 0 Position mode, 8 CANopen");
+  ASSERT_NE(label_of(mode, od::Value(std::uint64_t{8})), nullptr);
+  EXPECT_EQ(label_of(mode, od::Value(std::uint64_t{1})), nullptr);
+}
+
+TEST(Scaled, HasNoNoiseOfBinaryFractions) {
+  auto m = hertz();
+  for (std::uint64_t raw = 0; raw < 20000; raw += 7) {
+    const auto text = std::to_string(raw / 10) + "." + std::to_string(raw % 10);
+    EXPECT_EQ(scaled(m, od::Value(raw)), std::stod(text)) << raw;
+  }
+}
+
+TEST(Quantity, OfEveryStepGoesToUnitsAndBack) {
+  const auto m = hertz();
+  for (std::uint64_t raw = 1; raw <= 20000; raw += 3) {
+    const auto text = std::to_string(scaled(m, od::Value(raw))) + "Hz";
+    ASSERT_EQ(unsigned_of(parse_quantity(m, text)), raw) << text;
+  }
+}
+
+TEST(RangeText, LeavesOutWhatIsNotKnown) {
+  auto m = hertz();
+  EXPECT_EQ(range_text(m), "1..20000");
+  m.min.reset();
+  EXPECT_EQ(range_text(m), "at most 20000");
+  m.max.reset();
+  EXPECT_EQ(range_text(m), "");
+}
+
+}  // namespace
+}  // namespace servoctl::drive
