@@ -1,0 +1,65 @@
+#include <array>
+#include <fmt/format.h>
+
+#include "base/text.hpp"
+#include "od/parameter.hpp"
+#include "od/table_row.hpp"
+
+namespace servoctl::od {
+namespace {
+
+enum Column : std::size_t { kObject, kUnit, kScale, kEffect, kEnum, kEnumZh, kNameZh, kFlags, kAssumed, kNote, kLine };
+constexpr std::array<std::string_view, 11> kColumns{"object",  "unit",  "scale",   "effect", "enum", "enum_zh",
+                                                    "name_zh", "flags", "assumed", "note",   "line"};
+
+void read_flags(TableRow& row, Entry& entry) {
+  bool rpdo = false;
+  bool tpdo = false;
+  for (const auto flag : split(row.cell(kFlags), ' ')) {
+    if (flag == "command")
+      entry.command = true;
+    else if (flag == "volatile")
+      entry.is_volatile = true;
+    else if (flag == "rpdo")
+      rpdo = true;
+    else if (flag == "tpdo")
+      tpdo = true;
+    else if (!flag.empty())
+      row.refuse(kFlags, "made of command, volatile, rpdo and tpdo");
+  }
+  if (rpdo || tpdo) entry.pdo = rpdo && tpdo ? PdoMapping::both : rpdo ? PdoMapping::rpdo : PdoMapping::tpdo;
+}
+
+void read_row(TableRow& row, Entry& entry) {
+  entry.unit = std::string(row.cell(kUnit));
+  entry.scale = row.scale(kScale);
+  entry.effect = row.effect(kEffect);
+  entry.labels = row.labels(kEnum, kEnumZh);
+  entry.name_zh = std::string(row.cell(kNameZh));
+  entry.assumed = std::string(row.cell(kAssumed));
+  entry.note = std::string(row.cell(kNote));
+  entry.line = row.number(kLine);
+  read_flags(row, entry);
+}
+
+}  // namespace
+
+Result<void> annotate(Dictionary& dictionary, std::string_view csv, std::string_view file) {
+  const auto table = parse_csv(csv, file);
+  if (!table) return tl::unexpected<Error>(table.error());
+  const auto columns = TableColumns::find(*table, kColumns, file);
+  if (!columns) return tl::unexpected<Error>(columns.error());
+  for (const auto& cells : table->rows) {
+    TableRow row(cells, *columns, kColumns, file);
+    const auto address = row.object(kObject);
+    auto* entry = address ? dictionary.find(*address) : nullptr;
+    if (entry == nullptr)
+      row.refuse(kObject, "an object of the dictionary");
+    else
+      read_row(row, *entry);
+    if (row.error()) return tl::unexpected<Error>(*row.error());
+  }
+  return {};
+}
+
+}  // namespace servoctl::od

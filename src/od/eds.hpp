@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/result.hpp"
+#include "od/dictionary.hpp"
+
+namespace servoctl::od {
+
+enum class Severity : std::uint8_t { warning, error };
+
+/// One finding in a file.
+struct Diagnostic {
+  Severity severity = Severity::error;
+  std::uint32_t line = 0;    ///< From 1.
+  std::uint32_t column = 0;  ///< From 1, in bytes.
+  std::string rule;          ///< Short stable name, such as `missing-data-type`; for filters and scripts.
+  std::string message;       ///< What is wrong.
+  std::string remedy;        ///< What to change.
+};
+
+/// What an EDS or DCF says of the device beside its objects.
+struct DeviceInfo {
+  std::string vendor_name;
+  std::string product_name;
+  std::uint32_t vendor_number = 0;
+  std::uint32_t product_number = 0;
+  std::uint32_t revision_number = 0;
+  std::vector<std::uint32_t> bitrates;  ///< kbit/s that are marked as supported.
+};
+
+/// An EDS or DCF read in full: everything usable, and everything that was not.
+struct EdsFile {
+  DeviceInfo device;
+  std::uint8_t node_id = 0;  ///< DCF only, 0 otherwise.
+  Dictionary dictionary;
+  std::vector<Diagnostic> diagnostics;  ///< In rising line.
+
+  std::size_t error_count() const;
+};
+
+/// Reads the text of an electronic data sheet or device configuration file (CiA 306-1). A bad entry is reported and
+/// skipped, never the whole file; Errc::file only when there is not one object in it. `file` is used in messages.
+Result<EdsFile> read_eds(std::string_view text, std::string_view file);
+
+/// `gsd600.eds:12:9: error: …`, the form that compilers use and editors understand.
+std::string to_string(const Diagnostic& diagnostic, std::string_view file);
+
+}  // namespace servoctl::od

@@ -1,0 +1,103 @@
+#include "od/parameter.hpp"
+
+#include <array>
+#include <fmt/format.h>
+#include <unordered_set>
+
+#include "base/text.hpp"
+#include "od/table_row.hpp"
+
+namespace servoctl::od {
+namespace {
+
+enum Column : std::size_t {
+  kId, kObject, kType, kAccess, kUnit, kScale, kDefault, kMin, kMax, kEffect, kEnum, kEnumZh,
+  kName, kNameZh, kGroup, kFlags, kAssumed, kNote, kNoteZh, kLine
+};
+constexpr std::array<std::string_view, 20> kColumns{"id",      "object", "type",  "access",  "unit", "scale",   "default",
+                                                    "min",     "max",    "effect", "enum",   "enum_zh", "name", "name_zh",
+                                                    "group",   "flags",  "assumed", "note",  "note_zh", "line"};
+
+std::optional<Access> parse_access(std::string_view text) {
+  for (const auto access : {Access::ro, Access::rw, Access::wo, Access::constant})
+    if (name(access) == text) return access;
+  return std::nullopt;
+}
+
+void read_flags(TableRow& row, Parameter& out) {
+  for (const auto flag : split(row.cell(kFlags), ' ')) {
+    if (flag == "command") {
+      out.command = true;
+    } else if (flag == "volatile") {
+      out.is_volatile = true;
+    } else if (flag.starts_with("mirror=")) {
+      out.mirror = parse_object_address(flag.substr(7));
+      if (!out.mirror) row.refuse(kFlags, "flags with an object behind mirror=");
+    } else if (!flag.empty()) {
+      row.refuse(kFlags, "made of command, volatile and mirror=OBJECT");
+    }
+  }
+}
+
+void read_limits(TableRow& row, Parameter& out) {
+  out.default_value = row.value(kDefault, out.type);
+  out.min = row.value(kMin, out.type);
+  out.max = row.value(kMax, out.type);
+  if (out.min && out.max && compare_numbers(*out.min, *out.max) > 0) row.refuse(fmt::format("{}: min is above max", out.id));
+}
+
+Parameter read_row(TableRow& row) {
+  Parameter out;
+  out.id = std::string(row.cell(kId));
+  if (out.id.empty()) row.refuse("a parameter without id");
+  out.object = row.object(kObject);
+  if (const auto type = parse_data_type(row.cell(kType)))
+    out.type = *type;
+  else
+    row.refuse(kType, "a data type");
+  if (const auto access = parse_access(row.cell(kAccess)))
+    out.access = *access;
+  else
+    row.refuse(kAccess, "ro, rw, wo or const");
+  out.unit = std::string(row.cell(kUnit));
+  out.scale = row.scale(kScale);
+  read_limits(row, out);
+  out.effect = row.effect(kEffect);
+  out.labels = row.labels(kEnum, kEnumZh);
+  out.name = std::string(row.cell(kName));
+  if (out.name.empty()) row.refuse(fmt::format("{} has no name", out.id));
+  out.name_zh = std::string(row.cell(kNameZh));
+  out.group = std::string(row.cell(kGroup));
+  read_flags(row, out);
+  out.assumed = std::string(row.cell(kAssumed));
+  out.note = std::string(row.cell(kNote));
+  out.note_zh = std::string(row.cell(kNoteZh));
+  out.line = row.number(kLine);
+  return out;
+}
+
+}  // namespace
+
+Result<std::vector<Parameter>> parse_parameters(std::string_view csv, std::string_view file) {
+  const auto table = parse_csv(csv, file);
+  if (!table) return tl::unexpected<Error>(table.error());
+  const auto columns = TableColumns::find(*table, kColumns, file);
+  if (!columns) return tl::unexpected<Error>(columns.error());
+  std::vector<Parameter> out;
+  out.reserve(table->rows.size());
+  std::unordered_set<std::string> ids;
+  std::unordered_set<ObjectAddress> objects;
+  for (const auto& cells : table->rows) {
+    TableRow row(cells, *columns, kColumns, file);
+    auto parameter = read_row(row);
+    parameter.file_line = cells.line;
+    if (!ids.insert(lower(parameter.id)).second) row.refuse(fmt::format("{} stands here twice", parameter.id));
+    if (parameter.object && !objects.insert(*parameter.object).second)
+      row.refuse(fmt::format("{}: object {} belongs to another parameter as well", parameter.id, to_string(*parameter.object)));
+    if (row.error()) return tl::unexpected<Error>(*row.error());
+    out.push_back(std::move(parameter));
+  }
+  return out;
+}
+
+}  // namespace servoctl::od

@@ -1,0 +1,121 @@
+#include "od/table_row.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+#include "base/number.hpp"
+#include "base/text.hpp"
+
+namespace servoctl::od {
+namespace {
+
+/// `0=Off;1=On` into pairs; empty optional when a part has no number or no label.
+std::optional<std::vector<std::pair<std::int64_t, std::string>>> parse_labels(std::string_view text) {
+  std::vector<std::pair<std::int64_t, std::string>> out;
+  for (const auto part : split(text, ';')) {
+    const auto equals = part.find('=');
+    if (equals == std::string_view::npos) return std::nullopt;
+    const auto number = parse_integer(trim(part.substr(0, equals)));
+    const auto value = number ? number->as_signed() : std::nullopt;
+    const auto label = trim(part.substr(equals + 1));
+    if (!value || label.empty() || label.find('=') != std::string_view::npos) return std::nullopt;
+    out.emplace_back(*value, std::string(label));
+  }
+  return out;
+}
+
+}  // namespace
+
+Result<TableColumns> TableColumns::find(const CsvTable& table, std::span<const std::string_view> known, std::string_view file) {
+  for (const auto& column : table.columns) {
+    if (std::find(known.begin(), known.end(), column) != known.end()) continue;
+    Error error;
+    error.code = Errc::file;
+    error.line = 1;
+    error.message = fmt::format("{}:1: column '{}' is unknown", file, column);
+    error.hint = did_you_mean(column, std::vector<std::string>(known.begin(), known.end()));
+    return fail(std::move(error));
+  }
+  TableColumns out;
+  for (const auto name : known) out.places_.push_back(table.column(name));
+  return out;
+}
+
+std::string_view TableRow::cell(std::size_t column) const {
+  const auto place = columns_->place(column);
+  return place < row_->cells.size() ? std::string_view(row_->cells[place]) : std::string_view();
+}
+
+void TableRow::refuse(std::size_t column, std::string_view expected) {
+  refuse(fmt::format("column {}: '{}' is not {}", names_[column], cell(column), expected));
+}
+
+void TableRow::refuse(std::string what) {
+  if (error_) return;
+  error_.emplace();
+  error_->code = Errc::file;
+  error_->line = row_->line;
+  error_->message = fmt::format("{}:{}: {}", file_, row_->line, what);
+}
+
+std::optional<ObjectAddress> TableRow::object(std::size_t column) {
+  const auto text = cell(column);
+  if (text.empty()) return std::nullopt;
+  const auto address = parse_object_address(text);
+  if (!address) refuse(column, "an object such as 0x2000:01");
+  return address;
+}
+
+double TableRow::scale(std::size_t column) {
+  const auto text = cell(column);
+  if (text.empty()) return 1;
+  const auto number = parse_real(text);
+  if (!number || *number == 0) refuse(column, "a number other than zero");
+  return number.value_or(1);
+}
+
+Effect TableRow::effect(std::size_t column) {
+  const auto effect = parse_effect(cell(column));
+  if (!effect) refuse(column, "immediate, restart, standstill or empty");
+  return effect.value_or(Effect::unstated);
+}
+
+std::optional<Value> TableRow::value(std::size_t column, DataType type) {
+  const auto text = cell(column);
+  if (text.empty()) return std::nullopt;
+  const auto value = parse_value(type, text);
+  if (!value) refuse(column, fmt::format("a value of {}: {}", name(type), value.error().message));
+  return value ? std::optional<Value>(*value) : std::nullopt;
+}
+
+std::vector<EnumLabel> TableRow::labels(std::size_t column, std::size_t column_zh) {
+  const auto english = parse_labels(cell(column));
+  const auto chinese = parse_labels(cell(column_zh));
+  if (!english) refuse(column, "a list such as 0=Off;1=On");
+  if (!chinese) refuse(column_zh, "a list such as 0=关;1=开");
+  std::vector<EnumLabel> out;
+  if (!english || !chinese) return out;
+  for (const auto& label : *english) {
+    if (std::any_of(out.begin(), out.end(), [&](const EnumLabel& e) { return e.value == label.first; }))
+      refuse(column, fmt::format("a list without doubles ({} stands twice)", label.first));
+    out.push_back({label.first, label.second, {}});
+  }
+  for (const auto& label : *chinese) {
+    const auto same = std::find_if(out.begin(), out.end(), [&](const EnumLabel& e) { return e.value == label.first; });
+    if (same == out.end())
+      refuse(column_zh, fmt::format("a list with the values of the English one ({} is not in it)", label.first));
+    else
+      same->label_zh = label.second;
+  }
+  return out;
+}
+
+std::uint32_t TableRow::number(std::size_t column) {
+  const auto text = cell(column);
+  if (text.empty()) return 0;
+  const auto number = parse_digits(text, 10);
+  if (!number || *number > 0xFFFF'FFFFU) refuse(column, "a line number");
+  return static_cast<std::uint32_t>(number.value_or(0));
+}
+
+}  // namespace servoctl::od
