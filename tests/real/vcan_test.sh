@@ -1,0 +1,109 @@
+#!/usr/bin/env bash
+# The built program on real SocketCAN. Runs inside with-vcan.sh, which provides vcan0, vcan1 and can-utils.
+# usage: vcan_test.sh SERVOCTL
+set -u
+servoctl=$1
+work=$(mktemp -d)
+trap 'kill $(jobs -p) 2>/dev/null; rm -rf "$work"' EXIT
+export SERVOCTL_BUS=vcan0
+failures=0
+checks=0
+
+check() {  # check NAME EXPECTED ACTUAL
+  checks=$((checks + 1))
+  if [ "$2" != "$3" ]; then
+    failures=$((failures + 1))
+    printf 'FAILED %s\n  expected: %s\n  actual:   %s\n' "$1" "$2" "$3"
+  fi
+}
+contains() {  # contains NAME PART TEXT
+  checks=$((checks + 1))
+  case $3 in
+    *"$2"*) ;;
+    *) failures=$((failures + 1)); printf 'FAILED %s\n  expected part: %s\n  actual:        %s\n' "$1" "$2" "$3" ;;
+  esac
+}
+wait_for() {  # wait_for FILE TEXT: until a background program has said it
+  for _ in $(seq 200); do grep -q "$2" "$1" 2>/dev/null && return 0; sleep 0.05; done
+  echo "FAILED: '$2' did not come in $1"; failures=$((failures + 1))
+}
+
+# 1. A simulated drive on vcan0, commands from other processes.
+"$servoctl" sim gsd600@1,gsd600@5 >"$work/sim.out" 2>&1 &
+sim=$!
+wait_for "$work/sim.out" vcan0
+candump -L vcan0 >"$work/dump" &
+check "scan finds both drives" "1 5" "$("$servoctl" scan --json | jq -r '[.result[].node] | join(" ")')"
+check "read" 624 "$("$servoctl" read 0x6041 -n 1 --json | jq '.result[0].value')"
+check "write and read back" 450 "$("$servoctl" param set Pn0214 45Hz -n 5 -d gsd600 --json | jq '.result[0].raw')"
+check "the other drive is untouched" 600 "$("$servoctl" param get Pn0214 -n 1 -d gsd600 --json | jq '.result[0].raw')"
+"$servoctl" read 0x6041 -n 9 --timeout 100ms >/dev/null 2>&1
+check "exit code without answer" 4 $?
+"$servoctl" read 0x5FFF -n 1 >/dev/null 2>&1
+check "exit code of an abort" 5 $?
+check "reset is confirmed by boot-up" true "$("$servoctl" nmt reset -n 1 --wait --yes --json | jq '.result[0].confirmed')"
+sleep 0.1
+contains "the read as candump saw it" "601#4041600000000000" "$(cat "$work/dump")"
+contains "its answer" "581#4B41600070020000" "$(cat "$work/dump")"
+contains "the boot-up" "701#00" "$(cat "$work/dump")"
+
+# 2. Hand-written frames against the simulated drive.
+: >"$work/dump2"
+candump -L vcan0,581:7FF >"$work/dump2" &
+sleep 0.2
+cansend vcan0 601#4061600000000000
+cansend vcan0 601#23FF6000E8030000
+wait_for "$work/dump2" '581#60FF600000000000'
+contains "answer to a hand-written read" "581#4F61600001000000" "$(cat "$work/dump2")"
+
+# 3. Hand-written answers to the client: foreign nodes, foreign objects and a segmented string.
+kill $sim; wait $sim 2>/dev/null
+"$servoctl" read 0x1008 -n 7 --timeout 3s --json >"$work/string" 2>&1 &
+client=$!
+sleep 0.5
+cansend vcan0 588#4308100000000000
+cansend vcan0 587#4309100041414141
+cansend vcan0 587#410810000A000000
+sleep 0.2
+cansend vcan0 587#00536572766F2D35
+sleep 0.2
+cansend vcan0 587#1930303000000000
+wait $client
+check "segmented string by hand" "Servo-5000" "$(jq -r '.result[0].value' "$work/string")"
+
+# 4. The trace is what candump writes.
+"$servoctl" sim gsd600@1 >"$work/sim2.out" 2>&1 &
+sim=$!
+wait_for "$work/sim2.out" vcan0
+"$servoctl" read 0x6041 -n 1 --trace "$work/trace" >/dev/null
+check "trace" "601#4041600000000000 581#4B41600070020000" "$(awk '{print $3}' "$work/trace" | tr '\n' ' ' | sed 's/ $//')"
+contains "trace names the interface" " vcan0 " "$(cat "$work/trace")"
+
+# 5. Interface missing, down, and down in mid-transfer.
+message=$("$servoctl" read 0x6041 -n 1 --bus vcan7 2>&1)
+check "exit code of a missing interface" 3 $?
+contains "missing interface names the mending command" "ip link add dev vcan" "$message"
+ip link set vcan1 down
+message=$("$servoctl" read 0x6041 -n 1 --bus vcan1 2>&1)
+check "exit code of an interface that is down" 3 $?
+contains "down interface names the mending command" "ip link set vcan1 up" "$message"
+ip link set vcan1 up
+"$servoctl" read 0x6041 -n 9 --bus vcan1 --timeout 20s >"$work/down" 2>&1 &
+client=$!
+sleep 0.5
+ip link set vcan1 down
+wait $client
+check "exit code when the interface goes down in mid-transfer" 3 $?
+contains "it says so" "vcan1" "$(cat "$work/down")"
+
+# 6. Ctrl-C ends a wait at once.
+ip link set vcan1 up
+"$servoctl" read 0x6041 -n 9 --bus vcan1 --timeout 20s >/dev/null 2>&1 &
+client=$!
+sleep 0.5
+kill -INT $client
+wait $client
+check "exit code of Ctrl-C" 130 $?
+
+printf '%d checks, %d failed\n' "$checks" "$failures"
+[ "$failures" -eq 0 ]
