@@ -83,9 +83,9 @@ report::List change_row(const Change& change, const Result<session::Written>& wr
 Result<Change> make_change(Context& context, std::uint8_t node, const drive::Target& target, std::string_view value,
                            std::optional<od::DataType> type) {
   auto meaning = drive::meaning(target, node);
-  const auto named = [&](Error error) {
+  const auto named = [&](Error error, std::string_view separator = ": ") {
     const auto label = target.label();
-    error.message = (label.empty() ? to_string(target.address) : label) + ": " + error.message;
+    error.message = (label.empty() ? to_string(target.address) : label) + std::string(separator) + error.message;
     return tl::unexpected<Error>(located(std::move(error), node, target.address));
   };
   if (!od::writable(meaning.access)) {
@@ -93,7 +93,7 @@ Result<Change> make_change(Context& context, std::uint8_t node, const drive::Tar
     error.code = Errc::usage;
     error.message = "is read-only";
     error.hint = "it can be read, not written";
-    return named(std::move(error));
+    return named(std::move(error), " ");
   }
   if (type) {
     meaning.type = *type;
@@ -161,6 +161,7 @@ Value write_changes(Context& context, std::span<const Change> changes, bool read
                    {"when", "takes effect", Show::text},
                    {"effect", "", Show::json},
                    {"error", "", Show::json}};
+  table.json_only = std::none_of(written.begin(), written.end(), [](const auto& w) { return w.has_value(); });
   for (std::size_t i = 0; i < changes.size(); ++i) {
     table.rows.push_back(change_row(changes[i], written[i], context.chinese));
     if (!written[i]) context.errors.push_back(written[i].error());

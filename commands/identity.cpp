@@ -41,6 +41,7 @@ report::Table identity_table(std::span<const session::Identity> nodes, std::span
                    {"nmt", "", Show::json},
                    {"guess", "family", Show::text},
                    {"families", "", Show::json}};
+  table.json_only = nodes.empty();
   for (const auto& node : nodes) {
     const auto guesses = session::guess_families(node, families);
     table.rows.push_back({node.node, hex(node.device_type), hex(node.vendor_id), hex(node.product_code), hex(node.revision),

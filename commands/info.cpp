@@ -47,7 +47,8 @@ Value one(const session::Identity& node, std::span<const drive::Family> families
   if (profile != nullptr) {
     const auto& rules = profile->rules;
     const auto& name = chinese && !rules.name_zh.empty() ? rules.name_zh : rules.name;
-    out.push_back({"family", fmt::format("{} ({} {}), as you said", profile->family, rules.vendor, name), report::Show::text});
+    const auto maker = rules.vendor.empty() ? std::string() : rules.vendor + " ";
+    out.push_back({"family", fmt::format("{} ({}{}), as you said", profile->family, maker, name), report::Show::text});
     out.push_back({"family", profile->family, report::Show::json});
   } else {
     const auto text = guess_text(guesses);

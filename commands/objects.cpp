@@ -17,7 +17,8 @@ constexpr Parameter kParameters[] = {
 Value default_of(const std::optional<od::NodeValue>& value) {
   if (!value) return {};
   if (!value->plus_node_id) return od_value(value->value);
-  return "$NODEID+" + od::to_string(value->value);
+  const auto* number = std::get_if<std::uint64_t>(&value->value);
+  return number != nullptr ? fmt::format("$NODEID+0x{:X}", *number) : "$NODEID+" + od::to_string(value->value);
 }
 
 bool wanted(std::string_view pattern, const od::Object& object, const od::Entry& entry) {

@@ -235,6 +235,7 @@ Table reading_table(Context& context, std::span<const Reading> readings) {
     table.rows.push_back(reading_row(reading, context.chinese));
     if (!reading.bytes) context.errors.push_back(reading.bytes.error());
   }
+  table.json_only = std::none_of(readings.begin(), readings.end(), [](const Reading& r) { return r.bytes.has_value(); });
   return table;
 }
 

@@ -119,10 +119,12 @@ Result<report::Value> run(Context& context, const Arguments&) {
   report::List out;
   for (std::size_t i = 0; i < context.nodes.size(); ++i) {
     const auto mine = std::span(answers).subspan(i * kCount, kCount);
-    // A missing statusword makes the answer useless; other objects may be absent on a drive.
-    if (!mine[0]) context.errors.push_back(mine[0].error());
-    const bool silent = !mine[0] && mine[0].error().code != Errc::sdo_abort;
-    if (!silent) out.emplace_back(one(context, context.nodes[i], mine));
+    const bool refused = !mine[0] && mine[0].error().code == Errc::sdo_abort;
+    if (refused) context.notices.push_back(fmt::format("node {} has no statusword: it is no CiA 402 drive", context.nodes[i]));
+    if (!mine[0] && !refused)
+      context.errors.push_back(mine[0].error());
+    else
+      out.emplace_back(one(context, context.nodes[i], mine));
   }
   return report::Value(std::move(out));
 }

@@ -85,12 +85,12 @@ int Prompt::run() {
   history_ = history_file().string();
   if (!history_.empty()) read_history(history_.c_str());
   install();
-  while (!done_) {
+  while (!done_ && !terminated()) {
     if (interrupted()) drop_line();
     if (wait_for_key()) rl_callback_read_char();
     if (!done_) show_notices();
   }
-  return 0;
+  return terminated() ? exit_code(Errc::interrupted) : 0;
 }
 
 /// True when a key waits; frames and timers of the bus are served meanwhile.

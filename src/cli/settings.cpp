@@ -52,11 +52,12 @@ Result<Settings> apply_options(Settings base, const commands::Arguments& argumen
       return fail(Errc::usage, fmt::format("--retries: '{}' is no number of 0 to 100", arguments.text("--retries")));
     base.retries = static_cast<std::uint32_t>(*retries);
   }
-  base.json = arguments.has("--json") || arguments.text("--output").starts_with("json");
+  if (arguments.has("--output")) base.json = arguments.text("--output") != "text";
+  if (arguments.has("--json")) base.json = true;
   if (arguments.has("--lang")) base.chinese = arguments.text("--lang") == "zh";
   base.yes = base.yes || arguments.has("--yes");
   base.read_only = base.read_only || arguments.has("--read-only");
-  base.dry_run = arguments.has("--dry-run");
+  base.dry_run = base.dry_run || arguments.has("--dry-run");
   if (arguments.has("--trace")) base.trace = std::string(arguments.text("--trace"));
   return base;
 }

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <numeric>
+#include <span>
 
 #include "base/text.hpp"
 #include "canopen/cob_id.hpp"
 #include "can/socketcan.hpp"
 #include "cli/notice.hpp"
 #include "commands/help.hpp"
-#include "commands/identity.hpp"
 #include "commands/records.hpp"
 #include "session/open_bus.hpp"
 #include "session/scan.hpp"
@@ -31,10 +31,15 @@ Error no_bus() {
   return error;
 }
 
-/// Errors as people read them: what happened, then what to do.
-std::string error_text(const Error& error) {
-  auto out = "error: " + error.message + "\n";
-  if (!error.hint.empty()) out += "  hint: " + error.hint + "\n";
+/// Errors as people read them: what happened, then what to do. The same advice for several errors is given once.
+std::string errors_text(std::span<const Error> errors) {
+  std::string out;
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    if (i > 0 && errors[i].message == errors[i - 1].message) continue;
+    out += "error: " + errors[i].message + "\n";
+    const bool again = i + 1 < errors.size() && errors[i + 1].hint == errors[i].hint;
+    if (!errors[i].hint.empty() && !again) out += "  hint: " + errors[i].hint + "\n";
+  }
   return out;
 }
 
@@ -128,10 +133,10 @@ tl::unexpected<Error> Shell::ask_for_family(Run& run) {
     if (const auto opened = open(run.settings)) {
       const auto found = session::scan(**opened, *nodes);
       if (found && !found->empty()) {
-        const auto guess = commands::guess_text(session::guess_families(found->front(), families));
-        if (!guess.empty())
-          hint = fmt::format("by its device type node {} may be a {} (a guess): add -d {}", found->front().node, guess,
-                             guess.substr(0, guess.find('?')));
+        std::vector<std::string> guesses;
+        for (const auto& guess : session::guess_families(found->front(), families)) guesses.push_back(guess.family);
+        if (!guesses.empty())
+          hint = fmt::format("its identity fits {} (a guess, no proof): when the nameplate says so, add -d {}", one_of(guesses), guesses.front());
       }
     }
   }
@@ -228,20 +233,14 @@ int Shell::finish_json(Run& run, const Value& value, int code) {
 int Shell::finish_text(Run& run, const Value& value, int code) {
   console_->out(report::to_text(value, console_->width()));
   for (const auto& notice : run.context.notices) console_->err("notice: " + notice + "\n");
-  // The same cause at many objects is told once.
-  std::string last;
-  for (const auto& error : run.context.errors) {
-    const auto text = error_text(error);
-    if (text != last) console_->err(text);
-    last = text;
-  }
+  console_->err(errors_text(run.context.errors));
   return code;
 }
 
 int Shell::report_error(const Error& error, bool json, std::string_view command) {
   const int code = exit_code(error.code);
   if (!json) {
-    console_->err(error_text(error));
+    console_->err(errors_text(std::span(&error, 1)));
     return code;
   }
   report::Record out{{"servoctl", 1}, {"command", command.empty() ? Value() : Value(command)}, {"ok", false}, {"bus", Value()},

@@ -9,10 +9,12 @@ namespace {
 
 // A signal handler can reach nothing else.
 volatile std::sig_atomic_t g_interrupted = 0;
+volatile std::sig_atomic_t g_terminated = 0;
 
-extern "C" void on_signal(int) {
-  if (g_interrupted != 0) ::_exit(130);
+extern "C" void on_signal(int signal) {
+  if (g_interrupted != 0 && signal == SIGINT) ::_exit(130);
   g_interrupted = 1;
+  if (signal != SIGINT) g_terminated = 1;
 }
 
 }  // namespace
@@ -29,6 +31,7 @@ void install_signal_handlers() {
 }
 
 bool interrupted() { return g_interrupted != 0; }
+bool terminated() { return g_terminated != 0; }
 void clear_interrupt() { g_interrupted = 0; }
 
 }  // namespace servoctl::cli

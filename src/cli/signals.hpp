@@ -8,6 +8,8 @@ void install_signal_handlers();
 
 /// Whether one of them came since the last clear_interrupt().
 bool interrupted();
+/// Whether SIGTERM or SIGHUP came: the program has to end, not only what it is doing.
+bool terminated();
 void clear_interrupt();
 
 }  // namespace servoctl::cli

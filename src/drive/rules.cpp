@@ -4,6 +4,7 @@
 #include <functional>
 #include <utility>
 
+#define TOML_HEADER_ONLY 1  // The shared library is built with exceptions.
 #define TOML_EXCEPTIONS 0
 #include <toml++/toml.h>
 

@@ -47,6 +47,9 @@ std::string inline_text(const Value& value) {
                     value.data());
 }
 
+/// The same for a place where a line break would spoil the layout.
+std::string cell_text(const Value& value) { return printable(inline_text(value)); }
+
 bool is_block(const Value& value) {
   return std::holds_alternative<Table>(value.data()) || std::holds_alternative<Record>(value.data());
 }
@@ -75,7 +78,7 @@ class TableText {
  public:
   TableText(const Table& table, std::size_t width) {
     for (std::size_t i = 0; i < table.columns.size(); ++i)
-      if (table.columns[i].show != Show::json) columns_.push_back(measure(table, i));
+      if (table.columns[i].show != Show::json && !is_empty(table, i)) columns_.push_back(measure(table, i));
     if (width > 0) shrink(width);
     add_line(table, nullptr);
     for (const auto& row : table.rows) add_line(table, &row);
@@ -89,11 +92,18 @@ class TableText {
     bool right;
   };
 
+  static bool is_empty(const Table& table, std::size_t index) {
+    return !table.rows.empty() && std::all_of(table.rows.begin(), table.rows.end(), [&](const List& row) {
+      const auto* text = std::get_if<std::string>(&row[index].data());
+      return row[index].is_null() || (text != nullptr && text->empty());
+    });
+  }
+
   static Column measure(const Table& table, std::size_t index) {
     const auto& column = table.columns[index];
     Column out{index, display_width(column.title.empty() ? column.key : column.title), !table.rows.empty()};
     for (const auto& row : table.rows) {
-      out.width = std::max(out.width, display_width(inline_text(row[index])));
+      out.width = std::max(out.width, display_width(cell_text(row[index])));
       out.right = out.right && (is_number(row[index]) || row[index].is_null());
     }
     return out;
@@ -115,7 +125,7 @@ class TableText {
     std::string line;
     for (const auto& column : columns_) {
       const auto& head = table.columns[column.index];
-      const auto cell = row == nullptr ? (head.title.empty() ? head.key : head.title) : inline_text((*row)[column.index]);
+      const auto cell = row == nullptr ? (head.title.empty() ? head.key : head.title) : cell_text((*row)[column.index]);
       const auto clipped = clip(cell, column.width);
       if (!line.empty()) line += std::string(kGap, ' ');
       line += column.right ? pad_left(clipped, column.width) : pad_right(clipped, column.width);
@@ -134,22 +144,22 @@ std::string record_text(const Record& record, std::size_t width) {
   for (const auto& field : record)
     if (field.show != Show::json && !is_block(field.value)) left = std::max(left, display_width(title(field)));
   std::string out;
+  std::string blocks;  // Below the lines, whatever their place.
   for (const auto& field : record) {
     if (field.show == Show::json || field.value.is_null()) continue;
-    if (is_block(field.value)) {
-      out += (out.empty() ? "" : "\n") + title(field) + ":\n" + to_text(field.value, width);
-      continue;
-    }
-    out += pad_right(title(field), left + kGap) + wrapped(inline_text(field.value), left + kGap, width) + '\n';
+    if (is_block(field.value))
+      blocks += "\n" + title(field) + ":\n" + to_text(field.value, width);
+    else
+      out += pad_right(title(field), left + kGap) + wrapped(cell_text(field.value), left + kGap, width) + '\n';
   }
-  return out;
+  return out + blocks;
 }
 
 }  // namespace
 
 std::string to_text(const Value& value, std::size_t width) {
   if (value.is_null()) return {};
-  if (const auto* table = std::get_if<Table>(&value.data())) return TableText(*table, width).take();
+  if (const auto* table = std::get_if<Table>(&value.data())) return table->json_only ? std::string() : TableText(*table, width).take();
   if (const auto* record = std::get_if<Record>(&value.data())) return record_text(*record, width);
   if (const auto* list = std::get_if<List>(&value.data())) {
     std::string out;

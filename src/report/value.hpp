@@ -23,7 +23,8 @@ struct Field;
 using List = std::vector<Value>;
 using Record = std::vector<Field>;  ///< Keeps the order in which it was written.
 
-/// Rows with the same fields: columns in text, an array of objects in JSON.
+/// Rows with the same fields: columns in text, an array of objects in JSON. A column in which every cell is empty is left out
+/// of the text.
 struct Table {
   struct Column {
     std::string key;    ///< Name in JSON.
@@ -32,6 +33,7 @@ struct Table {
   };
   std::vector<Column> columns;
   std::vector<List> rows;
+  bool json_only = false;  ///< Nothing in it is worth reading: the errors say it all.
 };
 
 /// What a command says. Commands build it; only report/text.cpp and report/json.cpp turn it into characters.

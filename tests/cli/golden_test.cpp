@@ -1,0 +1,106 @@
+// Golden command-line cases: tests/cli/golden/cases.txt names them, one file each holds what the program must say, as text and
+// as JSON. `./dev golden` writes the files anew; read the diff.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <sstream>
+
+#include "cli/line_runner.hpp"
+#include "cli/shell.hpp"
+#include "cli/words.hpp"
+#include "recording_console.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kSource = SERVOCTL_SOURCE_DIR;
+const fs::path kFolder = kSource / "tests/cli/golden";
+
+struct Case {
+  std::string name;
+  std::vector<std::string> lines;  ///< Separated by ` ;; `, run one after the other on the same bus.
+};
+
+std::vector<Case> read_cases() {
+  std::vector<Case> out;
+  std::ifstream file(kFolder / "cases.txt");
+  std::string line;
+  while (std::getline(file, line)) {
+    if (line.empty() || line.front() == '#') continue;
+    const auto colon = line.find(": ");
+    Case c{line.substr(0, colon), {}};
+    auto rest = line.substr(colon + 2);
+    for (std::size_t at = 0; (at = rest.find(" ;; ")) != std::string::npos; rest = rest.substr(at + 4))
+      c.lines.push_back(rest.substr(0, at));
+    c.lines.push_back(rest);
+    out.push_back(std::move(c));
+  }
+  return out;
+}
+
+/// Runs the lines of a case and tells all that came of them.
+std::string play(const Case& c, bool json) {
+  RecordingConsole console;
+  Shell::Options options;
+  options.drive_folders = {kSource / "eds"};
+  options.clock = sim::SimBus::Clock::virtual_time;
+  options.defaults.bus = "sim:gsd600@1";
+  Shell shell(console, std::move(options));
+  LineRunner runner(shell, console);
+  std::string out;
+  for (const auto& line : c.lines) {
+    console.out_text.clear();
+    console.err_text.clear();
+    const auto typed = json ? line + " --json" : line;
+    const int code = runner.run(typed);
+    out += fmt::format("$ {}\n", typed) + console.out_text;
+    if (!console.err_text.empty()) out += "[stderr]\n" + console.err_text;
+    out += fmt::format("[exit {}]\n\n", code);
+  }
+  return out;
+}
+
+std::string slurp(const fs::path& path) {
+  std::ifstream file(path);
+  std::ostringstream out;
+  out << file.rdbuf();
+  return out.str();
+}
+
+class Golden : public testing::TestWithParam<Case> {};
+
+TEST_P(Golden, SaysWhatItSaidBefore) {
+  fs::current_path(kSource);
+  const auto said = play(GetParam(), false) + play(GetParam(), true);
+  const auto path = kFolder / (GetParam().name + ".txt");
+  if (std::getenv("SERVOCTL_REWRITE_GOLDEN") != nullptr) {
+    std::ofstream(path) << said;
+    return;
+  }
+  EXPECT_EQ(slurp(path), said) << "`./dev golden` writes " << path << " anew";
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, Golden, testing::ValuesIn(read_cases()), [](const testing::TestParamInfo<Case>& c_info) {
+  std::string name = c_info.param.name;
+  for (auto& c : name)
+    if (c == '-') c = '_';
+  return name;
+});
+
+TEST(GoldenCases, EveryFileBelongsToACase) {
+  const auto cases = read_cases();
+  ASSERT_GT(cases.size(), 40U);
+  for (const auto& entry : fs::directory_iterator(kFolder)) {
+    const auto stem = entry.path().stem().string();
+    if (stem == "cases") continue;
+    EXPECT_TRUE(std::any_of(cases.begin(), cases.end(), [&](const Case& c) { return c.name == stem; })) << entry.path();
+  }
+}
+
+}  // namespace
+}  // namespace servoctl::cli

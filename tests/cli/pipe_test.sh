@@ -1,0 +1,46 @@
+#!/usr/bin/env bash
+# Command lines from a pipe, and the streams: data on stdout, the rest on stderr.
+# usage: pipe_test.sh SERVOCTL
+set -u
+servoctl=$1
+export SERVOCTL_BUS=sim:gsd600@1 LANG=C
+unset SERVOCTL_NODE SERVOCTL_DRIVE
+failures=0
+check() {
+  if [ "$2" != "$3" ]; then
+    failures=$((failures + 1))
+    printf 'FAILED %s\n  expected: %s\n  actual:   %s\n' "$1" "$2" "$3"
+  fi
+}
+
+out=$(printf 'use 1\ndrive gsd600\n# a comment\n\nparam set Pn0214 450\nparam get Pn0214\nexit\nnever run\n' | "$servoctl" --json | jq -c '[.command, .result[0].raw]')
+check "lines share one bus and what use and drive set" $'["param set",450]\n["param get",450]' "$out"
+
+out=$(printf 'read 0x6041 -n 1\nraed 0x6041\nread 0x6061 -n 1\n' | "$servoctl" 2>/dev/null | wc -l)
+check "the first line that fails ends the run" 2 "$out"
+printf 'read 0x6041 -n 1\nraed 0x6041\n' | "$servoctl" >/dev/null 2>&1
+check "its exit code is that of the run" 2 $?
+
+check "errors are on stderr" "" "$("$servoctl" read 0x6041 -n 9 --timeout 10ms 2>/dev/null)"
+check "with --json they are on stdout" 4 "$("$servoctl" read 0x6041 -n 9 --timeout 10ms --json 2>/dev/null | jq .error.exit)"
+check "nothing is on stderr then" "" "$("$servoctl" read 0x6041 -n 9 --timeout 10ms --json 2>&1 >/dev/null)"
+check "a usage error is JSON too" 2 "$("$servoctl" raed --json | jq .error.exit)"
+"$servoctl" objects -d gsd600 | head -1 >/dev/null
+check "a closed pipe is no crash" 0 "${PIPESTATUS[1]}"
+check "the environment names bus, node and drive" 600 "$(SERVOCTL_NODE=1 SERVOCTL_DRIVE=gsd600 "$servoctl" param get Pn214 --json | jq '.result[0].raw')"
+check "--version" "servoctl" "$("$servoctl" --version | cut -d' ' -f1)"
+check "one document a command" 1 "$("$servoctl" scan --json | wc -l)"
+
+# Two processes on a virtual bus of this machine.
+name="pipetest$$"
+"$servoctl" sim gsd600@4 --bus "local:$name" >/tmp/servoctl-$name 2>&1 &
+sim=$!
+for _ in $(seq 100); do grep -q local /tmp/servoctl-$name && break; sleep 0.05; done
+check "a drive of another process on local:" 4 "$("$servoctl" scan --bus "local:$name" --json | jq '.result[0].node')"
+check "read over local:" 624 "$("$servoctl" read 0x6041 -n 4 --bus "local:$name" --json | jq '.result[0].value')"
+kill -INT $sim
+wait $sim
+check "Ctrl-C ends the simulated drive in order" 0 $?
+rm -f /tmp/servoctl-$name
+printf '%d failed\n' "$failures"
+[ "$failures" -eq 0 ]

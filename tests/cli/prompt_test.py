@@ -1,0 +1,135 @@
+#!/usr/bin/env python3
+"""Drives the prompt on a pseudo-terminal as a person would.
+
+usage: prompt_test.py SERVOCTL
+"""
+import os
+import pty
+import re
+import select
+import signal
+import sys
+import tempfile
+import time
+
+servoctl = sys.argv[1]
+failures = []
+
+
+class Terminal:
+    def __init__(self, *arguments, state):
+        self.text = ""
+        self.pid, self.fd = pty.fork()
+        if self.pid == 0:
+            env = dict(os.environ, TERM="xterm", XDG_STATE_HOME=state, LANG="C.UTF-8", COLUMNS="80", LINES="24")
+            for name in ("SERVOCTL_BUS", "SERVOCTL_NODE", "SERVOCTL_DRIVE"):
+                env.pop(name, None)
+            os.execve(servoctl, [servoctl, *arguments], env)
+
+    def type(self, text):
+        os.write(self.fd, text.encode())
+
+    def see(self, pattern, seconds=20):
+        """Waits until the screen text shows the pattern; forgets everything up to its end."""
+        end = time.monotonic() + seconds
+        while True:
+            plain = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]|\x1b[=>]", "", self.text)
+            found = re.search(pattern, plain)
+            if found:
+                self.text = plain[found.end():]
+                return
+            if time.monotonic() > end or not self.read(end - time.monotonic()):
+                failures.append(f"did not see {pattern!r} in {plain[-400:]!r}")
+                return
+
+    def read(self, seconds):
+        ready, _, _ = select.select([self.fd], [], [], max(0, seconds))
+        if not ready:
+            return True
+        try:
+            data = os.read(self.fd, 4096)
+        except OSError:
+            return False
+        self.text += data.decode(errors="replace")
+        return bool(data)
+
+    def exit_code(self):
+        end = time.monotonic() + 10
+        while time.monotonic() < end:
+            pid, status = os.waitpid(self.pid, os.WNOHANG)
+            if pid:
+                return os.waitstatus_to_exitcode(status)
+            self.read(0.05)
+        os.kill(self.pid, signal.SIGKILL)
+        failures.append("the program did not end")
+        return None
+
+
+def expect(name, expected, actual):
+    if expected != actual:
+        failures.append(f"{name}: expected {expected!r}, got {actual!r}")
+
+
+with tempfile.TemporaryDirectory() as state:
+    t = Terminal("--bus", "sim:gsd600@1", state=state)
+    t.see(r"servoctl sim:gsd600@1> ")
+    t.type("use 1\n")
+    t.see(r"node 1> ")
+    t.type("drive gs\t\n")
+    t.see(r"gsd600 ?> ")
+    t.type("read statusw\t\n")
+    t.see(r"0x0270")
+    t.type("par\t")
+    t.see(r"am $")
+    t.type("ge\tPn021")
+    t.see(r"t Pn021")
+    t.type("4\n")
+    t.see(r"60 Hz")
+    t.type("param set Pn0214 4500000\n")
+    t.see(r"does not fit|out of range")
+    t.type("nmt reset\n")
+    t.see(r"\[y/N\] ")
+    t.type("n\n")
+    t.see(r"not confirmed; nothing was sent")
+    t.type("nmt reset --wait\n")
+    t.see(r"\[y/N\] ")
+    t.type("y\n")
+    t.see(r"reset +yes")
+    t.type("half a line\x03")
+    t.see(r"\^C")
+    t.type("read 0x6041 -n 9 --timeout 60s\n")
+    time.sleep(0.5)
+    t.type("\x03")
+    t.see(r"interrupted", 5)
+    t.see(r"> ")
+    t.type("exit\n")
+    expect("exit code of exit", 0, t.exit_code())
+
+    # History is kept, an emergency is told above the line that is being typed, and the line is kept.
+    t = Terminal("--bus", "sim:gsd600@1?fault=0xFF00@1s", state=state)
+    t.see(r"> ")
+    t.type("read 0x60")
+    t.see(r"\* node 1: EMCY 0xFF00")
+    t.see(r"read 0x60")
+    t.type("41 -n 1\n")
+    t.see(r"0x023")
+    t.type("\x1b[A\x1b[A")
+    t.see(r"exit")
+    t.type("\x03")
+    t.see(r"> ")
+    t.type("\x04")
+    expect("exit code of Ctrl-D", 0, t.exit_code())
+
+    t = Terminal("--bus", "can77", state=state)
+    t.see(r"error: .*can77")
+    expect("exit code without a bus", 3, t.exit_code())
+
+    t = Terminal("--bus", "sim:gsd600@1", state=state)
+    t.see(r"> ")
+    os.kill(t.pid, signal.SIGTERM)
+    expect("exit code of SIGTERM", 130, t.exit_code())
+
+for failure in failures:
+    print("FAILED", failure)
+print(f"{len(failures)} failed")
+sys.exit(1 if failures else 0)

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/console.hpp"
+
+namespace servoctl::cli {
+
+/// A console that keeps what it is given. Answers no question unless told to.
+class RecordingConsole final : public Console {
+ public:
+  void out(std::string_view text) override { out_text += text; }
+  void err(std::string_view text) override { err_text += text; }
+  bool ask(std::string_view question) override {
+    questions.emplace_back(question);
+    return answer;
+  }
+  bool can_ask() const override { return person; }
+  std::size_t width() const override { return columns; }
+
+  std::string out_text;
+  std::string err_text;
+  std::vector<std::string> questions;
+  bool answer = false;
+  bool person = false;
+  std::size_t columns = 0;
+};
+
+}  // namespace servoctl::cli
