@@ -31,8 +31,8 @@ class Bus {
   /// none.
   virtual int poll_fd() const { return -1; }
 
-  /// When the bus wants receive() called although nothing was received from outside; kNever for real
-  /// transports.
+  /// When the bus wants receive() called although its descriptor is not readable: something is due or kept
+  /// inside; kNever when there is nothing such.
   virtual TimePoint next_event() const { return kNever; }
 };
 

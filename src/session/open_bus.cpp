@@ -32,7 +32,9 @@ Result<std::unique_ptr<can::Bus>> open_bus(std::string_view url, const BusOption
   if (!bus || options.trace.empty()) return bus;
   const auto colon = url.find(':');
   const auto name = url.substr(0, colon) == "socketcan" ? url.substr(colon + 1) : url.substr(0, colon);
-  return can::trace_to(std::move(*bus), options.trace, name);
+  // A simulated clock does not run with the wall's.
+  const bool simulated = name == "sim" && options.clock == sim::SimBus::Clock::virtual_time;
+  return can::trace_to(std::move(*bus), options.trace, name, simulated ? can::TraceClock::bus : can::TraceClock::wall);
 }
 
 }  // namespace servoctl::session
