@@ -166,7 +166,7 @@ const od::Parameter* Profile::parameter(ObjectAddress object) const {
 std::vector<fs::path> drive_folders() {
   std::vector<fs::path> out;
   if (const char* own = std::getenv("SERVOCTL_DRIVES"); own != nullptr)
-    for (const auto part : split(own, ':'))
+    for (const auto part : split(std::string_view(own), ':'))
       if (!part.empty()) out.emplace_back(part);
   if (const char* config = std::getenv("XDG_CONFIG_HOME"); config != nullptr && *config != '\0')
     out.push_back(fs::path(config) / "servoctl/drives");
