@@ -7,7 +7,8 @@ namespace {
 
 using report::Value;
 
-Value hex(std::optional<std::uint32_t> number) { return number ? Value(report::Hex{*number, 8}) : Value(); }
+/// Without leading zeros: four of them and the names have to fit a line of 80 columns.
+Value hex(std::optional<std::uint32_t> number) { return number ? Value(report::Hex{*number, 1}) : Value(); }
 
 Value guess_records(std::span<const session::Guess> guesses) {
   report::List out;

@@ -1,0 +1,159 @@
+// Words, command lines, settings and completion.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "cli/completer.hpp"
+#include "cli/line_runner.hpp"
+#include "cli/parse.hpp"
+#include "base/text.hpp"
+#include "cli/words.hpp"
+#include "recording_console.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+using Words = std::vector<std::string>;
+
+TEST(Words, AreSplitAsAShellDoes) {
+  EXPECT_EQ(split_words("write  0x2000 -5").value(), (Words{"write", "0x2000", "-5"}));
+  EXPECT_EQ(split_words(R"(write x "two words" 'a "b"' c\ d e"f g"h)").value(), (Words{"write", "x", "two words", "a \"b\"", "c d", "ef gh"}));
+  EXPECT_EQ(split_words(R"(a "" '')").value(), (Words{"a", "", ""}));
+  EXPECT_EQ(split_words("read x # a comment").value(), (Words{"read", "x"}));
+  EXPECT_EQ(split_words("a#b").value(), Words{"a#b"});
+  EXPECT_EQ(split_words("# nothing").value(), Words{});
+  EXPECT_FALSE(split_words("a 'b"));
+  EXPECT_FALSE(split_words("a \"b"));
+}
+
+TEST(ParseLine, TakesGlobalOptionsOnBothSidesOfTheCommand) {
+  for (const auto& words : {Words{"-n", "3", "--bus", "can0", "param", "get", "Pn0202"}, Words{"param", "get", "Pn0202", "--bus=can0", "-n3"},
+                            Words{"--bus", "can0", "param", "get", "-n", "3", "Pn0202"}}) {
+    const auto line = parse_line(words);
+    ASSERT_TRUE(line) << line.error().message;
+    EXPECT_EQ(line->command->path, "param get");
+    EXPECT_EQ(line->arguments.text("--bus"), "can0");
+    EXPECT_EQ(line->arguments.text("--node"), "3");
+    EXPECT_EQ(line->arguments.text("id"), "Pn0202");
+  }
+}
+
+TEST(ParseLine, LeavesValuesAsTheyAreWritten) {
+  const auto line = parse_line({"write", "6040h", "-010"});
+  ASSERT_TRUE(line) << line.error().message;
+  EXPECT_EQ(line->arguments.text("object"), "6040h");
+  EXPECT_EQ(line->arguments.text("value"), "-010");
+}
+
+TEST(ParseLine, GivesManyWordsToTheParameterThatTakesThem) {
+  const auto line = parse_line({"read", "a", "b", "--type", "u8", "c"});
+  ASSERT_TRUE(line) << line.error().message;
+  const auto all = line->arguments.all("object");
+  EXPECT_EQ(Words(all.begin(), all.end()), (Words{"a", "b", "c"}));
+  EXPECT_EQ(line->arguments.text("--type"), "u8");
+}
+
+TEST(ParseLine, LeaksNoValueIntoTheNextLine) {
+  ASSERT_TRUE(parse_line({"read", "a", "--type", "u8"}));
+  EXPECT_FALSE(parse_line({"read", "a"})->arguments.has("--type"));
+}
+
+TEST(Nodes, AreListsAndRanges) {
+  using Nodes = std::vector<std::uint8_t>;
+  EXPECT_EQ(parse_nodes("1").value(), Nodes{1});
+  EXPECT_EQ(parse_nodes("5-8,1,3,6").value(), (Nodes{1, 3, 5, 6, 7, 8}));
+  EXPECT_EQ(parse_nodes("0x10").value(), Nodes{16});
+  EXPECT_EQ(parse_nodes("ALL").value(), Nodes{0});
+  EXPECT_EQ(parse_nodes("1-127").value().size(), 127U);
+  for (const auto* text : {"", "0", "128", "8-5", "1,,2", "-1", "a", "1-", "1-2-3"}) EXPECT_FALSE(parse_nodes(text)) << text;
+}
+
+class ShellTest : public testing::Test {
+ protected:
+  ShellTest() : shell(console, options()) {}
+  static Shell::Options options() {
+    Shell::Options o;
+    o.drive_folders = {std::filesystem::path(SERVOCTL_SOURCE_DIR) / "eds"};
+    o.clock = sim::SimBus::Clock::virtual_time;
+    o.defaults.bus = "sim:gsd600@1";
+    o.defaults.drive = "gsd600";
+    return o;
+  }
+  bool offers(std::string_view line, std::string_view word) {
+    const auto words = complete(line, shell).words;
+    return std::find(words.begin(), words.end(), word) != words.end();
+  }
+  RecordingConsole console;
+  Shell shell;
+};
+
+TEST_F(ShellTest, CompletesCommandsOptionsNamesAndNumbers) {
+  EXPECT_TRUE(offers("", "scan"));
+  EXPECT_TRUE(offers("", "use"));
+  EXPECT_TRUE(offers("pa", "param"));
+  EXPECT_FALSE(offers("pa", "scan"));
+  EXPECT_TRUE(offers("param ", "search"));
+  EXPECT_TRUE(offers("param get pn02", "Pn0202"));
+  EXPECT_TRUE(offers("param get Pn0202 pn02", "Pn0203"));
+  EXPECT_TRUE(offers("read stat", "statusword"));
+  EXPECT_TRUE(offers("read -n 1 stat", "statusword"));
+  EXPECT_TRUE(offers("read --ty", "--type"));
+  EXPECT_TRUE(offers("read x --type u", "u16"));
+  EXPECT_TRUE(offers("drive ", "gsd600"));
+  EXPECT_TRUE(offers("-d ", "gsd600"));
+  EXPECT_TRUE(offers("bus ", "local:"));
+  EXPECT_TRUE(complete("eds check ", shell).files);
+  EXPECT_TRUE(complete("param get zz", shell).words.empty());
+}
+
+TEST_F(ShellTest, AsksBeforeAResetAndSendsNothingWhenTheAnswerIsNo) {
+  console.person = true;
+  EXPECT_EQ(shell.run({"nmt", "reset", "-n", "1"}), 8);
+  ASSERT_EQ(console.questions.size(), 1U);
+  EXPECT_NE(console.questions[0].find("Reset node 1?"), std::string::npos);
+  console.answer = true;
+  EXPECT_EQ(shell.run({"nmt", "reset", "-n", "1", "--wait"}), 0);
+  EXPECT_NE(console.err_text.find("notice: node 1: boot-up"), std::string::npos);
+}
+
+TEST_F(ShellTest, TellsEmergenciesThatComeWhileACommandRuns) {
+  EXPECT_EQ(shell.run({"read", "0x6041", "-n", "9", "--bus", "sim:gsd600@1?fault=0xFF00@100ms"}), 4);
+  EXPECT_NE(console.err_text.find("notice: node 1: EMCY 0xFF00 Servo alarm"), std::string::npos) << console.err_text;
+}
+
+TEST_F(ShellTest, KeepsTheBusOpenBetweenLines) {
+  EXPECT_EQ(shell.run({"param", "set", "Pn0214", "450", "-n", "1"}), 0);
+  const auto* session = shell.session();
+  EXPECT_EQ(shell.run({"param", "get", "Pn0214", "-n", "1"}), 0);
+  EXPECT_EQ(shell.session(), session);
+  EXPECT_NE(console.out_text.find("450 = 45 Hz"), std::string::npos);
+}
+
+TEST_F(ShellTest, FitsItsTextIntoEightyColumns) {
+  console.columns = 80;
+  for (const Words& words : {Words{"scan"}, Words{"param", "list"}, Words{"objects"}, Words{"fault", "list"}, Words{"status", "-n", "1"},
+                             Words{"param", "explain", "Pn0030"}, Words{"param", "get", "Pn02*", "-n", "1"}, Words{"param", "list", "--lang", "zh"}}) {
+    console.out_text.clear();
+    EXPECT_EQ(shell.run(words), 0);
+    for (const auto line : split(std::string_view(console.out_text), '\n')) EXPECT_LE(display_width(line), 80U) << line;
+  }
+}
+
+TEST_F(ShellTest, WritesNothingWhenOneOfSeveralValuesIsWrong) {
+  EXPECT_EQ(shell.run({"param", "set", "Pn0214=450", "Pn0215=99999", "-n", "1"}), 2);
+  console.out_text.clear();
+  EXPECT_EQ(shell.run({"param", "get", "Pn0214", "-n", "1"}), 0);
+  EXPECT_NE(console.out_text.find("600 = 60 Hz"), std::string::npos) << console.out_text;
+}
+
+TEST_F(ShellTest, SendsNothingInADryRun) {
+  EXPECT_EQ(shell.run({"param", "set", "Pn0214", "450", "-n", "1", "--dry-run"}), 0);
+  EXPECT_NE(console.out_text.find("601#2B01200FC2010000"), std::string::npos) << console.out_text;
+  console.out_text.clear();
+  EXPECT_EQ(shell.run({"param", "get", "Pn0214", "-n", "1"}), 0);
+  EXPECT_NE(console.out_text.find("600 = 60 Hz"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace servoctl::cli

@@ -1,0 +1,78 @@
+#include "report/value.hpp"
+
+#include <gtest/gtest.h>
+
+#include "base/text.hpp"
+
+namespace servoctl::report {
+namespace {
+
+using namespace std::string_literals;
+
+Table table() {
+  Table t;
+  t.columns = {{"index", "", Show::text}, {"name"}, {"raw", "", Show::json}, {"value"}};
+  t.rows = {{Hex{0x6040, 4}, "Controlword", 6, 6}, {Hex{0x607A, 4}, "目标位置", -20, Value()}};
+  return t;
+}
+
+TEST(Text, AlignsTablesAndLeavesJsonColumnsOut) {
+  EXPECT_EQ(to_text(table()), "index   name         value\n0x6040  Controlword      6\n0x607A  目标位置         -\n");
+}
+
+TEST(Json, KeepsNumbersNumbersAndTheOrderOfFields) {
+  EXPECT_EQ(to_json(table()), R"([{"name":"Controlword","raw":6,"value":6},{"name":"目标位置","raw":-20,"value":null}])");
+  EXPECT_EQ(to_json(Record{{"b", 1}, {"a", true}, {"h", Hex{0x6041, 4}}, {"t", "x"s, Show::text}}), R"({"b":1,"a":true,"h":24641})");
+}
+
+TEST(Text, ShrinksTheWidestColumnToTheTerminal) {
+  Table t;
+  t.columns = {{"id"}, {"note"}};
+  t.rows = {{1, std::string(100, 'x')}, {2, "位置环增益位置环增益位置环增益"}};
+  const auto text = to_text(t, 40);
+  for (const auto line : split(std::string_view(text), '\n')) EXPECT_LE(display_width(line), 40U);
+  EXPECT_NE(text.find("…"), std::string::npos);
+  EXPECT_EQ(to_text(t).find("…"), std::string::npos);
+}
+
+TEST(Text, LeavesOutColumnsThatAreEmptyThroughout) {
+  Table t;
+  t.columns = {{"a"}, {"b"}, {"c"}};
+  t.rows = {{1, Value(), ""}, {2, Value(), ""}};
+  EXPECT_EQ(to_text(t), "a\n1\n2\n");
+  EXPECT_EQ(to_json(t), R"([{"a":1,"b":null,"c":""},{"a":2,"b":null,"c":""}])");
+  t.json_only = true;
+  EXPECT_EQ(to_text(t), "");
+}
+
+TEST(Text, ShowsRecordsWithTheirBlocksBelow) {
+  const Record r{{"name", "Gain"}, {"enum", Record{{"0", "Off"}, {"1", "On"}}}, {"empty", Value()}, {"modes", List{"pp", "pv"}}, {"ok", false}};
+  EXPECT_EQ(to_text(r), "name   Gain\nmodes  pp, pv\nok     no\n\nenum:\n0  Off\n1  On\n");
+}
+
+TEST(Text, BreaksLongFieldsAtBlanks) {
+  EXPECT_EQ(to_text(Record{{"note", "one two three four"}}, 16), "note  one two\n      three four\n");
+}
+
+TEST(Text, LetsNoControlCharacterOfADriveThrough) {
+  Table t;
+  t.columns = {{"name"}};
+  t.rows = {{"a\x1B[2J\nb"}};
+  EXPECT_EQ(to_text(t), "name\na\\x1B[2J\\nb\n");
+}
+
+TEST(Json, MendsBytesThatAreNoUtf8) { EXPECT_EQ(to_json(Value("a\xFF"s)), "\"a\xEF\xBF\xBD\""); }
+
+TEST(Json, WritesWholeDoublesWithoutAPoint) {
+  EXPECT_EQ(to_json(Value(40.0)), "40");
+  EXPECT_EQ(to_json(Value(0.1)), "0.1");
+  EXPECT_EQ(to_json(Value(std::uint64_t{18446744073709551615U})), "18446744073709551615");
+}
+
+TEST(Text, OfNothingIsNothing) {
+  EXPECT_EQ(to_text(Value()), "");
+  EXPECT_EQ(to_text(Value("x")), "x\n");
+}
+
+}  // namespace
+}  // namespace servoctl::report
