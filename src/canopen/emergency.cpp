@@ -96,7 +96,7 @@ std::string emergency_text(std::uint16_t code) {
 std::string error_register_text(std::uint8_t value) {
   std::string out;
   for (std::size_t bit = 0; bit < kRegisterBits.size(); ++bit) {
-    if ((value >> bit & 1U) == 0) continue;
+    if ((value & 1U << bit) == 0) continue;
     if (!out.empty()) out += ", ";
     out += kRegisterBits[bit];
   }

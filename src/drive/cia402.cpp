@@ -111,9 +111,9 @@ DriveState next_state(DriveState state, ControlCommand command) {
 std::vector<std::string> statusword_bits(std::uint16_t statusword, std::int8_t mode) {
   std::vector<std::string> out;
   for (const auto& row : kBits)
-    if ((statusword >> row.bit & 1U) != 0) out.emplace_back(row.name);
+    if ((statusword & 1U << row.bit) != 0) out.emplace_back(row.name);
   for (const int bit : {12, 13})
-    if ((statusword >> bit & 1) != 0) out.emplace_back(mode_bit(bit, mode));
+    if ((statusword & 1U << static_cast<unsigned>(bit)) != 0) out.emplace_back(mode_bit(bit, mode));
   return out;
 }
 

@@ -177,7 +177,10 @@ class FileTest : public testing::Test {
  protected:
   void SetUp() override { std::filesystem::create_directories(folder); }
   void TearDown() override { std::filesystem::remove_all(folder); }
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "servoctl-file-test";
+  // Tests run at the same time, each in a folder of its own.
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() /
+      (std::string("servoctl-file-") + testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
 TEST_F(FileTest, IsReplacedAsAWholeAndLeavesNothingBehind) {

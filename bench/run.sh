@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# Runs the benchmarks and times whole processes. usage: run.sh BUILD_DIR
+# Machines differ and are noisy: compare figures within one run, see bench/RESULTS.md.
+set -euo pipefail
+build=$1
+"$build/bench/servoctl_bench" --benchmark_min_time=0.2
+
+python3 - "$build/servoctl" <<'PYTHON'
+import os, resource, statistics, subprocess, sys, time
+
+servoctl = sys.argv[1]
+env = dict(os.environ, SERVOCTL_BUS="sim:gsd600@1", SERVOCTL_DRIVE="")
+
+
+def run(words):
+    begin = time.perf_counter()
+    process = subprocess.Popen(words, env=env, stdout=subprocess.DEVNULL)
+    _, _, usage = os.wait4(process.pid, 0)
+    return (time.perf_counter() - begin) * 1e3, usage.ru_maxrss / 1024
+
+
+print("\nwhole processes, 30 runs each, after one to warm up   median ms   peak MiB")
+for name, words in {
+    "true (the floor)": ["true"],
+    "servoctl --version": [servoctl, "--version"],
+    "servoctl help": [servoctl, "help"],
+    "servoctl param explain Pn0202 -d gsd600": [servoctl, "param", "explain", "Pn0202", "-d", "gsd600"],
+    "servoctl read 0x6041 -n 1 (drive simulated inside)": [servoctl, "read", "0x6041", "-n", "1"],
+}.items():
+    run(words)
+    rows = [run(words) for _ in range(30)]
+    print(f"{name:<54} {statistics.median(r[0] for r in rows):9.2f} {max(r[1] for r in rows):10.1f}")
+PYTHON
