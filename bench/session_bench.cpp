@@ -1,4 +1,5 @@
-// What the pump and the SDO machines cost without a bus in the way: the simulated bus answers at once, in virtual time.
+// What the pump and the SDO machines cost without a bus in the way: the simulated bus answers at once, in
+// virtual time.
 #include <benchmark/benchmark.h>
 
 #include <filesystem>
@@ -26,7 +27,8 @@ void read_all_parameters_of_nodes(benchmark::State& state) {
   auto session = open("gsd600@1,gsd600@2,gsd600@3,gsd600@4,gsd600@5,gsd600@6,gsd600@7,gsd600@8");
   std::vector<session::SdoRequest> requests;
   for (std::int64_t node = 1; node <= state.range(0); ++node)
-    for (int sub = 1; sub <= 331; ++sub) requests.push_back({static_cast<std::uint8_t>(node), {0x6041, 0}, {}});
+    for (int sub = 1; sub <= 331; ++sub)
+      requests.push_back({static_cast<std::uint8_t>(node), {0x6041, 0}, {}});
   for (auto _ : state) benchmark::DoNotOptimize(session.transfer(requests));
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(requests.size()));
 }

@@ -9,7 +9,8 @@ std::string_view Arguments::text(std::string_view name) const {
 
 std::span<const std::string> Arguments::all(std::string_view name) const {
   const auto found = values_.find(name);
-  return found == values_.end() ? std::span<const std::string>() : std::span<const std::string>(found->second);
+  return found == values_.end() ? std::span<const std::string>()
+                                : std::span<const std::string>(found->second);
 }
 
 }  // namespace servoctl::commands

@@ -1,7 +1,7 @@
 #include "commands/change.hpp"
 
-#include <algorithm>
 #include <fmt/format.h>
+#include <algorithm>
 
 #include "canopen/sdo_client.hpp"
 
@@ -16,7 +16,8 @@ std::string called(const Change& change) {
   return label.empty() ? to_string(change.target.address) : label;
 }
 
-/// An object no dictionary knows is read to learn its size: a write of another length would be refused or worse.
+/// An object no dictionary knows is read to learn its size: a write of another length would be refused or
+/// worse.
 Result<od::DataType> learn_type(Context& context, std::uint8_t node, const drive::Target& target) {
   const auto bytes = context.session->upload(node, target.address);
   if (!bytes) {
@@ -27,13 +28,14 @@ Result<od::DataType> learn_type(Context& context, std::uint8_t node, const drive
   }
   Reading reading{node, target, {}, *bytes};
   const auto type = type_of(reading, *bytes);
-  context.notices.push_back(fmt::format("node {}, object {}: taken as {} by the length of what it holds", node,
-                                        to_string(target.address), od::name(type)));
+  context.notices.push_back(fmt::format("node {}, object {}: taken as {} by the length of what it holds",
+                                        node, to_string(target.address), od::name(type)));
   return type;
 }
 
 bool is_parameter(const drive::Profile* profile, const Change& change, const std::string& id) {
-  return profile != nullptr && !id.empty() && change.target.parameter != nullptr && change.target.parameter == profile->parameter(id);
+  return profile != nullptr && !id.empty() && change.target.parameter != nullptr &&
+         change.target.parameter == profile->parameter(id);
 }
 
 std::string effect_text(od::Effect effect) {
@@ -65,7 +67,9 @@ report::List change_row(const Change& change, const Result<session::Written>& wr
           change.target.address.sub,
           report::text_or_null(name),
           change.target.parameter != nullptr ? Value(change.target.parameter->id) : Value(),
-          meaning.scale == 1 || !value ? shown : fmt::format("{} = {:.12g} {}", shown, drive::scaled(meaning, *value), meaning.unit),
+          meaning.scale == 1 || !value
+              ? shown
+              : fmt::format("{} = {:.12g} {}", shown, drive::scaled(meaning, *value), meaning.unit),
           value ? od_value(*value) : Value(shown),
           value ? Value(drive::scaled(meaning, *value)) : Value(),
           report::text_or_null(std::string(meaning.unit)),
@@ -80,12 +84,13 @@ report::List change_row(const Change& change, const Result<session::Written>& wr
 
 }  // namespace
 
-Result<Change> make_change(Context& context, std::uint8_t node, const drive::Target& target, std::string_view value,
-                           std::optional<od::DataType> type) {
+Result<Change> make_change(Context& context, std::uint8_t node, const drive::Target& target,
+                           std::string_view value, std::optional<od::DataType> type) {
   auto meaning = drive::meaning(target, node);
   const auto named = [&](Error error, std::string_view separator = ": ") {
     const auto label = target.label();
-    error.message = (label.empty() ? to_string(target.address) : label) + std::string(separator) + error.message;
+    error.message =
+        (label.empty() ? to_string(target.address) : label) + std::string(separator) + error.message;
     return tl::unexpected<Error>(located(std::move(error), node, target.address));
   };
   if (!od::writable(meaning.access)) {
@@ -114,13 +119,18 @@ Result<void> confirm_changes(Context& context, std::span<const Change> changes) 
     const auto* entry = change.target.entry;
     const auto* parameter = change.target.parameter;
     const auto index = change.target.address.index;
-    const bool stores = index == 0x1010 || index == 0x1011 || (entry != nullptr && entry->command) || (parameter != nullptr && parameter->command);
+    const bool stores = index == 0x1010 || index == 0x1011 || (entry != nullptr && entry->command) ||
+                        (parameter != nullptr && parameter->command);
     const auto* profile = context.profile;
-    const bool addresses = is_parameter(profile, change, profile == nullptr ? "" : profile->rules.node_id_parameter) ||
-                           is_parameter(profile, change, profile == nullptr ? "" : profile->rules.bitrate_parameter);
+    const bool addresses =
+        is_parameter(profile, change, profile == nullptr ? "" : profile->rules.node_id_parameter) ||
+        is_parameter(profile, change, profile == nullptr ? "" : profile->rules.bitrate_parameter);
     if (!stores && !addresses) continue;
-    const auto question = stores ? fmt::format("Write {} on node {}? It starts an action or stores or restores parameters.", called(change), change.node)
-                                 : fmt::format("Write {} on node {}? After a restart the drive is found under another address.", called(change), change.node);
+    const auto question =
+        stores ? fmt::format("Write {} on node {}? It starts an action or stores or restores parameters.",
+                             called(change), change.node)
+               : fmt::format("Write {} on node {}? After a restart the drive is found under another address.",
+                             called(change), change.node);
     if (const auto answer = context.confirm(question); !answer) return answer;
   }
   return {};
@@ -133,7 +143,8 @@ Value planned_frames(std::span<const Change> changes) {
     canopen::SdoClient client(change.node, std::chrono::seconds(1));
     client.start_download(change.target.address, change.data, TimePoint{});
     const auto frame = client.take_frame();
-    table.rows.push_back({change.node, to_string(change.target.address), report::text_or_null(change.target.label()),
+    table.rows.push_back({change.node, to_string(change.target.address),
+                          report::text_or_null(change.target.label()),
                           frame ? can::to_string(*frame) : std::string()});
   }
   return table;
@@ -166,8 +177,9 @@ Value write_changes(Context& context, std::span<const Change> changes, bool read
     table.rows.push_back(change_row(changes[i], written[i], context.chinese));
     if (!written[i]) context.errors.push_back(written[i].error());
     if (written[i] && written[i]->answer_lost)
-      context.notices.push_back(fmt::format("node {}, object {}: the answer to the write was lost; the value read back is the one written",
-                                            changes[i].node, to_string(changes[i].target.address)));
+      context.notices.push_back(fmt::format(
+          "node {}, object {}: the answer to the write was lost; the value read back is the one written",
+          changes[i].node, to_string(changes[i].target.address)));
   }
   return table;
 }

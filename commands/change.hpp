@@ -19,10 +19,10 @@ struct Change {
   Bytes data;
 };
 
-/// Turns a name and a value into a change. Errc::usage for an unknown name, a read-only object, a value that does not fit;
-/// an object of unknown type is read first to learn its size.
-Result<Change> make_change(Context& context, std::uint8_t node, const drive::Target& target, std::string_view value,
-                           std::optional<od::DataType> type);
+/// Turns a name and a value into a change. Errc::usage for an unknown name, a read-only object, a value that
+/// does not fit; an object of unknown type is read first to learn its size.
+Result<Change> make_change(Context& context, std::uint8_t node, const drive::Target& target,
+                           std::string_view value, std::optional<od::DataType> type);
 
 /// Asks before changes that do more than change a value: store or restore commands, node-ID, bitrate.
 Result<void> confirm_changes(Context& context, std::span<const Change> changes);
@@ -30,7 +30,8 @@ Result<void> confirm_changes(Context& context, std::span<const Change> changes);
 /// The frames of these changes, in the order they would be sent.
 report::Value planned_frames(std::span<const Change> changes);
 
-/// Writes the changes and tells of each: written, read back, when it takes effect. Failures go to `context.errors`.
+/// Writes the changes and tells of each: written, read back, when it takes effect. Failures go to
+/// `context.errors`.
 report::Value write_changes(Context& context, std::span<const Change> changes, bool read_back);
 
 }  // namespace servoctl::commands

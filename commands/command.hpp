@@ -16,9 +16,24 @@
 
 namespace servoctl::commands {
 
-/// What a word of the command line stands for. Decides how it is completed and described, not how it is parsed: every value
-/// reaches the command as text.
-enum class Kind : std::uint8_t { flag, text, number, duration, value, type, object, parameter, nodes, family, bus, file, choice, command };
+/// What a word of the command line stands for. Decides how it is completed and described, not how it is
+/// parsed: every value reaches the command as text.
+enum class Kind : std::uint8_t {
+  flag,
+  text,
+  number,
+  duration,
+  value,
+  type,
+  object,
+  parameter,
+  nodes,
+  family,
+  bus,
+  file,
+  choice,
+  command
+};
 
 /// One option or positional word of a command.
 struct Parameter {
@@ -37,17 +52,21 @@ constexpr Needs operator|(Needs a, Needs b) {
   return static_cast<Needs>(static_cast<std::uint8_t>(a) | static_cast<std::uint8_t>(b));
 }
 constexpr bool includes(Needs all, Needs part) {
-  return (static_cast<std::uint8_t>(all) & static_cast<std::uint8_t>(part)) == static_cast<std::uint8_t>(part);
+  return (static_cast<std::uint8_t>(all) & static_cast<std::uint8_t>(part)) ==
+         static_cast<std::uint8_t>(part);
 }
 
-/// What the command may do to a drive. From `stores` on it asks on a terminal and needs --yes elsewhere; from `writes` on
+/// What the command may do to a drive. From `stores` on it asks on a terminal and needs --yes elsewhere; from
+/// `writes` on
 /// --read-only refuses it.
 enum class Effect : std::uint8_t { none, reads, writes, stores, resets, moves };
 
 /// The words of one command line, by parameter name.
 class Arguments {
  public:
-  void add(std::string_view name, std::string value) { values_[std::string(name)].push_back(std::move(value)); }
+  void add(std::string_view name, std::string value) {
+    values_[std::string(name)].push_back(std::move(value));
+  }
   bool has(std::string_view name) const { return values_.find(name) != values_.end(); }
   /// The only or first value; empty when there is none.
   std::string_view text(std::string_view name) const;
@@ -59,19 +78,21 @@ class Arguments {
 
 /// What a command works with and where it leaves what it has to tell beside its result.
 struct Context {
-  session::Session* session = nullptr;             ///< Set when the command needs a bus.
-  const drive::Profile* profile = nullptr;         ///< Set when a family was named; always when it needs a dictionary.
+  session::Session* session = nullptr;  ///< Set when the command needs a bus.
+  const drive::Profile* profile =
+      nullptr;  ///< Set when a family was named; always when it needs a dictionary.
   std::span<const std::filesystem::path> drive_folders;
-  std::vector<std::uint8_t> nodes;                 ///< Set when the command needs a node; 0 stands for all.
-  bool chinese = false;                            ///< Names in Chinese where there are any.
-  bool dry_run = false;                            ///< Show what would be sent, send nothing.
+  std::vector<std::uint8_t> nodes;  ///< Set when the command needs a node; 0 stands for all.
+  bool chinese = false;             ///< Names in Chinese where there are any.
+  bool dry_run = false;             ///< Show what would be sent, send nothing.
   /// Asks before something that stores, resets, re-addresses or moves; Errc::refused when the answer is no.
   std::function<Result<void>(std::string_view question)> confirm;
   /// Shows one sample of a command that goes on.
   std::function<void(const report::Value&)> emit;
 
-  std::vector<Error> errors;          ///< Parts that failed while others succeeded; the first one makes the exit code.
-  std::vector<std::string> notices;   ///< Things worth knowing that are no errors.
+  std::vector<Error>
+      errors;  ///< Parts that failed while others succeeded; the first one makes the exit code.
+  std::vector<std::string> notices;  ///< Things worth knowing that are no errors.
 };
 
 struct Command {

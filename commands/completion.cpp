@@ -8,7 +8,11 @@ namespace {
 constexpr std::string_view kWhat[] = {"bash", "zsh", "fish", "objects", "parameters", "families"};
 
 constexpr Parameter kParameters[] = {
-    {.name = "what", .help = "a shell, or the names it asks for while you type", .kind = Kind::choice, .required = true, .choices = kWhat},
+    {.name = "what",
+     .help = "a shell, or the names it asks for while you type",
+     .kind = Kind::choice,
+     .required = true,
+     .choices = kWhat},
 };
 
 std::string lines(const std::vector<std::string>& words) {
@@ -25,7 +29,8 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
     return report::Value(lines(names));
   }
   if (what == "objects" || what == "parameters") {
-    if (context.profile == nullptr) return fail(Errc::usage, "whose names? A drive family is needed", "add -d FAMILY; `drives` lists them");
+    if (context.profile == nullptr)
+      return fail(Errc::usage, "whose names? A drive family is needed", "add -d FAMILY; `drives` lists them");
     if (what == "objects") return report::Value(lines(drive::names(*context.profile)));
     std::vector<std::string> ids;
     for (const auto& parameter : context.profile->parameters) ids.push_back(parameter.id);
@@ -42,9 +47,12 @@ extern const Command kCompletion;
 const Command kCompletion{
     .path = "completion",
     .summary = "Print the completion script of a shell",
-    .details = "bash: put `source <(servoctl completion bash)` into ~/.bashrc. zsh: `servoctl completion zsh > _servoctl` in a folder of "
-               "$fpath. fish: `servoctl completion fish > ~/.config/fish/completions/servoctl.fish`. An installed servoctl brings all "
-               "three.",
+    .details =
+        "bash: put `source <(servoctl completion bash)` into ~/.bashrc. zsh: `servoctl completion zsh > "
+        "_servoctl` in a folder of "
+        "$fpath. fish: `servoctl completion fish > ~/.config/fish/completions/servoctl.fish`. An installed "
+        "servoctl brings all "
+        "three.",
     .parameters = kParameters,
     .needs = Needs::nothing,
     .effect = Effect::none,

@@ -5,19 +5,26 @@ namespace {
 
 Result<report::Value> run(Context& context, const Arguments&) {
   report::Table table;
-  table.columns = {{"family"}, {"vendor"}, {"name_text", "name", report::Show::text}, {"name", "", report::Show::json}, {"name_zh", "", report::Show::json}, {"files"}};
+  table.columns = {{"family"},
+                   {"vendor"},
+                   {"name_text", "name", report::Show::text},
+                   {"name", "", report::Show::json},
+                   {"name_zh", "", report::Show::json},
+                   {"files"}};
   for (const auto& family : drive::find_families(context.drive_folders)) {
     const auto rules = drive::load_rules(family);
     const auto name = rules ? rules->name : std::string();
     const auto name_zh = rules ? rules->name_zh : std::string();
     table.rows.push_back({family.name, report::text_or_null(rules ? rules->vendor : std::string()),
-                          report::text_or_null(context.chinese && !name_zh.empty() ? name_zh : name), report::text_or_null(name),
-                          report::text_or_null(name_zh), family.stem.string()});
+                          report::text_or_null(context.chinese && !name_zh.empty() ? name_zh : name),
+                          report::text_or_null(name), report::text_or_null(name_zh), family.stem.string()});
   }
   if (table.rows.empty()) {
     std::string folders;
-    for (const auto& folder : context.drive_folders) folders += (folders.empty() ? "" : ", ") + folder.string();
-    return fail(Errc::file, "no drive data was found in " + folders, "set SERVOCTL_DRIVES to the folder that holds it");
+    for (const auto& folder : context.drive_folders)
+      folders += (folders.empty() ? "" : ", ") + folder.string();
+    return fail(Errc::file, "no drive data was found in " + folders,
+                "set SERVOCTL_DRIVES to the folder that holds it");
   }
   return report::Value(std::move(table));
 }
@@ -28,7 +35,9 @@ extern const Command kDrives;
 const Command kDrives{
     .path = "drives",
     .summary = "List the drive families servoctl knows",
-    .details = "Families of your own go into ~/.config/servoctl/drives or a folder of $SERVOCTL_DRIVES (docs/drive-data.md).",
+    .details =
+        "Families of your own go into ~/.config/servoctl/drives or a folder of $SERVOCTL_DRIVES "
+        "(docs/drive-data.md).",
     .parameters = {},
     .needs = Needs::nothing,
     .effect = Effect::none,

@@ -17,7 +17,8 @@ report::Record check(Context& context, const std::string& path, const od::EdsFil
   report::Table findings;
   findings.columns = {{"line"}, {"column", "", Show::json}, {"severity"}, {"rule"}, {"message"}, {"remedy"}};
   for (const auto& finding : file.diagnostics)
-    findings.rows.push_back({finding.line, finding.column, finding.severity == od::Severity::error ? "error" : "warning", finding.rule,
+    findings.rows.push_back({finding.line, finding.column,
+                             finding.severity == od::Severity::error ? "error" : "warning", finding.rule,
                              finding.message, finding.remedy});
   const auto errors = file.error_count();
   if (errors > 0) {
@@ -57,7 +58,9 @@ extern const Command kEdsCheck;
 const Command kEdsCheck{
     .path = "eds check",
     .summary = "Check EDS and DCF files against CiA 306",
-    .details = "Every finding has line, rule and remedy. Exit code 1 when there are errors; warnings alone are fine.",
+    .details =
+        "Every finding has line, rule and remedy. Exit code 1 when there are errors; warnings alone are "
+        "fine.",
     .parameters = kParameters,
     .needs = Needs::nothing,
     .effect = Effect::none,

@@ -1,7 +1,7 @@
 #include "commands/help.hpp"
 
-#include <algorithm>
 #include <fmt/format.h>
+#include <algorithm>
 
 #include "base/text.hpp"
 #include "commands/command.hpp"
@@ -10,12 +10,16 @@ namespace servoctl::commands {
 namespace {
 
 constexpr Parameter kParameters[] = {
-    {.name = "command", .help = "a command or a group: read, param, param set", .kind = Kind::command, .many = true},
+    {.name = "command",
+     .help = "a command or a group: read, param, param set",
+     .kind = Kind::command,
+     .many = true},
 };
 
 std::string upper(std::string_view text) {
   std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(), [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
+  std::transform(out.begin(), out.end(), out.begin(),
+                 [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
   return out;
 }
 
@@ -41,7 +45,8 @@ std::string wrapped(std::string_view text, std::size_t indent, std::size_t width
 }
 
 std::string option_words(const Parameter& parameter) {
-  std::string out = parameter.short_name.empty() ? std::string("    ") : std::string(parameter.short_name) + ", ";
+  std::string out =
+      parameter.short_name.empty() ? std::string("    ") : std::string(parameter.short_name) + ", ";
   out += parameter.name;
   if (parameter.kind != Kind::flag) out += " " + upper(parameter.name.substr(2));
   return out;
@@ -60,8 +65,10 @@ std::string rows(std::span<const Parameter> parameters, bool options, std::size_
 std::string command_help(const Command& command, std::size_t width) {
   auto out = fmt::format("servoctl {}\n\n{}.\n", usage_line(command.path), command.summary);
   if (!command.details.empty()) out += "\n" + wrapped(command.details, 0, width) + "\n";
-  if (const auto words = rows(command.parameters, false, width); !words.empty()) out += "\nArguments:\n" + words;
-  if (const auto options = rows(command.parameters, true, width); !options.empty()) out += "\nOptions:\n" + options;
+  if (const auto words = rows(command.parameters, false, width); !words.empty())
+    out += "\nArguments:\n" + words;
+  if (const auto options = rows(command.parameters, true, width); !options.empty())
+    out += "\nOptions:\n" + options;
   return out + "\nOptions of every command:\n" + rows(global_options(), true, width);
 }
 
@@ -110,11 +117,13 @@ Result<std::string> help_text(std::string_view path, std::size_t width) {
   const auto columns = width == 0 ? std::size_t{100} : std::clamp<std::size_t>(width, 40, 120);
   if (path.empty()) return program_help(columns);
   if (const auto* command = find_command(path)) return command_help(*command, columns);
-  if (const auto group = command_rows(path, columns); !group.empty()) return fmt::format("servoctl {} …\n\n{}", path, group);
+  if (const auto group = command_rows(path, columns); !group.empty())
+    return fmt::format("servoctl {} …\n\n{}", path, group);
   std::vector<std::string> names;
   for (const auto* command : registry()) names.emplace_back(command->path);
   auto hint = did_you_mean(path, names);
-  return fail(Errc::usage, fmt::format("'{}' is no command", path), hint.empty() ? "`help` lists the commands" : std::move(hint));
+  return fail(Errc::usage, fmt::format("'{}' is no command", path),
+              hint.empty() ? "`help` lists the commands" : std::move(hint));
 }
 
 extern const Command kHelp;

@@ -8,8 +8,8 @@
 
 namespace servoctl::commands {
 
-/// Help of one command, of a group (`param`), or of the program when `path` is empty, in at most `width` columns (0: 100).
-/// Errc::usage for an unknown name.
+/// Help of one command, of a group (`param`), or of the program when `path` is empty, in at most `width`
+/// columns (0: 100). Errc::usage for an unknown name.
 Result<std::string> help_text(std::string_view path, std::size_t width);
 
 /// `param set ASSIGNMENT… [options]`: how the command is written.

@@ -12,7 +12,8 @@ Value hex(std::optional<std::uint32_t> number) { return number ? Value(report::H
 
 Value guess_records(std::span<const session::Guess> guesses) {
   report::List out;
-  for (const auto& guess : guesses) out.emplace_back(report::Record{{"family", guess.family}, {"certain", guess.certain}});
+  for (const auto& guess : guesses)
+    out.emplace_back(report::Record{{"family", guess.family}, {"certain", guess.certain}});
   return out;
 }
 
@@ -27,7 +28,8 @@ std::string guess_text(std::span<const session::Guess> guesses) {
   return out;
 }
 
-report::Table identity_table(std::span<const session::Identity> nodes, std::span<const drive::Family> families) {
+report::Table identity_table(std::span<const session::Identity> nodes,
+                             std::span<const drive::Family> families) {
   using report::Show;
   report::Table table;
   table.columns = {{"node"},
@@ -45,9 +47,11 @@ report::Table identity_table(std::span<const session::Identity> nodes, std::span
   table.json_only = nodes.empty();
   for (const auto& node : nodes) {
     const auto guesses = session::guess_families(node, families);
-    table.rows.push_back({node.node, hex(node.device_type), hex(node.vendor_id), hex(node.product_code), hex(node.revision),
-                          hex(node.serial), report::text_or_null(node.device_name), report::text_or_null(node.hardware_version),
-                          report::text_or_null(node.software_version), node.nmt ? Value(canopen::name(*node.nmt)) : Value(),
+    table.rows.push_back({node.node, hex(node.device_type), hex(node.vendor_id), hex(node.product_code),
+                          hex(node.revision), hex(node.serial), report::text_or_null(node.device_name),
+                          report::text_or_null(node.hardware_version),
+                          report::text_or_null(node.software_version),
+                          node.nmt ? Value(canopen::name(*node.nmt)) : Value(),
                           report::text_or_null(guess_text(guesses)), guess_records(guesses)});
   }
   return table;

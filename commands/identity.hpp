@@ -12,6 +12,7 @@ namespace servoctl::commands {
 std::string guess_text(std::span<const session::Guess> guesses);
 
 /// Nodes with their identity and the families that fit.
-report::Table identity_table(std::span<const session::Identity> nodes, std::span<const drive::Family> families);
+report::Table identity_table(std::span<const session::Identity> nodes,
+                             std::span<const drive::Family> families);
 
 }  // namespace servoctl::commands

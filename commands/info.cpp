@@ -14,9 +14,13 @@ constexpr ObjectAddress kErrorRegister{0x1001, 0};
 constexpr ObjectAddress kHeartbeat{0x1017, 0};
 constexpr ObjectAddress kModes{0x6502, 0};
 
-Value optional_hex(std::optional<std::uint32_t> number) { return number ? Value(report::Hex{*number, 8}) : Value(); }
+Value optional_hex(std::optional<std::uint32_t> number) {
+  return number ? Value(report::Hex{*number, 8}) : Value();
+}
 
-Value optional_number(const Result<Bytes>& bytes) { return bytes && bytes->size() <= 8 ? Value(load_le(*bytes)) : Value(); }
+Value optional_number(const Result<Bytes>& bytes) {
+  return bytes && bytes->size() <= 8 ? Value(load_le(*bytes)) : Value();
+}
 
 /// Bits of 6502h in the abbreviations of CiA 402-2.
 Value modes_text(const Result<Bytes>& bytes) {
@@ -28,35 +32,40 @@ Value modes_text(const Result<Bytes>& bytes) {
   return out;
 }
 
-Value one(const session::Identity& node, std::span<const drive::Family> families, std::span<const Result<Bytes>> more,
-          const drive::Profile* profile, bool chinese) {
+Value one(const session::Identity& node, std::span<const drive::Family> families,
+          std::span<const Result<Bytes>> more, const drive::Profile* profile, bool chinese) {
   const auto guesses = session::guess_families(node, families);
-  Record out{{"node", node.node},
-             {"device_type", optional_hex(node.device_type), report::Show::everywhere, "device type"},
-             {"device_name", report::text_or_null(node.device_name), report::Show::everywhere, "device name"},
-             {"hardware_version", report::text_or_null(node.hardware_version), report::Show::everywhere, "hardware"},
-             {"software_version", report::text_or_null(node.software_version), report::Show::everywhere, "software"},
-             {"vendor_id", optional_hex(node.vendor_id), report::Show::everywhere, "vendor"},
-             {"product_code", optional_hex(node.product_code), report::Show::everywhere, "product"},
-             {"revision", optional_hex(node.revision)},
-             {"serial", optional_hex(node.serial)},
-             {"error_register", optional_number(more[0]), report::Show::everywhere, "error register"},
-             {"heartbeat_ms", optional_number(more[1]), report::Show::everywhere, "heartbeat (ms)"},
-             {"modes", modes_text(more[2])},
-             {"nmt", node.nmt ? Value(canopen::name(*node.nmt)) : Value()}};
+  Record out{
+      {"node", node.node},
+      {"device_type", optional_hex(node.device_type), report::Show::everywhere, "device type"},
+      {"device_name", report::text_or_null(node.device_name), report::Show::everywhere, "device name"},
+      {"hardware_version", report::text_or_null(node.hardware_version), report::Show::everywhere, "hardware"},
+      {"software_version", report::text_or_null(node.software_version), report::Show::everywhere, "software"},
+      {"vendor_id", optional_hex(node.vendor_id), report::Show::everywhere, "vendor"},
+      {"product_code", optional_hex(node.product_code), report::Show::everywhere, "product"},
+      {"revision", optional_hex(node.revision)},
+      {"serial", optional_hex(node.serial)},
+      {"error_register", optional_number(more[0]), report::Show::everywhere, "error register"},
+      {"heartbeat_ms", optional_number(more[1]), report::Show::everywhere, "heartbeat (ms)"},
+      {"modes", modes_text(more[2])},
+      {"nmt", node.nmt ? Value(canopen::name(*node.nmt)) : Value()}};
   if (profile != nullptr) {
     const auto& rules = profile->rules;
     const auto& name = chinese && !rules.name_zh.empty() ? rules.name_zh : rules.name;
     const auto maker = rules.vendor.empty() ? std::string() : rules.vendor + " ";
-    out.push_back({"family", fmt::format("{} ({}{}), as you said", profile->family, maker, name), report::Show::text});
+    out.push_back(
+        {"family", fmt::format("{} ({}{}), as you said", profile->family, maker, name), report::Show::text});
     out.push_back({"family", profile->family, report::Show::json});
   } else {
     const auto text = guess_text(guesses);
-    out.push_back({"family", text.empty() ? Value("none fits") : Value(text + "  (a guess by 1000h and 1018h: say -d FAMILY)"),
-                   report::Show::text});
+    out.push_back(
+        {"family",
+         text.empty() ? Value("none fits") : Value(text + "  (a guess by 1000h and 1018h: say -d FAMILY)"),
+         report::Show::text});
   }
   report::List all;
-  for (const auto& guess : guesses) all.emplace_back(Record{{"family", guess.family}, {"certain", guess.certain}});
+  for (const auto& guess : guesses)
+    all.emplace_back(Record{{"family", guess.family}, {"certain", guess.certain}});
   out.push_back({"families", all, report::Show::json});
   return out;
 }
@@ -66,14 +75,16 @@ Result<report::Value> run(Context& context, const Arguments&) {
   if (!found) return tl::unexpected<Error>(found.error());
   std::vector<session::SdoRequest> requests;
   for (const auto& node : *found)
-    for (const auto object : {kErrorRegister, kHeartbeat, kModes}) requests.push_back({node.node, object, {}});
+    for (const auto object : {kErrorRegister, kHeartbeat, kModes})
+      requests.push_back({node.node, object, {}});
   const auto answers = context.session->transfer(requests);
   const auto families = drive::find_families(context.drive_folders);
   report::List out;
   std::size_t at = 0;
   for (const auto node : context.nodes) {
     if (at < found->size() && (*found)[at].node == node) {
-      out.push_back(one((*found)[at], families, std::span(answers).subspan(3 * at, 3), context.profile, context.chinese));
+      out.push_back(one((*found)[at], families, std::span(answers).subspan(3 * at, 3), context.profile,
+                        context.chinese));
       ++at;
       continue;
     }
@@ -93,7 +104,8 @@ extern const Command kInfo;
 const Command kInfo{
     .path = "info",
     .summary = "Show the identity of a node",
-    .details = "Reads device type, name, versions, identity, error register, heartbeat time and supported modes.",
+    .details =
+        "Reads device type, name, versions, identity, error register, heartbeat time and supported modes.",
     .parameters = {},
     .needs = Needs::node,
     .effect = Effect::reads,

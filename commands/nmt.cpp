@@ -1,7 +1,7 @@
 #include "canopen/nmt.hpp"
 
-#include <algorithm>
 #include <fmt/format.h>
+#include <algorithm>
 
 #include "commands/command.hpp"
 
@@ -16,10 +16,14 @@ constexpr Duration kBootPatience = std::chrono::seconds(5);
 constexpr Duration kStatePatience = std::chrono::seconds(2);
 
 constexpr Parameter kParameters[] = {
-    {.name = "--wait", .help = "wait until a heartbeat or the boot-up message confirms it", .kind = Kind::flag},
+    {.name = "--wait",
+     .help = "wait until a heartbeat or the boot-up message confirms it",
+     .kind = Kind::flag},
 };
 
-bool is_reset(NmtCommand command) { return command == NmtCommand::reset_node || command == NmtCommand::reset_communication; }
+bool is_reset(NmtCommand command) {
+  return command == NmtCommand::reset_node || command == NmtCommand::reset_communication;
+}
 
 /// What was heard of one node before the command.
 struct Before {
@@ -40,7 +44,8 @@ Duration longest_period(Context& context) {
   for (const auto node : context.nodes) requests.push_back({node, kHeartbeat, {}});
   Duration longest{};
   for (const auto& answer : context.session->transfer(requests))
-    if (answer && answer->size() <= 8) longest = std::max<Duration>(longest, std::chrono::milliseconds(load_le(*answer)));
+    if (answer && answer->size() <= 8)
+      longest = std::max<Duration>(longest, std::chrono::milliseconds(load_le(*answer)));
   return longest;
 }
 
@@ -50,7 +55,8 @@ Error unconfirmed(std::uint8_t node, NmtCommand command, Duration period) {
   error.node = node;
   error.message = fmt::format("node {}: '{}' was sent, nothing confirms it", node, canopen::name(command));
   if (is_reset(command))
-    error.hint = "no boot-up message came: it may restart under another node-ID or bitrate; `scan` shows who is there";
+    error.hint =
+        "no boot-up message came: it may restart under another node-ID or bitrate; `scan` shows who is there";
   else if (period == Duration::zero())
     error.hint = fmt::format("the node sends no heartbeat: `write 0x1017 500 -n {}` switches it on", node);
   else
@@ -58,7 +64,8 @@ Error unconfirmed(std::uint8_t node, NmtCommand command, Duration period) {
   return error;
 }
 
-report::Table result_table(Context& context, std::span<const Before> before, NmtCommand command, bool waited) {
+report::Table result_table(Context& context, std::span<const Before> before, NmtCommand command,
+                           bool waited) {
   report::Table table;
   table.columns = {{"node"}, {"command"}, {"confirmed"}, {"state"}};
   for (const auto& entry : before) {
@@ -74,34 +81,44 @@ Result<report::Value> run(Context& context, const Arguments& arguments, NmtComma
   if (context.dry_run) {
     report::Table table;
     table.columns = {{"node"}, {"frame"}};
-    for (const auto node : context.nodes) table.rows.push_back({node, can::to_string(canopen::nmt_frame(command, node))});
+    for (const auto node : context.nodes)
+      table.rows.push_back({node, can::to_string(canopen::nmt_frame(command, node))});
     return report::Value(std::move(table));
   }
   const bool all = context.nodes.front() == 0;
   const bool wait = arguments.has("--wait");
   if (wait && all)
-    return fail(Errc::usage, "--wait needs node-IDs: `all` does not say whose answer to wait for", "for example -n 1,2,3");
+    return fail(Errc::usage, "--wait needs node-IDs: `all` does not say whose answer to wait for",
+                "for example -n 1,2,3");
   if (is_reset(command)) {
-    const auto whom = all ? std::string("all nodes") : context.nodes.size() == 1 ? fmt::format("node {}", context.nodes.front()) : fmt::format("{} nodes", context.nodes.size());
-    if (const auto answer = context.confirm(fmt::format("Reset {}? Drives restart and a moving axis loses its control.", whom)); !answer)
+    const auto whom = all                         ? std::string("all nodes")
+                      : context.nodes.size() == 1 ? fmt::format("node {}", context.nodes.front())
+                                                  : fmt::format("{} nodes", context.nodes.size());
+    if (const auto answer = context.confirm(
+            fmt::format("Reset {}? Drives restart and a moving axis loses its control.", whom));
+        !answer)
       return tl::unexpected<Error>(answer.error());
   }
   const auto period = wait && !is_reset(command) ? longest_period(context) : Duration::zero();
   std::vector<Before> before;
   for (const auto node : context.nodes) {
     before.push_back({node, context.session->watch().boots(node), context.session->watch().heartbeats(node)});
-    if (const auto sent = context.session->send(canopen::nmt_frame(command, node)); !sent) return tl::unexpected<Error>(sent.error());
+    if (const auto sent = context.session->send(canopen::nmt_frame(command, node)); !sent)
+      return tl::unexpected<Error>(sent.error());
   }
   if (!wait) return report::Value(result_table(context, before, command, false));
   const auto done = [&] {
-    return std::all_of(before.begin(), before.end(), [&](const Before& b) { return confirmed(*context.session, b, command); });
+    return std::all_of(before.begin(), before.end(),
+                       [&](const Before& b) { return confirmed(*context.session, b, command); });
   };
   const bool hopeless = !is_reset(command) && period == Duration::zero();
   const auto patience = is_reset(command) ? kBootPatience : std::max(kStatePatience, 2 * period);
-  const auto waited = context.session->wait(done, context.session->now() + (hopeless ? Duration::zero() : patience));
+  const auto waited =
+      context.session->wait(done, context.session->now() + (hopeless ? Duration::zero() : patience));
   if (!waited) return tl::unexpected<Error>(waited.error());
   for (const auto& entry : before)
-    if (!confirmed(*context.session, entry, command)) context.errors.push_back(unconfirmed(entry.node, command, period));
+    if (!confirmed(*context.session, entry, command))
+      context.errors.push_back(unconfirmed(entry.node, command, period));
   return report::Value(result_table(context, before, command, true));
 }
 
@@ -111,7 +128,8 @@ Result<report::Value> run_command(Context& context, const Arguments& arguments) 
 }
 
 constexpr std::string_view kDetails =
-    "The command is sent once and is not answered by nodes. With --wait it counts as done when a heartbeat (or, after a reset, the "
+    "The command is sent once and is not answered by nodes. With --wait it counts as done when a heartbeat "
+    "(or, after a reset, the "
     "boot-up message) confirms it; exit code 4 when nothing does. `-n all` addresses every node.";
 
 }  // namespace

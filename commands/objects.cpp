@@ -18,7 +18,8 @@ Value default_of(const std::optional<od::NodeValue>& value) {
   if (!value) return {};
   if (!value->plus_node_id) return od_value(value->value);
   const auto* number = std::get_if<std::uint64_t>(&value->value);
-  return number != nullptr ? fmt::format("$NODEID+0x{:X}", *number) : "$NODEID+" + od::to_string(value->value);
+  return number != nullptr ? fmt::format("$NODEID+0x{:X}", *number)
+                           : "$NODEID+" + od::to_string(value->value);
 }
 
 bool wanted(std::string_view pattern, const od::Object& object, const od::Entry& entry) {
@@ -26,7 +27,8 @@ bool wanted(std::string_view pattern, const od::Object& object, const od::Entry&
   const auto address = to_string(entry.address);
   const auto name = object.name + " " + entry.name + " " + drive::entry_name(object, entry);
   if (pattern.find('*') != std::string_view::npos)
-    return fits(pattern, address) || fits(pattern, entry.name) || fits(pattern, drive::entry_name(object, entry));
+    return fits(pattern, address) || fits(pattern, entry.name) ||
+           fits(pattern, drive::entry_name(object, entry));
   if (const auto exact = parse_object_address(pattern)) return exact->index == entry.address.index;
   return contains_nocase(name, pattern) || contains_nocase(entry.name_zh, pattern);
 }
@@ -40,21 +42,53 @@ report::List row(const Context& context, const od::Object& object, const od::Ent
   const auto shown = context.chinese && !name_zh.empty() ? name_zh : entry.name;
   static const std::vector<od::EnumLabel> kNone;
   const auto& labels = meaning.labels != nullptr ? *meaning.labels : kNone;
-  const auto unit = meaning.scale == 1 ? std::string(meaning.unit) : fmt::format("{:g} {}", meaning.scale, meaning.unit);
-  return {to_string(entry.address), shown, od::name(entry.type), od::name(entry.access), od::name(entry.pdo), unit, default_of(entry.default_value),
-          entry.address.index, entry.address.sub, entry.name, report::text_or_null(name_zh),
-          drive::entry_name(object, entry), report::text_or_null(std::string(meaning.unit)), meaning.scale, default_of(entry.low), default_of(entry.high),
-          report::text_or_null(std::string(od::name(meaning.effect))), labels_record(labels, false), report::text_or_null(parameter != nullptr ? parameter->note : entry.note),
+  const auto unit =
+      meaning.scale == 1 ? std::string(meaning.unit) : fmt::format("{:g} {}", meaning.scale, meaning.unit);
+  return {to_string(entry.address),
+          shown,
+          od::name(entry.type),
+          od::name(entry.access),
+          od::name(entry.pdo),
+          unit,
+          default_of(entry.default_value),
+          entry.address.index,
+          entry.address.sub,
+          entry.name,
+          report::text_or_null(name_zh),
+          drive::entry_name(object, entry),
+          report::text_or_null(std::string(meaning.unit)),
+          meaning.scale,
+          default_of(entry.low),
+          default_of(entry.high),
+          report::text_or_null(std::string(od::name(meaning.effect))),
+          labels_record(labels, false),
+          report::text_or_null(parameter != nullptr ? parameter->note : entry.note),
           parameter != nullptr ? Value(parameter->id) : Value(),
           !(parameter != nullptr ? parameter->assumed : entry.assumed).empty()};
 }
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   report::Table table;
-  table.columns = {{"object", "", Show::text}, {"name_text", "name", Show::text}, {"type"}, {"access"}, {"pdo"}, {"unit_text", "unit", Show::text},
-                   {"default"}, {"index", "", Show::json}, {"sub", "", Show::json}, {"name", "", Show::json}, {"name_zh", "", Show::json},
-                   {"identifier", "", Show::json}, {"unit", "", Show::json}, {"scale", "", Show::json}, {"min", "", Show::json}, {"max", "", Show::json},
-                   {"effect", "", Show::json}, {"enum", "", Show::json}, {"note", "", Show::json}, {"parameter", "", Show::json},
+  table.columns = {{"object", "", Show::text},
+                   {"name_text", "name", Show::text},
+                   {"type"},
+                   {"access"},
+                   {"pdo"},
+                   {"unit_text", "unit", Show::text},
+                   {"default"},
+                   {"index", "", Show::json},
+                   {"sub", "", Show::json},
+                   {"name", "", Show::json},
+                   {"name_zh", "", Show::json},
+                   {"identifier", "", Show::json},
+                   {"unit", "", Show::json},
+                   {"scale", "", Show::json},
+                   {"min", "", Show::json},
+                   {"max", "", Show::json},
+                   {"effect", "", Show::json},
+                   {"enum", "", Show::json},
+                   {"note", "", Show::json},
+                   {"parameter", "", Show::json},
                    {"assumed", "", Show::json}};
   const auto pattern = arguments.text("pattern");
   for (const auto& object : context.profile->dictionary.objects())
@@ -72,7 +106,9 @@ extern const Command kObjects;
 const Command kObjects{
     .path = "objects",
     .summary = "List the object dictionary of a drive family",
-    .details = "Works without a bus. The pattern is part of a name in English or Chinese, an index, or a form with `*`.",
+    .details =
+        "Works without a bus. The pattern is part of a name in English or Chinese, an index, or a form with "
+        "`*`.",
     .parameters = kParameters,
     .needs = Needs::dictionary,
     .effect = Effect::none,

@@ -7,10 +7,15 @@ namespace servoctl::commands {
 namespace {
 
 constexpr Parameter kParameters[] = {
-    {.name = "id", .help = "panel numbers: Pn0202, Pn02*, or a name", .kind = Kind::parameter, .required = true, .many = true},
+    {.name = "id",
+     .help = "panel numbers: Pn0202, Pn02*, or a name",
+     .kind = Kind::parameter,
+     .required = true,
+     .many = true},
 };
 
-Result<std::vector<const od::Parameter*>> wanted(const drive::Profile& profile, std::span<const std::string> words) {
+Result<std::vector<const od::Parameter*>> wanted(const drive::Profile& profile,
+                                                 std::span<const std::string> words) {
   std::vector<const od::Parameter*> out;
   for (const auto& word : words) {
     if (word.find('*') == std::string::npos) {
@@ -21,8 +26,11 @@ Result<std::vector<const od::Parameter*>> wanted(const drive::Profile& profile, 
     }
     const auto before = out.size();
     for (const auto& parameter : profile.parameters)
-      if (fits(word, parameter.id) && parameter.object && od::readable(parameter.access)) out.push_back(&parameter);
-    if (out.size() == before) return fail(Errc::usage, fmt::format("no readable parameter fits '{}'", word), "`param list` shows all");
+      if (fits(word, parameter.id) && parameter.object && od::readable(parameter.access))
+        out.push_back(&parameter);
+    if (out.size() == before)
+      return fail(Errc::usage, fmt::format("no readable parameter fits '{}'", word),
+                  "`param list` shows all");
   }
   return out;
 }
@@ -37,7 +45,8 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
       const auto target = drive::resolve(context.profile, parameter->id);
       if (!target) return tl::unexpected<Error>(target.error());
       if (!od::readable(parameter->access))
-        return fail(Errc::usage, fmt::format("{} ({}) is write-only", parameter->id, parameter->name), "`param set` writes it");
+        return fail(Errc::usage, fmt::format("{} ({}) is write-only", parameter->id, parameter->name),
+                    "`param set` writes it");
       readings.push_back({node, *target, {}, Bytes{}});
       requests.push_back({node, target->address, {}});
     }
@@ -53,8 +62,10 @@ extern const Command kParamGet;
 const Command kParamGet{
     .path = "param get",
     .summary = "Read panel parameters of a drive",
-    .details = "`Pn02*` reads all that fit. The value is the number the panel shows; where one step is not one unit, the value in "
-               "units stands behind it. In JSON `raw` is the panel's number and `value` is in `unit`.",
+    .details =
+        "`Pn02*` reads all that fit. The value is the number the panel shows; where one step is not one "
+        "unit, the value in "
+        "units stands behind it. In JSON `raw` is the panel's number and `value` is in `unit`.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::reads,

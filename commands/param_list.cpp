@@ -22,8 +22,9 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
       found.push_back(&parameter);
   }
   if (found.empty())
-    return fail(Errc::negative, fmt::format("no parameter of {} fits '{}'", context.profile->family, pattern),
-                groups.empty() ? "this family has no table of panel parameters" : "groups: " + one_of(groups));
+    return fail(
+        Errc::negative, fmt::format("no parameter of {} fits '{}'", context.profile->family, pattern),
+        groups.empty() ? "this family has no table of panel parameters" : "groups: " + one_of(groups));
   return report::Value(parameter_table(found, context.chinese));
 }
 
@@ -33,8 +34,10 @@ extern const Command kParamList;
 const Command kParamList{
     .path = "param list",
     .summary = "List the panel parameters of a drive family",
-    .details = "Works without a bus. Range and default are the numbers the panel shows; one step of them is what the unit column "
-               "says.",
+    .details =
+        "Works without a bus. Range and default are the numbers the panel shows; one step of them is what "
+        "the unit column "
+        "says.",
     .parameters = kParameters,
     .needs = Needs::dictionary,
     .effect = Effect::none,

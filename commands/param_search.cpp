@@ -1,5 +1,5 @@
-#include <algorithm>
 #include <fmt/format.h>
+#include <algorithm>
 
 #include "commands/command.hpp"
 #include "commands/records.hpp"
@@ -8,12 +8,17 @@ namespace servoctl::commands {
 namespace {
 
 constexpr Parameter kParameters[] = {
-    {.name = "word", .help = "one or more words, English or Chinese; all must occur", .kind = Kind::text, .required = true, .many = true},
+    {.name = "word",
+     .help = "one or more words, English or Chinese; all must occur",
+     .kind = Kind::text,
+     .required = true,
+     .many = true},
 };
 
 /// How well the parameter fits one word: 0 in its number or name, 1 in a label, 2 in the note, 3 not at all.
 int rank(const od::Parameter& p, std::string_view word) {
-  if (contains_nocase(p.id, word) || contains_nocase(p.name, word) || contains_nocase(p.name_zh, word)) return 0;
+  if (contains_nocase(p.id, word) || contains_nocase(p.name, word) || contains_nocase(p.name_zh, word))
+    return 0;
   for (const auto& label : p.labels)
     if (contains_nocase(label.label, word) || contains_nocase(label.label_zh, word)) return 1;
   return contains_nocase(p.note, word) || contains_nocase(p.note_zh, word) ? 2 : 3;
@@ -28,11 +33,13 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
     for (const auto& word : arguments.all("word")) worst = std::max(worst, rank(parameter, word));
     if (worst < 3) found.emplace_back(worst, &parameter);
   }
-  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<const od::Parameter*> best;
   for (const auto& entry : found) best.push_back(entry.second);
   if (best.empty())
-    return fail(Errc::negative, fmt::format("no parameter of {} speaks of '{}'", context.profile->family, said),
+    return fail(Errc::negative,
+                fmt::format("no parameter of {} speaks of '{}'", context.profile->family, said),
                 "try a shorter word, or the Chinese or English one");
   return report::Value(parameter_table(best, context.chinese));
 }
@@ -43,7 +50,8 @@ extern const Command kParamSearch;
 const Command kParamSearch{
     .path = "param search",
     .summary = "Find panel parameters by words, in English or Chinese",
-    .details = "Looks in numbers, names, labels and notes; those that fit by name come first. Works without a bus.",
+    .details =
+        "Looks in numbers, names, labels and notes; those that fit by name come first. Works without a bus.",
     .parameters = kParameters,
     .needs = Needs::dictionary,
     .effect = Effect::none,

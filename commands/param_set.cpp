@@ -1,5 +1,5 @@
-#include <algorithm>
 #include <fmt/format.h>
+#include <algorithm>
 
 #include "commands/change.hpp"
 
@@ -7,7 +7,11 @@ namespace servoctl::commands {
 namespace {
 
 constexpr Parameter kParameters[] = {
-    {.name = "assignment", .help = "ID VALUE, or ID=VALUE ID=VALUE …", .kind = Kind::parameter, .required = true, .many = true},
+    {.name = "assignment",
+     .help = "ID VALUE, or ID=VALUE ID=VALUE …",
+     .kind = Kind::parameter,
+     .required = true,
+     .many = true},
 };
 
 struct Assignment {
@@ -24,7 +28,8 @@ Result<std::vector<Assignment>> parse_assignments(std::span<const std::string> w
   for (const auto& word : words) {
     const auto equals = word.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == word.size())
-      return fail(Errc::usage, fmt::format("'{}' is no assignment", word), "write `param set Pn0202 2` or `param set Pn0202=2 Pn0215=800`");
+      return fail(Errc::usage, fmt::format("'{}' is no assignment", word),
+                  "write `param set Pn0202 2` or `param set Pn0202=2 Pn0215=800`");
     out.push_back({std::string_view(word).substr(0, equals), std::string_view(word).substr(equals + 1)});
   }
   return out;
@@ -46,9 +51,11 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
     }
   }
   if (context.dry_run) return planned_frames(changes);
-  if (const auto confirmed = confirm_changes(context, changes); !confirmed) return tl::unexpected<Error>(confirmed.error());
+  if (const auto confirmed = confirm_changes(context, changes); !confirmed)
+    return tl::unexpected<Error>(confirmed.error());
   // A write-only parameter starts an action and has nothing to read back.
-  const bool readable = std::all_of(changes.begin(), changes.end(), [](const Change& c) { return od::readable(c.target.parameter->access); });
+  const bool readable = std::all_of(changes.begin(), changes.end(),
+                                    [](const Change& c) { return od::readable(c.target.parameter->access); });
   return write_changes(context, changes, readable);
 }
 
@@ -58,9 +65,12 @@ extern const Command kParamSet;
 const Command kParamSet{
     .path = "param set",
     .summary = "Change panel parameters of a drive and read them back",
-    .details = "All values are checked before the first frame. A plain number is the number the panel shows (Pn0214 400), a number with "
-               "a unit is converted (Pn0214 40Hz), a label stands for its value. Stops at the first refusal. The answer tells "
-               "whether the value was read back and when it takes effect.",
+    .details =
+        "All values are checked before the first frame. A plain number is the number the panel shows (Pn0214 "
+        "400), a number with "
+        "a unit is converted (Pn0214 40Hz), a label stands for its value. Stops at the first refusal. The "
+        "answer tells "
+        "whether the value was read back and when it takes effect.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::writes,

@@ -6,8 +6,15 @@ namespace servoctl::commands {
 namespace {
 
 constexpr Parameter kParameters[] = {
-    {.name = "object", .help = "0x6041, 6099h.1, statusword, Pn0202", .kind = Kind::object, .required = true, .many = true},
-    {.name = "--type", .help = "data type, when the dictionary does not know it", .kind = Kind::type, .choices = kTypeNames},
+    {.name = "object",
+     .help = "0x6041, 6099h.1, statusword, Pn0202",
+     .kind = Kind::object,
+     .required = true,
+     .many = true},
+    {.name = "--type",
+     .help = "data type, when the dictionary does not know it",
+     .kind = Kind::type,
+     .choices = kTypeNames},
 };
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
@@ -36,8 +43,10 @@ extern const Command kRead;
 const Command kRead{
     .path = "read",
     .summary = "Read objects of a node",
-    .details = "Without --drive only addresses are understood, and the value is shown as an unsigned number of its length. Index and "
-               "sub-index are hexadecimal.",
+    .details =
+        "Without --drive only addresses are understood, and the value is shown as an unsigned number of its "
+        "length. Index and "
+        "sub-index are hexadecimal.",
     .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::reads,

@@ -1,7 +1,7 @@
 #include "commands/records.hpp"
 
-#include <algorithm>
 #include <fmt/format.h>
+#include <algorithm>
 
 #include "base/text.hpp"
 #include "canopen/sdo_abort.hpp"
@@ -48,7 +48,8 @@ std::string unit_text(std::string_view unit, double scale) {
 
 std::string range_of(const od::Parameter& p) {
   if (!p.min && !p.max) return {};
-  return (p.min ? od::to_string(*p.min) : std::string()) + ".." + (p.max ? od::to_string(*p.max) : std::string());
+  return (p.min ? od::to_string(*p.min) : std::string()) + ".." +
+         (p.max ? od::to_string(*p.max) : std::string());
 }
 
 /// Columns of a decoded value: value, unit, label, hex; type and raw bytes for JSON.
@@ -98,9 +99,11 @@ List reading_row(const Reading& reading, bool chinese) {
   else
     row.emplace_back();
   if (!reading.bytes) {
-    const auto type = reading.type ? std::optional(*reading.type) : target.entry != nullptr ? std::optional(target.entry->type) : std::nullopt;
-    row.insert(row.end(), {Value("-"), type ? Value(od::name(*type)) : Value(), Value(), Value(), Value(), Value(), Value(),
-                           Value(), Value(), error_record(reading.bytes.error())});
+    const auto type = reading.type              ? std::optional(*reading.type)
+                      : target.entry != nullptr ? std::optional(target.entry->type)
+                                                : std::nullopt;
+    row.insert(row.end(), {Value("-"), type ? Value(od::name(*type)) : Value(), Value(), Value(), Value(),
+                           Value(), Value(), Value(), Value(), error_record(reading.bytes.error())});
     return row;
   }
   const auto& bytes = *reading.bytes;
@@ -110,9 +113,9 @@ List reading_row(const Reading& reading, bool chinese) {
   Value hex;
   if (number) hex = fmt::format("0x{:0{}X}", load_le(bytes), bytes.size() * 2);
   const auto label = chinese && !decoded.label_zh.is_null() ? decoded.label_zh : decoded.label;
-  row.insert(row.end(), {Value(decoded.text), Value(decoded.type), decoded.value, decoded.raw, report::text_or_null(decoded.unit),
-                         label.is_null() ? Value("") : label, decoded.label, hex.is_null() ? Value("") : hex,
-                         Value(to_hex(bytes)), Value()});
+  row.insert(row.end(), {Value(decoded.text), Value(decoded.type), decoded.value, decoded.raw,
+                         report::text_or_null(decoded.unit), label.is_null() ? Value("") : label,
+                         decoded.label, hex.is_null() ? Value("") : hex, Value(to_hex(bytes)), Value()});
   return row;
 }
 
@@ -169,7 +172,9 @@ Record parameter_record(const od::Parameter& p, bool chinese) {
           {"enum_zh", labels_record(p.labels, true), Show::json},
           {"flags", p.command || p.is_volatile || p.mirror ? Value(flags_of(p)) : Value(), Show::text},
           {"flags", words(flags_of(p)), Show::json},
-          {"assumed", report::text_or_null(p.assumed.empty() ? "" : p.assumed + " (the manual does not state it)"), Show::text},
+          {"assumed",
+           report::text_or_null(p.assumed.empty() ? "" : p.assumed + " (the manual does not state it)"),
+           Show::text},
           {"assumed", !p.assumed.empty(), Show::json},
           {"note", report::text_or_null(shown_name(p.note, p.note_zh, chinese)), Show::text},
           {"note", report::text_or_null(p.note), Show::json},
@@ -179,12 +184,18 @@ Record parameter_record(const od::Parameter& p, bool chinese) {
 
 Table parameter_table(std::span<const od::Parameter* const> parameters, bool chinese) {
   Table table;
-  table.columns = {{"id", "", Show::text},      {"name", "", Show::text},   {"range", "", Show::text}, {"default", "", Show::text},
-                   {"unit", "", Show::text},    {"access", "", Show::text}, {"effect", "", Show::text}};
+  table.columns = {{"id", "", Show::text},      {"name", "", Show::text}, {"range", "", Show::text},
+                   {"default", "", Show::text}, {"unit", "", Show::text}, {"access", "", Show::text},
+                   {"effect", "", Show::text}};
   bool first = true;
   for (const auto* p : parameters) {
-    List row{p->id, shown_name(p->name, p->name_zh, chinese), range_of(*p), od_value(p->default_value),
-             unit_text(p->unit, p->scale), od::name(p->access), od::name(p->effect)};
+    List row{p->id,
+             shown_name(p->name, p->name_zh, chinese),
+             range_of(*p),
+             od_value(p->default_value),
+             unit_text(p->unit, p->scale),
+             od::name(p->access),
+             od::name(p->effect)};
     for (auto& field : parameter_record(*p, chinese)) {
       if (field.show == Show::text) continue;
       if (first) table.columns.push_back({field.key, "", Show::json});
@@ -201,7 +212,8 @@ od::DataType type_of(const Reading& reading, ByteSpan bytes) {
   const auto meaning = drive::meaning(reading.target, reading.node);
   if (meaning.type_known) return meaning.type;
   const auto index = reading.target.address.index;
-  if (index >= 0x1008 && index <= 0x100A) return od::DataType::string;  // CiA 301, 7.5.2: device name and versions.
+  if (index >= 0x1008 && index <= 0x100A)
+    return od::DataType::string;  // CiA 301, 7.5.2: device name and versions.
   switch (bytes.size()) {
     case 1: return od::DataType::u8;
     case 2: return od::DataType::u16;
@@ -209,7 +221,8 @@ od::DataType type_of(const Reading& reading, ByteSpan bytes) {
     case 8: return od::DataType::u64;
     default: break;
   }
-  const bool printable = !bytes.empty() && std::all_of(bytes.begin(), bytes.end(), [](std::uint8_t b) { return b == 0 || b >= 0x20; });
+  const bool printable = !bytes.empty() && std::all_of(bytes.begin(), bytes.end(),
+                                                       [](std::uint8_t b) { return b == 0 || b >= 0x20; });
   return printable ? od::DataType::string : od::DataType::bytes;
 }
 
@@ -235,7 +248,8 @@ Table reading_table(Context& context, std::span<const Reading> readings) {
     table.rows.push_back(reading_row(reading, context.chinese));
     if (!reading.bytes) context.errors.push_back(reading.bytes.error());
   }
-  table.json_only = std::none_of(readings.begin(), readings.end(), [](const Reading& r) { return r.bytes.has_value(); });
+  table.json_only =
+      std::none_of(readings.begin(), readings.end(), [](const Reading& r) { return r.bytes.has_value(); });
   return table;
 }
 
@@ -245,7 +259,9 @@ Error located(Error error, std::uint8_t node, ObjectAddress object) {
   return error;
 }
 
-bool contains_nocase(std::string_view text, std::string_view word) { return lower(text).find(lower(word)) != std::string::npos; }
+bool contains_nocase(std::string_view text, std::string_view word) {
+  return lower(text).find(lower(word)) != std::string::npos;
+}
 
 bool fits(std::string_view pattern, std::string_view text) {
   if (pattern.empty()) return text.empty();
@@ -254,7 +270,8 @@ bool fits(std::string_view pattern, std::string_view text) {
       if (fits(pattern.substr(1), text.substr(skip))) return true;
     return false;
   }
-  return !text.empty() && equals_nocase(pattern.substr(0, 1), text.substr(0, 1)) && fits(pattern.substr(1), text.substr(1));
+  return !text.empty() && equals_nocase(pattern.substr(0, 1), text.substr(0, 1)) &&
+         fits(pattern.substr(1), text.substr(1));
 }
 
 }  // namespace servoctl::commands

@@ -33,14 +33,32 @@ constexpr std::string_view kLanguages[] = {"en", "zh"};
 constexpr std::string_view kFormats[] = {"text", "json", "jsonl"};
 
 constexpr Parameter kGlobal[] = {
-    {.name = "--bus", .help = "bus: can0, local:NAME, sim:gsd600@1 (default $SERVOCTL_BUS)", .kind = Kind::bus, .short_name = "-b"},
-    {.name = "--node", .help = "node-ID, a list 1,3,5-8 or all (default $SERVOCTL_NODE)", .kind = Kind::nodes, .short_name = "-n"},
-    {.name = "--drive", .help = "drive family or an .eds file (default $SERVOCTL_DRIVE)", .kind = Kind::family, .short_name = "-d"},
+    {.name = "--bus",
+     .help = "bus: can0, local:NAME, sim:gsd600@1 (default $SERVOCTL_BUS)",
+     .kind = Kind::bus,
+     .short_name = "-b"},
+    {.name = "--node",
+     .help = "node-ID, a list 1,3,5-8 or all (default $SERVOCTL_NODE)",
+     .kind = Kind::nodes,
+     .short_name = "-n"},
+    {.name = "--drive",
+     .help = "drive family or an .eds file (default $SERVOCTL_DRIVE)",
+     .kind = Kind::family,
+     .short_name = "-d"},
     {.name = "--timeout", .help = "longest wait for one answer (default 500ms)", .kind = Kind::duration},
-    {.name = "--retries", .help = "further tries of a read without answer (default 1); a write is never repeated", .kind = Kind::number},
+    {.name = "--retries",
+     .help = "further tries of a read without answer (default 1); a write is never repeated",
+     .kind = Kind::number},
     {.name = "--json", .help = "one JSON document instead of text", .kind = Kind::flag},
-    {.name = "--output", .help = "text, json, or jsonl for one document a sample", .kind = Kind::choice, .choices = kFormats, .short_name = "-o"},
-    {.name = "--lang", .help = "language of names: en or zh (default $SERVOCTL_LANG)", .kind = Kind::choice, .choices = kLanguages},
+    {.name = "--output",
+     .help = "text, json, or jsonl for one document a sample",
+     .kind = Kind::choice,
+     .choices = kFormats,
+     .short_name = "-o"},
+    {.name = "--lang",
+     .help = "language of names: en or zh (default $SERVOCTL_LANG)",
+     .kind = Kind::choice,
+     .choices = kLanguages},
     {.name = "--yes", .help = "answer yes to what would be asked", .kind = Kind::flag, .short_name = "-y"},
     {.name = "--read-only", .help = "refuse everything that changes a drive", .kind = Kind::flag},
     {.name = "--dry-run", .help = "show the frames, send nothing that changes a drive", .kind = Kind::flag},
@@ -52,9 +70,10 @@ constexpr Parameter kGlobal[] = {
 
 std::span<const Command* const> registry() {
   static constexpr const Command* kAll[] = {
-      &kScan,       &kInfo,        &kStatus,     &kRead,     &kWrite,    &kObjects,  &kParamList,    &kParamGet,
-      &kParamSet,   &kParamSearch, &kParamExplain, &kFaultList, &kNmtStart, &kNmtStop, &kNmtPreop,    &kNmtReset,
-      &kNmtResetComm, &kDrives,    &kEdsCheck,   &kSim,      &kCompletion, &kHelp,
+      &kScan,      &kInfo,     &kStatus,     &kRead,        &kWrite,        &kObjects,
+      &kParamList, &kParamGet, &kParamSet,   &kParamSearch, &kParamExplain, &kFaultList,
+      &kNmtStart,  &kNmtStop,  &kNmtPreop,   &kNmtReset,    &kNmtResetComm, &kDrives,
+      &kEdsCheck,  &kSim,      &kCompletion, &kHelp,
   };
   return kAll;
 }

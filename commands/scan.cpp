@@ -21,8 +21,10 @@ Result<report::Value> run(Context& context, const Arguments&) {
     Error error;
     error.code = Errc::timeout;
     error.message = "no node answered on " + context.session->url();
-    error.hint = "check power, cable, 120 ohm at both ends, and that the interface runs at the drives' bitrate; a stopped node "
-                 "does not answer: `nmt preop -n all`";
+    error.hint =
+        "check power, cable, 120 ohm at both ends, and that the interface runs at the drives' bitrate; a "
+        "stopped node "
+        "does not answer: `nmt preop -n all`";
     context.errors.push_back(std::move(error));
   }
   return report::Value(identity_table(*found, drive::find_families(context.drive_folders)));
@@ -34,8 +36,11 @@ extern const Command kScan;
 const Command kScan{
     .path = "scan",
     .summary = "Find the nodes on the bus and what they are",
-    .details = "Asks the nodes 1 to 127, or those of --node, for object 1000h at the same time: the answer takes one timeout "
-               "however many there are. Families are guessed from the identity; `?` marks a guess that the identity cannot prove.",
+    .details =
+        "Asks the nodes 1 to 127, or those of --node, for object 1000h at the same time: the answer takes "
+        "one timeout "
+        "however many there are. Families are guessed from the identity; `?` marks a guess that the identity "
+        "cannot prove.",
     .parameters = {},
     .needs = Needs::bus,
     .effect = Effect::reads,

@@ -51,7 +51,8 @@ std::string all_value_options() {
   for (const auto* command : registry())
     if (const auto own = options_of(command->parameters, true); !own.empty())
       for (const auto word : split(own, ' '))
-        if ((" " + out + " ").find(" " + std::string(word) + " ") == std::string::npos) out += " " + std::string(word);
+        if ((" " + out + " ").find(" " + std::string(word) + " ") == std::string::npos)
+          out += " " + std::string(word);
   return out;
 }
 
@@ -79,9 +80,12 @@ std::string option_cases(std::string_view indent, std::string_view variable) {
   std::string out;
   std::string seen = " ";
   const auto add = [&](const Parameter& p) {
-    if (!p.name.starts_with("-") || p.kind == Kind::flag || seen.find(" " + std::string(p.name) + " ") != std::string::npos) return;
+    if (!p.name.starts_with("-") || p.kind == Kind::flag ||
+        seen.find(" " + std::string(p.name) + " ") != std::string::npos)
+      return;
     seen += std::string(p.name) + " ";
-    const auto names = p.short_name.empty() ? std::string(p.name) : fmt::format("{}|{}", p.short_name, p.name);
+    const auto names =
+        p.short_name.empty() ? std::string(p.name) : fmt::format("{}|{}", p.short_name, p.name);
     out += fmt::format("{}{}) {}={} ;;\n", indent, names, variable, shell_quoted(source_of(p)));
   };
   for (const auto& p : global_options()) add(p);
@@ -95,7 +99,8 @@ std::string positional_cases(std::string_view indent, std::string_view variable)
   for (const auto* command : registry())
     for (const auto& p : command->parameters)
       if (!p.name.starts_with("-")) {
-        out += fmt::format("{}{}) {}={} ;;\n", indent, shell_quoted(command->path), variable, shell_quoted(source_of(p)));
+        out += fmt::format("{}{}) {}={} ;;\n", indent, shell_quoted(command->path), variable,
+                           shell_quoted(source_of(p)));
         break;
       }
   return out;
@@ -105,7 +110,8 @@ std::string own_option_cases(std::string_view indent, std::string_view variable)
   std::string out;
   for (const auto* command : registry())
     if (const auto own = options_of(command->parameters, false); !own.empty())
-      out += fmt::format("{}{}) {}+={} ;;\n", indent, shell_quoted(command->path), variable, shell_quoted(" " + own));
+      out += fmt::format("{}{}) {}+={} ;;\n", indent, shell_quoted(command->path), variable,
+                         shell_quoted(" " + own));
   return out;
 }
 
@@ -118,8 +124,8 @@ std::string group_cases(std::string_view indent, std::string_view variable) {
   return out;
 }
 
-/// The part bash and zsh share: finds command, drive and what may stand at the cursor in the array `words` (1-based from
-/// `first` to `last`), into the variables command, drive, source, options.
+/// The part bash and zsh share: finds command, drive and what may stand at the cursor in the array `words`
+/// (1-based from `first` to `last`), into the variables command, drive, source, options.
 std::string scan_function() {
   return fmt::format(R"sh(_servoctl_scan() {{
   local word skip=''
@@ -166,25 +172,30 @@ _servoctl_words() {{
   esac
 }}
 )sh",
-                     shell_quoted(options_of(global_options(), false)), [] {
+                     shell_quoted(options_of(global_options(), false)),
+                     [] {
                        std::string out;
                        const auto options = all_value_options();
-                       for (const auto word : split(options, ' ')) out += (out.empty() ? "      " : "|") + std::string(word);
+                       for (const auto word : split(options, ' '))
+                         out += (out.empty() ? "      " : "|") + std::string(word);
                        return out + ") skip=$word ;;\n";
                      }(),
                      [] {
                        std::string out;
                        const auto first_all = first_words();
-  for (const auto first : split(first_all, ' '))
-                         if (!second_words(first).empty()) out += (out.empty() ? "" : "|") + std::string(first);
+                       for (const auto first : split(first_all, ' '))
+                         if (!second_words(first).empty())
+                           out += (out.empty() ? "" : "|") + std::string(first);
                        return out;
                      }(),
-                     option_cases("      ", "source"), shell_quoted("=" + first_words()), group_cases("    ", "source"),
-                     positional_cases("    ", "source"), own_option_cases("    ", "options"));
+                     option_cases("      ", "source"), shell_quoted("=" + first_words()),
+                     group_cases("    ", "source"), positional_cases("    ", "source"),
+                     own_option_cases("    ", "options"));
 }
 
 std::string bash_script() {
-  return "# Completion of servoctl for bash; written by `servoctl completion bash`.\n" + scan_function() + R"sh(
+  return "# Completion of servoctl for bash; written by `servoctl completion bash`.\n" + scan_function() +
+         R"sh(
 _servoctl() {
   local cur=${COMP_WORDS[COMP_CWORD]} command drive source options
   _servoctl_scan "${COMP_WORDS[@]:1:COMP_CWORD-1}"
@@ -205,7 +216,8 @@ complete -F _servoctl servoctl
 }
 
 std::string zsh_script() {
-  return "#compdef servoctl\n# Completion of servoctl for zsh; written by `servoctl completion zsh`.\n" + scan_function() + R"sh(
+  return "#compdef servoctl\n# Completion of servoctl for zsh; written by `servoctl completion zsh`.\n" +
+         scan_function() + R"sh(
 _servoctl() {
   local command drive source options
   _servoctl_scan "${(@)words[2,CURRENT-1]}"
@@ -300,9 +312,11 @@ complete -c servoctl -f
   for (const auto* command : registry()) {
     const auto parts = split(command->path, ' ');
     if (parts.size() == 1)
-      out += fmt::format("complete -c servoctl -n __servoctl_at -a {} -d {}\n", parts[0], shell_quoted(command->summary));
+      out += fmt::format("complete -c servoctl -n __servoctl_at -a {} -d {}\n", parts[0],
+                         shell_quoted(command->summary));
     else
-      out += fmt::format("complete -c servoctl -n '__servoctl_at {}' -a {} -d {}\n", parts[0], parts[1], shell_quoted(command->summary));
+      out += fmt::format("complete -c servoctl -n '__servoctl_at {}' -a {} -d {}\n", parts[0], parts[1],
+                         shell_quoted(command->summary));
     for (const auto& p : command->parameters) {
       const auto condition = fmt::format(" -n '__servoctl_in {}'", command->path);
       if (p.name.starts_with("-"))
@@ -313,7 +327,8 @@ complete -c servoctl -f
   }
   const auto first_all = first_words();
   for (const auto first : split(first_all, ' '))
-    if (!second_words(first).empty()) out += fmt::format("complete -c servoctl -n __servoctl_at -a {}\n", first);
+    if (!second_words(first).empty())
+      out += fmt::format("complete -c servoctl -n __servoctl_at -a {}\n", first);
   return out;
 }
 

@@ -5,9 +5,9 @@
 
 namespace servoctl::commands {
 
-/// The completion script for `bash`, `zsh` or `fish`, made from the registry alone. Commands, options and choices stand in it;
-/// names of objects, parameters and families come from `servoctl completion …` while the user types, for the drive named on
-/// the line or in $SERVOCTL_DRIVE.
+/// The completion script for `bash`, `zsh` or `fish`, made from the registry alone. Commands, options and
+/// choices stand in it; names of objects, parameters and families come from `servoctl completion …` while the
+/// user types, for the drive named on the line or in $SERVOCTL_DRIVE.
 std::string completion_script(std::string_view shell);
 
 }  // namespace servoctl::commands

@@ -12,13 +12,16 @@ constexpr Parameter kParameters[] = {
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   if (context.session->url().starts_with("sim:"))
-    return fail(Errc::usage, "a simulated drive cannot be put on a bus that is simulated itself", "use a bus others can reach: vcan0 or local:NAME");
+    return fail(Errc::usage, "a simulated drive cannot be put on a bus that is simulated itself",
+                "use a bus others can reach: vcan0 or local:NAME");
   auto cell = sim::build_cell(arguments.text("drives"), context.drive_folders, context.session->now());
   if (!cell) return tl::unexpected<Error>(cell.error());
   report::List nodes;
   for (const auto& drive : cell->drives) nodes.emplace_back(drive->node());
-  context.emit(report::Record{{"bus", context.session->url()}, {"nodes", nodes}, {"stop", "Ctrl-C", report::Show::text}});
-  if (const auto served = session::serve(*context.session, *cell); !served) return tl::unexpected<Error>(served.error());
+  context.emit(report::Record{
+      {"bus", context.session->url()}, {"nodes", nodes}, {"stop", "Ctrl-C", report::Show::text}});
+  if (const auto served = session::serve(*context.session, *cell); !served)
+    return tl::unexpected<Error>(served.error());
   return report::Value();
 }
 
@@ -28,9 +31,12 @@ extern const Command kSim;
 const Command kSim{
     .path = "sim",
     .summary = "Put simulated drives on a bus until Ctrl-C",
-    .details = "For trying things out without hardware: `servoctl sim gsd600@1 --bus local:cell` in one terminal, commands with "
-               "--bus local:cell in another. Options after `?`, separated by `&`: state=FILE keeps the drives' memory, fault=0xFF00@2s "
-               "raises a fault, silent=5s makes them fall silent, delay=20ms answers late.",
+    .details =
+        "For trying things out without hardware: `servoctl sim gsd600@1 --bus local:cell` in one terminal, "
+        "commands with "
+        "--bus local:cell in another. Options after `?`, separated by `&`: state=FILE keeps the drives' "
+        "memory, fault=0xFF00@2s "
+        "raises a fault, silent=5s makes them fall silent, delay=20ms answers late.",
     .parameters = kParameters,
     .needs = Needs::bus,
     .effect = Effect::none,

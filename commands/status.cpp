@@ -1,5 +1,5 @@
-#include <algorithm>
 #include <fmt/format.h>
+#include <algorithm>
 
 #include "canopen/emergency.hpp"
 #include "commands/command.hpp"
@@ -41,9 +41,11 @@ Result<void> hear_heartbeats(Context& context, std::span<const Result<Bytes>> an
   }
   if (expected.empty()) return {};
   const auto all_heard = [&] {
-    return std::all_of(expected.begin(), expected.end(), [&](auto n) { return context.session->watch().state(n).has_value(); });
+    return std::all_of(expected.begin(), expected.end(),
+                       [&](auto n) { return context.session->watch().state(n).has_value(); });
   };
-  const auto heard = context.session->wait(all_heard, context.session->now() + std::min(longest, kMostPatience));
+  const auto heard =
+      context.session->wait(all_heard, context.session->now() + std::min(longest, kMostPatience));
   if (!heard) return tl::unexpected<Error>(heard.error());
   return {};
 }
@@ -63,14 +65,16 @@ std::string mode_text(const Context& context, std::int8_t mode) {
   return context.chinese && !label->label_zh.empty() ? label->label_zh : label->label;
 }
 
-void add_drive_state(Record& out, const Context& context, std::optional<std::uint64_t> word, std::optional<std::uint64_t> mode) {
+void add_drive_state(Record& out, const Context& context, std::optional<std::uint64_t> word,
+                     std::optional<std::uint64_t> mode) {
   if (!word) return;
   const auto statusword = static_cast<std::uint16_t>(*word);
   const auto state = drive::decode_state(statusword);
   const auto mode_number = static_cast<std::int8_t>(mode.value_or(0));
   report::List bits;
   for (auto& bit : drive::statusword_bits(statusword, mode_number)) bits.emplace_back(std::move(bit));
-  out.push_back({"state", context.chinese ? drive::name_zh(state) : drive::name(state), Show::text, "drive state"});
+  out.push_back(
+      {"state", context.chinese ? drive::name_zh(state) : drive::name(state), Show::text, "drive state"});
   out.push_back({"state", drive::name(state), Show::json});
   out.push_back({"energised", drive::is_energised(state)});
   out.push_back({"statusword", report::Hex{statusword, 4}});
@@ -81,13 +85,16 @@ void add_mode_and_fault(Record& out, const Context& context, std::span<const Res
   if (const auto mode = number(answers[1])) {
     const auto value = static_cast<std::int8_t>(*mode);
     const auto text = mode_text(context, value);
-    out.push_back({"mode", text.empty() ? fmt::format("{}", value) : fmt::format("{} {}", value, text), Show::text});
+    out.push_back(
+        {"mode", text.empty() ? fmt::format("{}", value) : fmt::format("{} {}", value, text), Show::text});
     out.push_back({"mode", Record{{"value", value}, {"label", report::text_or_null(text)}}, Show::json});
   }
   if (const auto code = number(answers[2])) {
     const auto text = fault_text(context, *code);
-    out.push_back({"fault", *code == 0 ? std::string("none") : fmt::format("0x{:04X} {}", *code, text), Show::text});
-    out.push_back({"fault", *code == 0 ? Value() : Value(Record{{"code", *code}, {"text", text}}), Show::json});
+    out.push_back(
+        {"fault", *code == 0 ? std::string("none") : fmt::format("0x{:04X} {}", *code, text), Show::text});
+    out.push_back(
+        {"fault", *code == 0 ? Value() : Value(Record{{"code", *code}, {"text", text}}), Show::json});
   }
   if (const auto bits = number(answers[3])) {
     const auto text = canopen::error_register_text(static_cast<std::uint8_t>(*bits));
@@ -100,10 +107,12 @@ Record one(Context& context, std::uint8_t node, std::span<const Result<Bytes>> a
   Record out{{"node", node}};
   const auto nmt = context.session->watch().state(node);
   const auto heartbeat = number(answers[4]);
-  out.push_back({"nmt", nmt ? std::string(canopen::name(*nmt))
-                            : std::string(heartbeat.value_or(0) == 0 ? "not stopped (no heartbeat tells more: 0x1017 is 0)"
-                                                                     : "not heard"),
-                 Show::text, "NMT state"});
+  out.push_back(
+      {"nmt",
+       nmt ? std::string(canopen::name(*nmt))
+           : std::string(heartbeat.value_or(0) == 0 ? "not stopped (no heartbeat tells more: 0x1017 is 0)"
+                                                    : "not heard"),
+       Show::text, "NMT state"});
   out.push_back({"nmt", nmt ? Value(canopen::name(*nmt)) : Value(), Show::json});
   add_drive_state(out, context, number(answers[0]), number(answers[1]));
   add_mode_and_fault(out, context, answers);
@@ -115,12 +124,15 @@ Result<report::Value> run(Context& context, const Arguments&) {
   for (const auto node : context.nodes)
     for (const auto object : kObjects) requests.push_back({node, object, {}});
   const auto answers = context.session->transfer(requests);
-  if (const auto heard = hear_heartbeats(context, answers); !heard) return tl::unexpected<Error>(heard.error());
+  if (const auto heard = hear_heartbeats(context, answers); !heard)
+    return tl::unexpected<Error>(heard.error());
   report::List out;
   for (std::size_t i = 0; i < context.nodes.size(); ++i) {
     const auto mine = std::span(answers).subspan(i * kCount, kCount);
     const bool refused = !mine[0] && mine[0].error().code == Errc::sdo_abort;
-    if (refused) context.notices.push_back(fmt::format("node {} has no statusword: it is no CiA 402 drive", context.nodes[i]));
+    if (refused)
+      context.notices.push_back(
+          fmt::format("node {} has no statusword: it is no CiA 402 drive", context.nodes[i]));
     if (!mine[0] && !refused)
       context.errors.push_back(mine[0].error());
     else
@@ -135,8 +147,10 @@ extern const Command kStatus;
 const Command kStatus{
     .path = "status",
     .summary = "Show the state of a drive: NMT, CiA 402, mode, fault",
-    .details = "Reads statusword, mode, error code and error register. The NMT state is told by heartbeats; where the node sends "
-               "some, status waits for one.",
+    .details =
+        "Reads statusword, mode, error code and error register. The NMT state is told by heartbeats; where "
+        "the node sends "
+        "some, status waits for one.",
     .parameters = {},
     .needs = Needs::node,
     .effect = Effect::reads,

@@ -5,9 +5,18 @@ namespace servoctl::commands {
 namespace {
 
 constexpr Parameter kParameters[] = {
-    {.name = "object", .help = "0x6060, 6099h.1, modes_of_operation, Pn0202", .kind = Kind::object, .required = true},
-    {.name = "value", .help = "100, -5, 0x64, 60rpm, a label, \"text\", hex:00 64", .kind = Kind::value, .required = true},
-    {.name = "--type", .help = "data type, when the dictionary does not know it", .kind = Kind::type, .choices = kTypeNames},
+    {.name = "object",
+     .help = "0x6060, 6099h.1, modes_of_operation, Pn0202",
+     .kind = Kind::object,
+     .required = true},
+    {.name = "value",
+     .help = "100, -5, 0x64, 60rpm, a label, \"text\", hex:00 64",
+     .kind = Kind::value,
+     .required = true},
+    {.name = "--type",
+     .help = "data type, when the dictionary does not know it",
+     .kind = Kind::type,
+     .choices = kTypeNames},
 };
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
@@ -22,7 +31,8 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
     changes.push_back(std::move(*change));
   }
   if (context.dry_run) return planned_frames(changes);
-  if (const auto confirmed = confirm_changes(context, changes); !confirmed) return tl::unexpected<Error>(confirmed.error());
+  if (const auto confirmed = confirm_changes(context, changes); !confirmed)
+    return tl::unexpected<Error>(confirmed.error());
   return write_changes(context, changes, false);
 }
 
@@ -32,9 +42,12 @@ extern const Command kWrite;
 const Command kWrite{
     .path = "write",
     .summary = "Write one object of a node",
-    .details = "The value is checked against type and limits before a frame is sent. A plain number is the raw number the drive "
-               "shows; a number with a unit is converted. A write is never repeated: when its answer is lost, the object is read "
-               "and the outcome told. Objects that store or restore, and the node-ID and bitrate, ask first.",
+    .details =
+        "The value is checked against type and limits before a frame is sent. A plain number is the raw "
+        "number the drive "
+        "shows; a number with a unit is converted. A write is never repeated: when its answer is lost, the "
+        "object is read "
+        "and the outcome told. Objects that store or restore, and the node-ID and bitrate, ask first.",
     .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::writes,

@@ -1,7 +1,7 @@
 #include "base/csv.hpp"
 
-#include <algorithm>
 #include <fmt/format.h>
+#include <algorithm>
 
 namespace servoctl {
 namespace {
@@ -91,15 +91,18 @@ Result<CsvTable> parse_csv(std::string_view text, std::string_view file) {
       auto sorted = cells;
       std::sort(sorted.begin(), sorted.end());
       const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
-      if (twice != sorted.end()) return fail_at(file, line, fmt::format("column '{}' stands here twice", *twice));
+      if (twice != sorted.end())
+        return fail_at(file, line, fmt::format("column '{}' stands here twice", *twice));
       continue;
     }
     if (cells.size() != table.columns.size())
-      return fail_at(file, line, fmt::format("{} cells, but the header names {} columns", cells.size(),
-                                             table.columns.size()));
+      return fail_at(
+          file, line,
+          fmt::format("{} cells, but the header names {} columns", cells.size(), table.columns.size()));
     table.rows.push_back({cells, line});
   }
-  if (table.columns.empty()) return fail_at(file, 1, "the file is empty; a line with column names is expected");
+  if (table.columns.empty())
+    return fail_at(file, 1, "the file is empty; a line with column names is expected");
   return table;
 }
 

@@ -9,8 +9,8 @@
 
 namespace servoctl {
 
-/// A table read from comma-separated text (RFC 4180): quotes, doubled quotes and line breaks in quotes, LF or CRLF, an
-/// optional UTF-8 byte order mark. The first record holds the column names.
+/// A table read from comma-separated text (RFC 4180): quotes, doubled quotes and line breaks in quotes, LF or
+/// CRLF, an optional UTF-8 byte order mark. The first record holds the column names.
 struct CsvTable {
   struct Row {
     std::vector<std::string> cells;  ///< As many as there are columns.
@@ -23,8 +23,8 @@ struct CsvTable {
   std::size_t column(std::string_view name) const;
 };
 
-/// Reads the whole text. `file` is used in messages only. A record with too few or too many cells, an unclosed quote or
-/// a column named twice is an error of Errc::file with its line.
+/// Reads the whole text. `file` is used in messages only. A record with too few or too many cells, an
+/// unclosed quote or a column named twice is an error of Errc::file with its line.
 Result<CsvTable> parse_csv(std::string_view text, std::string_view file);
 
 }  // namespace servoctl

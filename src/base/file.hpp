@@ -11,7 +11,8 @@ namespace servoctl {
 /// The whole file. Errc::file with the reason when it cannot be read or is larger than `max_bytes`.
 Result<std::string> read_file(const std::filesystem::path& path, std::uintmax_t max_bytes = 256U << 20U);
 
-/// Replaces the file in one step: written beside it, synced, renamed. On an error the old file stands untouched.
+/// Replaces the file in one step: written beside it, synced, renamed. On an error the old file stands
+/// untouched.
 Result<void> write_file_atomically(const std::filesystem::path& path, std::string_view content);
 
 }  // namespace servoctl

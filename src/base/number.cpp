@@ -18,7 +18,8 @@ std::optional<std::uint64_t> parse_digits(std::string_view text, unsigned base) 
 
 std::optional<std::int64_t> Integer::as_signed() const {
   constexpr auto kMax = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
-  if (!negative) return magnitude <= kMax ? std::optional(static_cast<std::int64_t>(magnitude)) : std::nullopt;
+  if (!negative)
+    return magnitude <= kMax ? std::optional(static_cast<std::int64_t>(magnitude)) : std::nullopt;
   if (magnitude > kMax + 1) return std::nullopt;
   return static_cast<std::int64_t>(~magnitude + 1);
 }

@@ -6,10 +6,12 @@
 
 namespace servoctl {
 
-/// Digits of the given base (2..16) and nothing else; empty on overflow of 64 bits, on a foreign character or no digit.
+/// Digits of the given base (2..16) and nothing else; empty on overflow of 64 bits, on a foreign character or
+/// no digit.
 std::optional<std::uint64_t> parse_digits(std::string_view text, unsigned base);
 
-/// An integer as people write it: sign and magnitude kept apart, so that both the whole of u64 and of i64 fit.
+/// An integer as people write it: sign and magnitude kept apart, so that both the whole of u64 and of i64
+/// fit.
 struct Integer {
   bool negative = false;
   std::uint64_t magnitude = 0;
@@ -21,11 +23,12 @@ struct Integer {
   std::optional<std::uint64_t> as_unsigned() const;
 };
 
-/// Reads `100`, `-5`, `+7`, `0x64`, `64h`, `-0x10`, `0b101`. A leading zero does not mean octal: `010` is ten.
+/// Reads `100`, `-5`, `+7`, `0x64`, `64h`, `-0x10`, `0b101`. A leading zero does not mean octal: `010` is
+/// ten.
 std::optional<Integer> parse_integer(std::string_view text);
 
-/// Reads what parse_integer() reads without base prefix, and `1.5`, `1e3`, `-.25`. Always with a point, whatever the
-/// locale; `inf` and `nan` are refused.
+/// Reads what parse_integer() reads without base prefix, and `1.5`, `1e3`, `-.25`. Always with a point,
+/// whatever the locale; `inf` and `nan` are refused.
 std::optional<double> parse_real(std::string_view text);
 
 }  // namespace servoctl

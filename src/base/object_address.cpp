@@ -21,7 +21,9 @@ std::optional<std::uint64_t> hex_field(std::string_view text, std::uint64_t max)
 
 }  // namespace
 
-std::string to_string(ObjectAddress address) { return fmt::format("0x{:04X}:{:X}", address.index, address.sub); }
+std::string to_string(ObjectAddress address) {
+  return fmt::format("0x{:04X}:{:X}", address.index, address.sub);
+}
 
 std::optional<ObjectAddress> parse_object_address(std::string_view text) {
   std::string_view sub_text = "0";

@@ -20,8 +20,8 @@ struct ObjectAddress {
 /// `0x6041:0`, `0x2000:65`: index and sub-index in hexadecimal, the form that parse_object_address() reads.
 std::string to_string(ObjectAddress address);
 
-/// Reads `0x6041`, `6041h`, `6041`, `0x6099:1`, `6099h.1`, `6099sub1`, in any case. Index and sub-index are always
-/// hexadecimal, as in EDS files and in the manuals. Empty when the text is not of this form.
+/// Reads `0x6041`, `6041h`, `6041`, `0x6099:1`, `6099h.1`, `6099sub1`, in any case. Index and sub-index are
+/// always hexadecimal, as in EDS files and in the manuals. Empty when the text is not of this form.
 std::optional<ObjectAddress> parse_object_address(std::string_view text);
 
 }  // namespace servoctl

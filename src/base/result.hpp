@@ -11,8 +11,8 @@
 
 namespace servoctl {
 
-/// What went wrong, in the terms a caller can act on. Each has one exit code and one name in JSON, both part of
-/// the contract that scripts rely on.
+/// What went wrong, in the terms a caller can act on. Each has one exit code and one name in JSON, both part
+/// of the contract that scripts rely on.
 enum class Errc : std::uint8_t {
   negative,     ///< It ran, and the answer is no: a difference, a failed check, an incomplete result.
   usage,        ///< The request itself is wrong; nothing was sent.
@@ -26,8 +26,8 @@ enum class Errc : std::uint8_t {
   interrupted,  ///< The user pressed Ctrl-C.
 };
 
-/// Process exit code: 1 negative, 2 usage, 3 bus, 4 timeout, 5 sdo_abort, 6 protocol, 7 file, 8 refused, 70 bug,
-/// 130 interrupted.
+/// Process exit code: 1 negative, 2 usage, 3 bus, 4 timeout, 5 sdo_abort, 6 protocol, 7 file, 8 refused, 70
+/// bug, 130 interrupted.
 int exit_code(Errc code);
 
 /// The name in JSON: `negative usage bus no-answer sdo-abort protocol file refused bug interrupted`.
@@ -36,12 +36,12 @@ std::string_view name(Errc code);
 /// A failure, told in full: what happened, to which node and object, and what to do next.
 struct Error {
   Errc code = Errc::bug;
-  std::string message;                       ///< What happened: one sentence without a full stop.
-  std::string hint;                          ///< What to do next; empty when there is nothing to say.
-  std::optional<std::uint8_t> node;          ///< 1..127 when one node is concerned.
-  std::optional<ObjectAddress> object;       ///< Set when one object is concerned.
-  std::optional<std::uint32_t> abort_code;   ///< Set only with Errc::sdo_abort (CiA 301, 7.2.4.3.17).
-  std::optional<std::uint32_t> line;         ///< Line of the file the error is in, from 1.
+  std::string message;                      ///< What happened: one sentence without a full stop.
+  std::string hint;                         ///< What to do next; empty when there is nothing to say.
+  std::optional<std::uint8_t> node;         ///< 1..127 when one node is concerned.
+  std::optional<ObjectAddress> object;      ///< Set when one object is concerned.
+  std::optional<std::uint32_t> abort_code;  ///< Set only with Errc::sdo_abort (CiA 301, 7.2.4.3.17).
+  std::optional<std::uint32_t> line;        ///< Line of the file the error is in, from 1.
 };
 
 template <class T>
@@ -55,6 +55,8 @@ using Result = tl::expected<T, Error>;
   return tl::unexpected<Error>(std::move(error));
 }
 
-[[nodiscard]] inline tl::unexpected<Error> fail(Error error) { return tl::unexpected<Error>(std::move(error)); }
+[[nodiscard]] inline tl::unexpected<Error> fail(Error error) {
+  return tl::unexpected<Error>(std::move(error));
+}
 
 }  // namespace servoctl

@@ -54,8 +54,8 @@ std::string lower(std::string_view text) {
 }
 
 bool equals_nocase(std::string_view a, std::string_view b) {
-  return a.size() == b.size() &&
-         std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) { return lower_char(x) == lower_char(y); });
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(),
+                                            [](char x, char y) { return lower_char(x) == lower_char(y); });
 }
 
 bool starts_with_nocase(std::string_view text, std::string_view prefix) {
@@ -152,7 +152,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return above[b.size()];
 }
 
-std::vector<std::string> nearest(std::string_view text, std::span<const std::string> candidates, std::size_t most) {
+std::vector<std::string> nearest(std::string_view text, std::span<const std::string> candidates,
+                                 std::size_t most) {
   std::vector<std::pair<std::size_t, const std::string*>> ranked;
   const std::size_t limit = std::max<std::size_t>(1, (text.size() + 2) / 3);
   for (const auto& candidate : candidates) {
@@ -163,7 +164,8 @@ std::vector<std::string> nearest(std::string_view text, std::span<const std::str
     const std::size_t distance = prefix ? 1 : edit_distance(text, candidate);
     if (distance <= limit) ranked.emplace_back(distance, &candidate);
   }
-  std::stable_sort(ranked.begin(), ranked.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const auto& x, const auto& y) { return x.first < y.first; });
   std::vector<std::string> out;
   for (const auto& entry : ranked) {
     if (out.size() == most) break;

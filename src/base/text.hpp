@@ -18,10 +18,11 @@ std::string_view trim(std::string_view text);
 
 /// The parts between separators; a text without separator is one part, an empty text none.
 std::vector<std::string_view> split(std::string_view text, char separator);
-std::vector<std::string_view> split(std::string&& text, char separator) = delete;  // The parts would outlive the text.
+std::vector<std::string_view> split(std::string&& text,
+                                    char separator) = delete;  // The parts would outlive the text.
 
-/// Columns the text takes on a terminal: two for East Asian wide characters, none for combining ones. UTF-8; a bad byte
-/// counts as one column.
+/// Columns the text takes on a terminal: two for East Asian wide characters, none for combining ones. UTF-8;
+/// a bad byte counts as one column.
 std::size_t display_width(std::string_view text);
 
 /// `text` filled with spaces to `width` columns; longer text is left as it is.

@@ -12,8 +12,8 @@ inline constexpr std::uint8_t kLastNode = 127;
 inline constexpr std::uint32_t kNmt = 0x000;
 inline constexpr std::uint32_t kSync = 0x080;
 inline constexpr std::uint32_t kEmergency = 0x080;
-inline constexpr std::uint32_t kSdoAnswer = 0x580;   ///< From the server, the drive.
-inline constexpr std::uint32_t kSdoRequest = 0x600;  ///< From the client.
+inline constexpr std::uint32_t kSdoAnswer = 0x580;     ///< From the server, the drive.
+inline constexpr std::uint32_t kSdoRequest = 0x600;    ///< From the client.
 inline constexpr std::uint32_t kErrorControl = 0x700;  ///< Boot-up, heartbeat and node guarding.
 
 }  // namespace servoctl::canopen

@@ -59,8 +59,9 @@ constexpr std::array kRows{
     Row{0x8000, 0xF000, "monitoring"},
 };
 
-constexpr std::array<std::string_view, 8> kRegisterBits{"generic",       "current",        "voltage",  "temperature",
-                                                        "communication", "device profile", "reserved", "manufacturer"};
+constexpr std::array<std::string_view, 8> kRegisterBits{"generic",     "current",       "voltage",
+                                                        "temperature", "communication", "device profile",
+                                                        "reserved",    "manufacturer"};
 
 }  // namespace
 

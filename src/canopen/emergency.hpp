@@ -12,10 +12,10 @@ namespace servoctl::canopen {
 /// An emergency message (CiA 301, 7.2.7): what went wrong on a node, told once.
 struct Emergency {
   std::uint8_t node = 0;
-  std::uint16_t code = 0;                  ///< Error code; 0x00xx: error reset or no error.
-  std::uint8_t error_register = 0;         ///< Object 1001h.
-  std::array<std::uint8_t, 5> vendor{};    ///< Manufacturer-specific bytes 3 to 7.
-  std::uint8_t size = 8;                   ///< Bytes the drive really sent; some send fewer than 8.
+  std::uint16_t code = 0;                ///< Error code; 0x00xx: error reset or no error.
+  std::uint8_t error_register = 0;       ///< Object 1001h.
+  std::array<std::uint8_t, 5> vendor{};  ///< Manufacturer-specific bytes 3 to 7.
+  std::uint8_t size = 8;                 ///< Bytes the drive really sent; some send fewer than 8.
 
   bool is_reset() const { return (code & 0xFF00U) == 0; }
 };
@@ -24,7 +24,8 @@ struct Emergency {
 std::optional<Emergency> parse_emergency(const can::Frame& frame);
 can::Frame emergency_frame(const Emergency& emergency);
 
-/// The class of an error code in the words of CiA 301, table 26: `temperature`, `voltage`, `heartbeat or life guard error`.
+/// The class of an error code in the words of CiA 301, table 26: `temperature`, `voltage`, `heartbeat or life
+/// guard error`.
 std::string emergency_text(std::uint16_t code);
 
 /// Bits of the error register (1001h) that are set: `generic, voltage`; `none` for 0.

@@ -56,7 +56,8 @@ can::Frame nmt_frame(NmtCommand command, std::uint8_t node) {
 }
 
 std::optional<NmtMessage> parse_nmt(const can::Frame& frame) {
-  if (frame.id != kNmt || frame.size != 2 || frame.extended || frame.remote || frame.error) return std::nullopt;
+  if (frame.id != kNmt || frame.size != 2 || frame.extended || frame.remote || frame.error)
+    return std::nullopt;
   for (const auto& row : kCommands)
     if (static_cast<std::uint8_t>(row.first) == frame.data[0]) return NmtMessage{row.first, frame.data[1]};
   return std::nullopt;

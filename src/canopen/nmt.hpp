@@ -25,7 +25,8 @@ enum class NmtState : std::uint8_t {
   pre_operational = 0x7F,
 };
 
-std::string_view name(NmtState state);  ///< `boot-up stopped operational pre-operational`, `unknown` for other values.
+std::string_view name(
+    NmtState state);  ///< `boot-up stopped operational pre-operational`, `unknown` for other values.
 std::string_view name(NmtCommand command);  ///< `start stop preop reset reset-comm`
 std::optional<NmtCommand> parse_nmt_command(std::string_view name);
 
@@ -42,7 +43,8 @@ struct NmtMessage {
 };
 std::optional<NmtMessage> parse_nmt(const can::Frame& frame);
 
-/// Boot-up, heartbeat or the answer of node guarding: the node and its state. The toggle bit of guarding is dropped.
+/// Boot-up, heartbeat or the answer of node guarding: the node and its state. The toggle bit of guarding is
+/// dropped.
 struct ErrorControl {
   std::uint8_t node = 0;
   NmtState state = NmtState::initialising;

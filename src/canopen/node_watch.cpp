@@ -28,7 +28,8 @@ void NodeWatch::on_error_control(const ErrorControl& message, TimePoint now) {
     events_.push_back({now, message.node, NodeEvent::BootUp{}});
     return;
   }
-  if (node.last) node.period = std::max(node.intervals++ == 0 ? Duration::zero() : node.period, now - *node.last);
+  if (node.last)
+    node.period = std::max(node.intervals++ == 0 ? Duration::zero() : node.period, now - *node.last);
   if (node.lost || (node.state && *node.state != message.state))
     events_.push_back({now, message.node, NodeEvent::StateChange{message.state}});
   node.lost = false;

@@ -27,11 +27,12 @@ struct NodeEvent {
   std::variant<BootUp, StateChange, HeartbeatLost, Emergency> what;
 };
 
-/// Listens to boot-up, heartbeat and emergency messages of all nodes. Sees every frame, whatever a command waits for.
+/// Listens to boot-up, heartbeat and emergency messages of all nodes. Sees every frame, whatever a command
+/// waits for.
 ///
-/// The heartbeat period of a node is learned from its messages: the longest of at least two intervals, so that an extra
-/// message at a change of state does not count as the period. A node that stays silent for three periods (at least 100 ms
-/// longer than one) is reported as lost, once, until it is heard again.
+/// The heartbeat period of a node is learned from its messages: the longest of at least two intervals, so
+/// that an extra message at a change of state does not count as the period. A node that stays silent for
+/// three periods (at least 100 ms longer than one) is reported as lost, once, until it is heard again.
 class NodeWatch {
  public:
   void on_frame(const can::Frame& frame, TimePoint now);

@@ -13,17 +13,21 @@ struct Row {
   std::string_view hint;
 };
 
-constexpr std::string_view kCheckType = "check the object's type and size: `objects` shows what the dictionary says";
+constexpr std::string_view kCheckType =
+    "check the object's type and size: `objects` shows what the dictionary says";
 constexpr std::string_view kCheckName =
     "this firmware does not have it, or the dictionary in use belongs to another drive";
-constexpr std::string_view kCheckRange = "`param explain` or `objects` shows the limits; other settings may narrow them";
+constexpr std::string_view kCheckRange =
+    "`param explain` or `objects` shows the limits; other settings may narrow them";
 constexpr std::string_view kCheckState =
     "the drive takes this in another state only: disable it or go to pre-operational, then try again";
 
 constexpr std::array kRows{
-    Row{0x0503'0000, "toggle bit not alternated", "try again; if it stays, look for a second master on the bus"},
+    Row{0x0503'0000, "toggle bit not alternated",
+        "try again; if it stays, look for a second master on the bus"},
     Row{0x0504'0000, "SDO protocol timed out", "try again; if it stays, look at the bus load"},
-    Row{0x0504'0001, "command specifier not valid or unknown", "the drive does not support this kind of transfer"},
+    Row{0x0504'0001, "command specifier not valid or unknown",
+        "the drive does not support this kind of transfer"},
     Row{0x0504'0002, "invalid block size", ""},
     Row{0x0504'0003, "invalid sequence number", ""},
     Row{0x0504'0004, "CRC error", "try again; if it stays, look at the wiring and the termination"},
@@ -50,7 +54,8 @@ constexpr std::array kRows{
     Row{0x0800'0020, "data cannot be transferred or stored to the application", kCheckState},
     Row{0x0800'0021, "data cannot be transferred or stored to the application because of local control",
         "the panel or the vendor's software may hold control of the drive"},
-    Row{0x0800'0022, "data cannot be transferred or stored to the application because of the present device state",
+    Row{0x0800'0022,
+        "data cannot be transferred or stored to the application because of the present device state",
         kCheckState},
     Row{0x0800'0023, "object dictionary dynamic generation failed or no object dictionary is present", ""},
     Row{0x0800'0024, "no data available", ""},

@@ -1,7 +1,7 @@
 #include "canopen/sdo_client.hpp"
 
-#include <algorithm>
 #include <fmt/format.h>
+#include <algorithm>
 #include <utility>
 
 #include "canopen/cob_id.hpp"
@@ -44,16 +44,20 @@ void SdoClient::start_download(ObjectAddress object, Bytes data, TimePoint now) 
 }
 
 void SdoClient::on_frame(const can::Frame& frame, TimePoint now) {
-  if (state_ == State::idle || frame.id != kSdoAnswer + node_ || frame.extended || frame.remote || frame.error) return;
+  if (state_ == State::idle || frame.id != kSdoAnswer + node_ || frame.extended || frame.remote ||
+      frame.error)
+    return;
   if (frame.size != 8) {
-    abort(sdo_abort::kCommand, Errc::protocol, fmt::format("its answer has {} bytes instead of 8", frame.size));
+    abort(sdo_abort::kCommand, Errc::protocol,
+          fmt::format("its answer has {} bytes instead of 8", frame.size));
     return;
   }
   if (frame.data[0] == kSdoAbortCommand) {
     if (sdo_object(frame) != object_) return;
     const auto code = sdo_data(frame);
-    auto refused = error(Errc::sdo_abort, fmt::format("refused: {} (abort 0x{:08X})", sdo_abort_text(code), code),
-                         sdo_abort_hint(code));
+    auto refused =
+        error(Errc::sdo_abort, fmt::format("refused: {} (abort 0x{:08X})", sdo_abort_text(code), code),
+              sdo_abort_hint(code));
     refused.abort_code = code;
     finish(tl::unexpected<Error>(std::move(refused)));
     return;
@@ -70,7 +74,8 @@ void SdoClient::on_frame(const can::Frame& frame, TimePoint now) {
 void SdoClient::on_upload_initiate(const can::Frame& frame, TimePoint now) {
   if (sdo_object(frame) != object_) return;
   if (specifier(frame) != 0x40) {
-    abort(sdo_abort::kCommand, Errc::protocol, fmt::format("it answered a read with command 0x{:02X}", frame.data[0]));
+    abort(sdo_abort::kCommand, Errc::protocol,
+          fmt::format("it answered a read with command 0x{:02X}", frame.data[0]));
     return;
   }
   const bool expedited = (frame.data[0] & 0x02U) != 0;
@@ -82,7 +87,8 @@ void SdoClient::on_upload_initiate(const can::Frame& frame, TimePoint now) {
   }
   if (size_indicated) announced_ = sdo_data(frame);
   if (announced_.value_or(0) > kMaxUpload) {
-    abort(sdo_abort::kOutOfMemory, Errc::protocol, fmt::format("it announces {} bytes for this object", *announced_));
+    abort(sdo_abort::kOutOfMemory, Errc::protocol,
+          fmt::format("it announces {} bytes for this object", *announced_));
     return;
   }
   data_.reserve(announced_.value_or(0));
@@ -90,7 +96,8 @@ void SdoClient::on_upload_initiate(const can::Frame& frame, TimePoint now) {
 }
 
 void SdoClient::on_upload_segment(const can::Frame& frame, TimePoint now) {
-  if (specifier(frame) == 0x40 && sdo_object(frame) == object_ && data_.empty()) return;  // The first answer, twice.
+  if (specifier(frame) == 0x40 && sdo_object(frame) == object_ && data_.empty())
+    return;  // The first answer, twice.
   if (specifier(frame) != 0x00) {
     abort(sdo_abort::kCommand, Errc::protocol,
           fmt::format("it answered a segment request with command 0x{:02X}", frame.data[0]));
@@ -116,7 +123,8 @@ void SdoClient::on_upload_segment(const can::Frame& frame, TimePoint now) {
 void SdoClient::on_download_initiate(const can::Frame& frame, TimePoint now) {
   if (sdo_object(frame) != object_) return;
   if (specifier(frame) != 0x60) {
-    abort(sdo_abort::kCommand, Errc::protocol, fmt::format("it answered a write with command 0x{:02X}", frame.data[0]));
+    abort(sdo_abort::kCommand, Errc::protocol,
+          fmt::format("it answered a write with command 0x{:02X}", frame.data[0]));
     return;
   }
   if (offset_ == data_.size() && !data_.empty()) return finish(Bytes{});
@@ -124,9 +132,11 @@ void SdoClient::on_download_initiate(const can::Frame& frame, TimePoint now) {
 }
 
 void SdoClient::on_download_segment(const can::Frame& frame, TimePoint now) {
-  if (specifier(frame) == 0x60 && sdo_object(frame) == object_ && offset_ <= 7) return;  // The first answer, twice.
+  if (specifier(frame) == 0x60 && sdo_object(frame) == object_ && offset_ <= 7)
+    return;  // The first answer, twice.
   if (specifier(frame) != 0x20) {
-    abort(sdo_abort::kCommand, Errc::protocol, fmt::format("it answered a segment with command 0x{:02X}", frame.data[0]));
+    abort(sdo_abort::kCommand, Errc::protocol,
+          fmt::format("it answered a segment with command 0x{:02X}", frame.data[0]));
     return;
   }
   if ((frame.data[0] & kToggleBit) != toggle_) {
@@ -139,13 +149,15 @@ void SdoClient::on_download_segment(const can::Frame& frame, TimePoint now) {
 }
 
 void SdoClient::request_segment(TimePoint now) {
-  send(sdo_segment(kSdoRequest + node_, static_cast<std::uint8_t>(0x60U | toggle_)), State::upload_segment, now);
+  send(sdo_segment(kSdoRequest + node_, static_cast<std::uint8_t>(0x60U | toggle_)), State::upload_segment,
+       now);
 }
 
 void SdoClient::send_segment(TimePoint now) {
   const std::size_t size = std::min<std::size_t>(7, data_.size() - offset_);
   const bool last = offset_ + size == data_.size();
-  auto frame = sdo_segment(kSdoRequest + node_, static_cast<std::uint8_t>(toggle_ | (7U - size) << 1U | (last ? 1U : 0U)));
+  auto frame = sdo_segment(kSdoRequest + node_,
+                           static_cast<std::uint8_t>(toggle_ | (7U - size) << 1U | (last ? 1U : 0U)));
   std::copy_n(data_.begin() + static_cast<std::ptrdiff_t>(offset_), size, frame.data.begin() + 1);
   offset_ += size;
   send(frame, State::download_segment, now);

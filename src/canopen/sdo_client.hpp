@@ -12,12 +12,12 @@
 
 namespace servoctl::canopen {
 
-/// The client side of one SDO channel (CiA 301, 7.2.4): expedited and segmented transfers, one at a time. Performs no I/O
-/// and reads no clock: give it frames and time, take frames and the result from it.
+/// The client side of one SDO channel (CiA 301, 7.2.4): expedited and segmented transfers, one at a time.
+/// Performs no I/O and reads no clock: give it frames and time, take frames and the result from it.
 ///
-/// Frames of other nodes, answers for other objects (late ones of an earlier request) and remote frames are ignored. Every
-/// transfer ends with exactly one result: the data, or Errc::sdo_abort, timeout or protocol with node and object set. When
-/// the client gives up it tells the server with an abort.
+/// Frames of other nodes, answers for other objects (late ones of an earlier request) and remote frames are
+/// ignored. Every transfer ends with exactly one result: the data, or Errc::sdo_abort, timeout or protocol
+/// with node and object set. When the client gives up it tells the server with an abort.
 class SdoClient {
  public:
   /// `node` 1..127; `timeout` is the longest silence of the server between two frames.
@@ -31,14 +31,23 @@ class SdoClient {
   void on_frame(const can::Frame& frame, TimePoint now);
   void on_time(TimePoint now);
 
-  std::optional<can::Frame> take_frame();      ///< The next frame to send, if any.
-  std::optional<Result<Bytes>> take_result();  ///< Set once, when the transfer has ended; empty bytes after a download.
-  TimePoint deadline() const { return deadline_; }  ///< When on_time() has something to do; kNever while idle.
+  std::optional<can::Frame> take_frame();  ///< The next frame to send, if any.
+  std::optional<Result<Bytes>>
+  take_result();  ///< Set once, when the transfer has ended; empty bytes after a download.
+  TimePoint deadline() const {
+    return deadline_;
+  }  ///< When on_time() has something to do; kNever while idle.
   bool busy() const { return state_ != State::idle; }
   std::uint8_t node() const { return node_; }
 
  private:
-  enum class State : std::uint8_t { idle, upload_initiate, upload_segment, download_initiate, download_segment };
+  enum class State : std::uint8_t {
+    idle,
+    upload_initiate,
+    upload_segment,
+    download_initiate,
+    download_segment
+  };
 
   void on_upload_initiate(const can::Frame& frame, TimePoint now);
   void on_upload_segment(const can::Frame& frame, TimePoint now);

@@ -7,9 +7,10 @@
 
 namespace servoctl::canopen {
 
-/// Builds and reads the fields that all SDO frames share (CiA 301, 7.2.4.3): byte 0 command specifier, bytes 1 and 2 index,
-/// byte 3 sub-index, bytes 4 to 7 data, size or abort code.
-can::Frame sdo_frame(std::uint32_t cob_id, std::uint8_t command, ObjectAddress object, std::uint32_t data = 0);
+/// Builds and reads the fields that all SDO frames share (CiA 301, 7.2.4.3): byte 0 command specifier, bytes
+/// 1 and 2 index, byte 3 sub-index, bytes 4 to 7 data, size or abort code.
+can::Frame sdo_frame(std::uint32_t cob_id, std::uint8_t command, ObjectAddress object,
+                     std::uint32_t data = 0);
 
 /// A segment: byte 0 command specifier, the rest data.
 can::Frame sdo_segment(std::uint32_t cob_id, std::uint8_t command);

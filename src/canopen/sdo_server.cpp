@@ -17,7 +17,8 @@ constexpr std::size_t kMaxDownload = 16U << 20U;
 }  // namespace
 
 void SdoServer::on_frame(const can::Frame& frame, TimePoint now) {
-  if (frame.id != kSdoRequest + node_ || frame.size != 8 || frame.extended || frame.remote || frame.error) return;
+  if (frame.id != kSdoRequest + node_ || frame.size != 8 || frame.extended || frame.remote || frame.error)
+    return;
   const std::uint8_t command = frame.data[0];
   if (command == kSdoAbortCommand) return reset();
   switch (command & 0xE0U) {
@@ -73,7 +74,8 @@ void SdoServer::on_upload_segment(const can::Frame& frame, TimePoint now) {
   if ((frame.data[0] & kToggleBit) != toggle_) return abort(object_, sdo_abort::kToggle);
   const std::size_t size = std::min<std::size_t>(7, data_.size() - offset_);
   const bool last = offset_ + size == data_.size();
-  auto answer = sdo_segment(kSdoAnswer + node_, static_cast<std::uint8_t>(toggle_ | (7U - size) << 1U | (last ? 1U : 0U)));
+  auto answer = sdo_segment(kSdoAnswer + node_,
+                            static_cast<std::uint8_t>(toggle_ | (7U - size) << 1U | (last ? 1U : 0U)));
   std::copy_n(data_.begin() + static_cast<std::ptrdiff_t>(offset_), size, answer.data.begin() + 1);
   offset_ += size;
   toggle_ ^= kToggleBit;

@@ -10,7 +10,8 @@
 
 namespace servoctl::canopen {
 
-/// What an SDO server serves: the entries of a device. Both calls answer at once; a refusal is an SDO abort code.
+/// What an SDO server serves: the entries of a device. Both calls answer at once; a refusal is an SDO abort
+/// code.
 class ObjectStore {
  public:
   virtual ~ObjectStore() = default;
@@ -24,11 +25,12 @@ class ObjectStore {
 class SdoServer {
  public:
   struct Options {
-    bool segmented = true;               ///< False: segmented requests are aborted with 0504 0001h.
+    bool segmented = true;                       ///< False: segmented requests are aborted with 0504 0001h.
     Duration timeout = std::chrono::seconds(1);  ///< Silence of the client that ends a segmented transfer.
   };
 
-  SdoServer(std::uint8_t node, ObjectStore& store, Options options) : node_(node), store_(&store), options_(options) {}
+  SdoServer(std::uint8_t node, ObjectStore& store, Options options)
+      : node_(node), store_(&store), options_(options) {}
 
   void on_frame(const can::Frame& frame, TimePoint now);
   void on_time(TimePoint now);

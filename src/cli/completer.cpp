@@ -1,7 +1,7 @@
 #include "cli/completer.hpp"
 
-#include <algorithm>
 #include <fmt/format.h>
+#include <algorithm>
 
 #include "base/text.hpp"
 #include "can/socketcan.hpp"
@@ -29,17 +29,20 @@ std::vector<std::string> words_before(std::string_view line, std::string& last) 
 
 const Parameter* find_option(std::span<const Parameter> parameters, std::string_view word) {
   for (const auto& parameter : parameters)
-    if (parameter.name.starts_with("-") && (parameter.name == word || (!parameter.short_name.empty() && parameter.short_name == word)))
+    if (parameter.name.starts_with("-") &&
+        (parameter.name == word || (!parameter.short_name.empty() && parameter.short_name == word)))
       return &parameter;
   return nullptr;
 }
 
 class Candidates {
  public:
-  Candidates(std::string last, Shell& shell, std::string family) : last_(std::move(last)), shell_(&shell), family_(std::move(family)) {}
+  Candidates(std::string last, Shell& shell, std::string family)
+      : last_(std::move(last)), shell_(&shell), family_(std::move(family)) {}
 
   void add(std::string_view word) {
-    if (starts_with_nocase(word, last_) && std::find(out_.words.begin(), out_.words.end(), word) == out_.words.end())
+    if (starts_with_nocase(word, last_) &&
+        std::find(out_.words.begin(), out_.words.end(), word) == out_.words.end())
       out_.words.emplace_back(word);
   }
 
@@ -108,7 +111,8 @@ void add_command_words(Candidates& out, const std::vector<std::string>& words, s
   }
 }
 
-void add_positional(Candidates& out, const Command& command, const std::vector<std::string>& words, std::size_t at) {
+void add_positional(Candidates& out, const Command& command, const std::vector<std::string>& words,
+                    std::size_t at) {
   std::size_t place = 0;
   for (; at < words.size(); ++at) {
     const auto* option = find_option(command.parameters, words[at]);
@@ -146,7 +150,8 @@ Completions complete(std::string_view line, Shell& shell) {
   Candidates out(last, shell, family_of(words, shell));
   if (add_prompt_words(out, words)) return out.take();
   const auto match = match_command(words);
-  const std::span<const Parameter> own = match.command != nullptr ? match.command->parameters : std::span<const Parameter>();
+  const std::span<const Parameter> own =
+      match.command != nullptr ? match.command->parameters : std::span<const Parameter>();
   if (!words.empty()) {
     const auto* option = find_option(own, words.back());
     if (option == nullptr) option = find_option(commands::global_options(), words.back());

@@ -14,8 +14,8 @@ struct Completions {
   bool files = false;              ///< A file name is asked for: let the line editor look at the disk.
 };
 
-/// Completes the last word of `line` (empty after a blank) from the registry and from the data of the drive in use: commands,
-/// options, choices, objects, panel numbers, families, buses.
+/// Completes the last word of `line` (empty after a blank) from the registry and from the data of the drive
+/// in use: commands, options, choices, objects, panel numbers, families, buses.
 Completions complete(std::string_view line, Shell& shell);
 
 }  // namespace servoctl::cli

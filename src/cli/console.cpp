@@ -27,7 +27,8 @@ bool StandardConsole::can_ask() const { return ::isatty(STDIN_FILENO) == 1 && ::
 
 std::size_t StandardConsole::width() const {
   winsize size{};
-  if (::isatty(STDOUT_FILENO) != 1 || ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return 0;
+  if (::isatty(STDOUT_FILENO) != 1 || ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0)
+    return 0;
   return size.ws_col;
 }
 

@@ -17,7 +17,7 @@ class Console {
   virtual void err(std::string_view text) = 0;  ///< Errors, notices, progress.
   /// Asks a yes-or-no question; false when there is nobody to ask or the answer is no.
   virtual bool ask(std::string_view question) = 0;
-  virtual bool can_ask() const = 0;      ///< Whether there is a person at a terminal.
+  virtual bool can_ask() const = 0;       ///< Whether there is a person at a terminal.
   virtual std::size_t width() const = 0;  ///< Columns of the terminal text goes to; 0: no terminal.
 };
 

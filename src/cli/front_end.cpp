@@ -25,7 +25,8 @@ int run_pipe(Shell& shell, Console& console) {
   return interrupted() ? exit_code(Errc::interrupted) : 0;
 }
 
-/// Options without a command hold for all lines that follow. They are read as those of the command that needs nothing else.
+/// Options without a command hold for all lines that follow. They are read as those of the command that needs
+/// nothing else.
 Result<Settings> settings_for_lines(const Settings& defaults, std::vector<std::string> words) {
   words.emplace_back("help");
   const auto parsed = parse_line(words);
@@ -51,7 +52,8 @@ int run(const std::vector<std::string>& words) {
   shell.defaults() = std::move(*settings);
   if (::isatty(STDIN_FILENO) != 1) return run_pipe(shell, console);
   if (!shell.defaults().bus.empty())
-    if (const auto opened = shell.open(shell.defaults()); !opened) return shell.report_error(opened.error(), false);
+    if (const auto opened = shell.open(shell.defaults()); !opened)
+      return shell.report_error(opened.error(), false);
   return run_prompt(shell, console);
 }
 
@@ -61,7 +63,8 @@ int run_program(const std::vector<std::string>& words) {
   try {
     return run(words);
   } catch (const std::exception& e) {
-    std::cerr << "error: servoctl failed: " << e.what() << "\n  hint: this is a bug; please report it with the command line\n";
+    std::cerr << "error: servoctl failed: " << e.what()
+              << "\n  hint: this is a bug; please report it with the command line\n";
     return exit_code(Errc::bug);
   }
 }

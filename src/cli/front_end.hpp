@@ -5,8 +5,8 @@
 
 namespace servoctl::cli {
 
-/// The program: one command, the prompt when no command is given and standard input is a terminal, command lines from
-/// standard input otherwise. The answer is the exit code.
+/// The program: one command, the prompt when no command is given and standard input is a terminal, command
+/// lines from standard input otherwise. The answer is the exit code.
 int run_program(const std::vector<std::string>& words);
 
 }  // namespace servoctl::cli

@@ -8,7 +8,8 @@
 
 namespace servoctl::cli {
 
-/// One of the words that only make sense where several lines follow each other: `use`, `drive`, `bus`, `exit`.
+/// One of the words that only make sense where several lines follow each other: `use`, `drive`, `bus`,
+/// `exit`.
 struct PromptWord {
   std::string_view name;
   std::string_view argument;  ///< `NODE`; empty: takes none.
@@ -16,8 +17,8 @@ struct PromptWord {
 };
 std::vector<PromptWord> prompt_words();
 
-/// Runs lines as the prompt and a pipe give them: commands, and the words above, which set what holds for the lines after
-/// them.
+/// Runs lines as the prompt and a pipe give them: commands, and the words above, which set what holds for the
+/// lines after them.
 class LineRunner {
  public:
   LineRunner(Shell& shell, Console& console) : shell_(&shell), console_(&console) {}

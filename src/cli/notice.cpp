@@ -30,8 +30,9 @@ struct Words {
   }
   std::string operator()(const canopen::Emergency& e) const {
     if (e.is_reset()) return "EMCY 0x0000: error reset or no error";
-    return fmt::format("EMCY 0x{:04X} {}; error register 0x{:02X} ({}); vendor bytes {}", e.code, emergency_words(e, profile, chinese),
-                       e.error_register, canopen::error_register_text(e.error_register), to_hex(e.vendor));
+    return fmt::format("EMCY 0x{:04X} {}; error register 0x{:02X} ({}); vendor bytes {}", e.code,
+                       emergency_words(e, profile, chinese), e.error_register,
+                       canopen::error_register_text(e.error_register), to_hex(e.vendor));
   }
 };
 

@@ -1,9 +1,9 @@
 #include "cli/parse.hpp"
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <deque>
-#include <fmt/format.h>
 
 #include "base/text.hpp"
 
@@ -35,17 +35,19 @@ std::size_t first_plain_word(const std::vector<std::string>& words) {
   std::size_t i = 0;
   while (i < words.size() && words[i].size() > 1 && words[i].front() == '-') {
     const auto* option = global_option(words[i]);
-    const bool takes_next = option != nullptr && option->kind != Kind::flag && words[i].find('=') == std::string::npos;
+    const bool takes_next =
+        option != nullptr && option->kind != Kind::flag && words[i].find('=') == std::string::npos;
     i += takes_next ? 2 : 1;
   }
   return std::min(i, words.size());
 }
 
-/// One fresh CLI::App a line: no value can leak from one line of the prompt to the next. Every value stays text, because
-/// CLI11 reads "010" as 8 and refuses "6040h".
+/// One fresh CLI::App a line: no value can leak from one line of the prompt to the next. Every value stays
+/// text, because CLI11 reads "010" as 8 and refuses "6040h".
 class Parser {
  public:
-  explicit Parser(const Command& command) : command_(&command), app_(std::string(command.summary), std::string(command.path)) {
+  explicit Parser(const Command& command)
+      : command_(&command), app_(std::string(command.summary), std::string(command.path)) {
     app_.set_help_flag();
     app_.allow_extras();
     for (const auto& parameter : command.parameters) bind(parameter);
@@ -73,8 +75,9 @@ class Parser {
   };
 
   void bind(const Parameter& parameter) {
-    const auto names = parameter.short_name.empty() ? std::string(parameter.name)
-                                                    : fmt::format("{},{}", parameter.short_name, parameter.name);
+    const auto names = parameter.short_name.empty()
+                           ? std::string(parameter.name)
+                           : fmt::format("{},{}", parameter.short_name, parameter.name);
     auto& values = values_.emplace_back();
     CLI::Option* option = nullptr;
     if (parameter.kind == Kind::flag)
@@ -82,7 +85,8 @@ class Parser {
     else
       option = app_.add_option(names, values)
                    ->expected(1, parameter.many ? CLI::detail::expected_max_vector_size : 1)
-                   ->multi_option_policy(parameter.many ? CLI::MultiOptionPolicy::TakeAll : CLI::MultiOptionPolicy::TakeLast)
+                   ->multi_option_policy(parameter.many ? CLI::MultiOptionPolicy::TakeAll
+                                                        : CLI::MultiOptionPolicy::TakeLast)
                    ->allow_extra_args(parameter.many);
     bound_.push_back({&parameter, option, &values});
   }
@@ -99,7 +103,8 @@ class Parser {
       }
       if (parameter.kind == Kind::flag) out.add(parameter.name, "true");
       for (const auto& value : *entry.values) {
-        if (parameter.kind == Kind::choice && std::find(parameter.choices.begin(), parameter.choices.end(), value) == parameter.choices.end())
+        if (parameter.kind == Kind::choice &&
+            std::find(parameter.choices.begin(), parameter.choices.end(), value) == parameter.choices.end())
           return bad_choice(parameter, value);
         out.add(parameter.name, value);
       }
@@ -109,17 +114,20 @@ class Parser {
 
   tl::unexpected<Error> bad_choice(const Parameter& parameter, const std::string& value) const {
     const std::vector<std::string> choices(parameter.choices.begin(), parameter.choices.end());
-    return fail(Errc::usage, fmt::format("{}: '{}' is no value of {}", command_->path, value, parameter.name), "write " + one_of(choices));
+    return fail(Errc::usage, fmt::format("{}: '{}' is no value of {}", command_->path, value, parameter.name),
+                "write " + one_of(choices));
   }
 
   tl::unexpected<Error> superfluous(const std::string& word) const {
     if (word.size() < 2 || word.front() != '-')
-      return fail(Errc::usage, fmt::format("{}: '{}' is one word too many", command_->path, word), help_hint());
+      return fail(Errc::usage, fmt::format("{}: '{}' is one word too many", command_->path, word),
+                  help_hint());
     std::vector<std::string> known;
     for (const auto& entry : bound_)
       if (entry.parameter->name.starts_with("-")) known.emplace_back(entry.parameter->name);
     auto hint = did_you_mean(word, known);
-    return fail(Errc::usage, fmt::format("{}: there is no option '{}'", command_->path, word), hint.empty() ? help_hint() : hint);
+    return fail(Errc::usage, fmt::format("{}: there is no option '{}'", command_->path, word),
+                hint.empty() ? help_hint() : hint);
   }
 
   std::string help_hint() const { return fmt::format("`help {}` shows how it is used", command_->path); }
@@ -135,7 +143,8 @@ tl::unexpected<Error> unknown_command(const std::vector<std::string>& words, std
   std::vector<std::string> in_group;
   for (const auto* command : commands::registry()) {
     paths.emplace_back(command->path);
-    if (split(command->path, ' ').size() > 1 && split(command->path, ' ').front() == words[first]) in_group.emplace_back(command->path);
+    if (split(command->path, ' ').size() > 1 && split(command->path, ' ').front() == words[first])
+      in_group.emplace_back(command->path);
   }
   if (!in_group.empty()) {
     const auto said = first + 1 < words.size() ? words[first] + " " + words[first + 1] : words[first];
@@ -182,7 +191,8 @@ Result<ParsedLine> parse_line(const std::vector<std::string>& words) {
 }
 
 bool asks_for_help(const std::vector<std::string>& words) {
-  return std::any_of(words.begin(), words.end(), [](const std::string& w) { return w == "--help" || w == "-h"; });
+  return std::any_of(words.begin(), words.end(),
+                     [](const std::string& w) { return w == "--help" || w == "-h"; });
 }
 
 }  // namespace servoctl::cli

@@ -14,15 +14,15 @@ struct ParsedLine {
   commands::Arguments arguments;  ///< Of the command and of the global options.
 };
 
-/// Finds the command (global options may stand before it) and its arguments. Errc::usage with the nearest names for an
-/// unknown command or option, and for a missing or superfluous word.
+/// Finds the command (global options may stand before it) and its arguments. Errc::usage with the nearest
+/// names for an unknown command or option, and for a missing or superfluous word.
 Result<ParsedLine> parse_line(const std::vector<std::string>& words);
 
 /// Whether the line asks for help: `--help` or `-h` among its options.
 bool asks_for_help(const std::vector<std::string>& words);
 
-/// The command the words name, global options left out: the longest path that fits. `used` counts the words it takes,
-/// `first` is the position of its first word. Null when there is none.
+/// The command the words name, global options left out: the longest path that fits. `used` counts the words
+/// it takes, `first` is the position of its first word. Null when there is none.
 struct CommandMatch {
   const commands::Command* command = nullptr;
   std::size_t first = 0;

@@ -4,10 +4,10 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
-#include <fmt/format.h>
 
 #include "cli/completer.hpp"
 #include "cli/history.hpp"
@@ -37,7 +37,9 @@ class Prompt {
   static Prompt* active_;
 
   static void on_line(char* line) { active_->take_line(line); }
-  static char** on_complete(const char* text, int start, int end) { return active_->candidates(text, start, end); }
+  static char** on_complete(const char* text, int start, int end) {
+    return active_->candidates(text, start, end);
+  }
   static char* next_candidate(const char* text, int state);
 
   void take_line(char* line);
@@ -96,10 +98,12 @@ int Prompt::run() {
 /// True when a key waits; frames and timers of the bus are served meanwhile.
 bool Prompt::wait_for_key() {
   auto* session = shell_->session();
-  pollfd fds[2] = {{STDIN_FILENO, POLLIN, 0}, {session == nullptr ? -1 : session->bus().poll_fd(), POLLIN, 0}};
+  pollfd fds[2] = {{STDIN_FILENO, POLLIN, 0},
+                   {session == nullptr ? -1 : session->bus().poll_fd(), POLLIN, 0}};
   int wait = -1;
   if (session != nullptr && session->next_event() != kNever) {
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(session->next_event() - session->now()).count();
+    const auto left =
+        std::chrono::ceil<std::chrono::milliseconds>(session->next_event() - session->now()).count();
     wait = static_cast<int>(std::clamp<long long>(left, 0, 60'000));
   }
   if (::poll(fds, 2, wait) < 0) return false;
@@ -115,7 +119,8 @@ bool Prompt::wait_for_key() {
 
 void Prompt::show_notices() {
   const auto& settings = shell_->defaults();
-  const auto loaded = settings.drive.empty() ? Result<const drive::Profile*>(nullptr) : shell_->profile(settings.drive);
+  const auto loaded =
+      settings.drive.empty() ? Result<const drive::Profile*>(nullptr) : shell_->profile(settings.drive);
   const auto notices = shell_->take_notices(loaded ? *loaded : nullptr, settings.chinese);
   if (notices.empty()) return;
   console_->out("\r\033[K");

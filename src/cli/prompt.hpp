@@ -5,8 +5,9 @@
 
 namespace servoctl::cli {
 
-/// The interactive prompt: line editing, history kept between runs, completion. While the user types the bus is listened to,
-/// and what nodes tell is shown above the line. Returns the exit code: 0, or 130 after SIGTERM or SIGHUP.
+/// The interactive prompt: line editing, history kept between runs, completion. While the user types the bus
+/// is listened to, and what nodes tell is shown above the line. Returns the exit code: 0, or 130 after
+/// SIGTERM or SIGHUP.
 int run_prompt(Shell& shell, Console& console);
 
 }  // namespace servoctl::cli

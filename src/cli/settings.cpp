@@ -1,8 +1,8 @@
 #include "cli/settings.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cstdlib>
-#include <fmt/format.h>
 
 #include "base/duration.hpp"
 #include "base/number.hpp"
@@ -18,7 +18,8 @@ std::string variable(const char* name) {
 }
 
 tl::unexpected<Error> bad_nodes(std::string_view text) {
-  return fail(Errc::usage, fmt::format("'{}' is no node-ID", text), "write -n 1, -n 1,3,5-8 or -n all; node-IDs are 1 to 127");
+  return fail(Errc::usage, fmt::format("'{}' is no node-ID", text),
+              "write -n 1, -n 1,3,5-8 or -n all; node-IDs are 1 to 127");
 }
 
 }  // namespace
@@ -43,13 +44,15 @@ Result<Settings> apply_options(Settings base, const commands::Arguments& argumen
   if (arguments.has("--timeout")) {
     const auto timeout = parse_duration(arguments.text("--timeout"));
     if (!timeout || *timeout == Duration::zero())
-      return fail(Errc::usage, fmt::format("--timeout: '{}' is no time", arguments.text("--timeout")), "write 500ms or 2s");
+      return fail(Errc::usage, fmt::format("--timeout: '{}' is no time", arguments.text("--timeout")),
+                  "write 500ms or 2s");
     base.timeout = *timeout;
   }
   if (arguments.has("--retries")) {
     const auto retries = parse_digits(arguments.text("--retries"), 10);
     if (!retries || *retries > 100)
-      return fail(Errc::usage, fmt::format("--retries: '{}' is no number of 0 to 100", arguments.text("--retries")));
+      return fail(Errc::usage,
+                  fmt::format("--retries: '{}' is no number of 0 to 100", arguments.text("--retries")));
     base.retries = static_cast<std::uint32_t>(*retries);
   }
   if (arguments.has("--output")) base.json = arguments.text("--output") != "text";
@@ -73,7 +76,8 @@ Result<std::vector<std::uint8_t>> parse_nodes(std::string_view text) {
       return n && !n->negative && n->magnitude >= canopen::kFirstNode && n->magnitude <= canopen::kLastNode;
     };
     if (!valid(first) || !valid(last) || first->magnitude > last->magnitude) return bad_nodes(part);
-    for (auto node = first->magnitude; node <= last->magnitude; ++node) out.push_back(static_cast<std::uint8_t>(node));
+    for (auto node = first->magnitude; node <= last->magnitude; ++node)
+      out.push_back(static_cast<std::uint8_t>(node));
   }
   if (out.empty()) return bad_nodes(text);
   std::sort(out.begin(), out.end());

@@ -33,7 +33,8 @@ Settings settings_from_environment();
 /// `base` with the global options of one line on top. Errc::usage for a value that is none.
 Result<Settings> apply_options(Settings base, const commands::Arguments& arguments);
 
-/// Reads `1`, `1,3,5-8` (rising, without doubles) or `all` ({0}). Errc::usage for anything else or an ID outside 1..127.
+/// Reads `1`, `1,3,5-8` (rising, without doubles) or `all` ({0}). Errc::usage for anything else or an ID
+/// outside 1..127.
 Result<std::vector<std::uint8_t>> parse_nodes(std::string_view text);
 
 }  // namespace servoctl::cli

@@ -1,13 +1,13 @@
 #include "cli/shell.hpp"
 
-#include <algorithm>
 #include <fmt/format.h>
+#include <algorithm>
 #include <numeric>
 #include <span>
 
 #include "base/text.hpp"
-#include "canopen/cob_id.hpp"
 #include "can/socketcan.hpp"
+#include "canopen/cob_id.hpp"
 #include "cli/notice.hpp"
 #include "commands/help.hpp"
 #include "commands/records.hpp"
@@ -26,12 +26,14 @@ Error no_bus() {
   error.code = Errc::usage;
   error.message = "which bus?";
   const auto interfaces = can::can_interfaces();
-  error.hint = interfaces.empty() ? "this machine has no CAN interface now; try `--bus sim:FAMILY@1` (`drives` lists families), or local:NAME"
+  error.hint = interfaces.empty() ? "this machine has no CAN interface now; try `--bus sim:FAMILY@1` "
+                                    "(`drives` lists families), or local:NAME"
                                   : fmt::format("add --bus {} or set SERVOCTL_BUS", one_of(interfaces));
   return error;
 }
 
-/// Errors as people read them: what happened, then what to do. The same advice for several errors is given once.
+/// Errors as people read them: what happened, then what to do. The same advice for several errors is given
+/// once.
 std::string errors_text(std::span<const Error> errors) {
   std::string out;
   for (std::size_t i = 0; i < errors.size(); ++i) {
@@ -45,8 +47,12 @@ std::string errors_text(std::span<const Error> errors) {
 
 bool wants_json(const std::vector<std::string>& words) {
   for (std::size_t i = 0; i < words.size(); ++i) {
-    if (words[i] == "--json" || words[i] == "--output=json" || words[i] == "--output=jsonl" || words[i] == "-ojson") return true;
-    if ((words[i] == "-o" || words[i] == "--output") && i + 1 < words.size() && words[i + 1].starts_with("json")) return true;
+    if (words[i] == "--json" || words[i] == "--output=json" || words[i] == "--output=jsonl" ||
+        words[i] == "-ojson")
+      return true;
+    if ((words[i] == "-o" || words[i] == "--output") && i + 1 < words.size() &&
+        words[i + 1].starts_with("json"))
+      return true;
   }
   return false;
 }
@@ -56,7 +62,9 @@ bool wants_json(const std::vector<std::string>& words) {
 int Shell::run(const std::vector<std::string>& words) {
   if (asks_for_help(words)) {
     const auto match = match_command(words);
-    const std::string path = match.command != nullptr ? std::string(match.command->path) : match.first < words.size() ? words[match.first] : std::string();
+    const std::string path = match.command != nullptr     ? std::string(match.command->path)
+                             : match.first < words.size() ? words[match.first]
+                                                          : std::string();
     const auto text = commands::help_text(path, console_->width());
     if (!text) return report_error(text.error(), wants_json(words));
     console_->out(*text);
@@ -65,7 +73,8 @@ int Shell::run(const std::vector<std::string>& words) {
   auto parsed = parse_line(words);
   if (!parsed) {
     const auto match = match_command(words);
-    return report_error(parsed.error(), wants_json(words), match.command != nullptr ? match.command->path : std::string_view());
+    return report_error(parsed.error(), wants_json(words),
+                        match.command != nullptr ? match.command->path : std::string_view());
   }
   auto settings = apply_options(options_.defaults, parsed->arguments);
   if (!settings) return report_error(settings.error(), wants_json(words), parsed->command->path);
@@ -83,12 +92,14 @@ Result<Value> Shell::execute(Run& run, const commands::Arguments& arguments) {
   context.confirm = [this, &run](std::string_view question) -> Result<void> {
     if (run.settings.yes) return {};
     if (!console_->can_ask())
-      return fail(Errc::refused, fmt::format("this needs a confirmation: {}", question), "add --yes when you mean it");
+      return fail(Errc::refused, fmt::format("this needs a confirmation: {}", question),
+                  "add --yes when you mean it");
     if (console_->ask(question)) return {};
     return fail(Errc::refused, "not confirmed; nothing was sent");
   };
   context.emit = [this, &run](const Value& value) {
-    console_->out(run.settings.json ? report::to_json(value) + "\n" : report::to_text(value, console_->width()));
+    console_->out(run.settings.json ? report::to_json(value) + "\n"
+                                    : report::to_text(value, console_->width()));
   };
   return run.command->run(context, arguments);
 }
@@ -97,15 +108,18 @@ Result<void> Shell::prepare(Run& run) {
   const auto& command = *run.command;
   // A command that asks for more than reading is refused as a whole, before anything is opened.
   if (run.settings.read_only && command.effect >= Effect::writes && !run.settings.dry_run)
-    return fail(Errc::refused, fmt::format("'{}' changes a drive, and --read-only forbids it", command.path), "leave --read-only out when you mean it");
+    return fail(Errc::refused, fmt::format("'{}' changes a drive, and --read-only forbids it", command.path),
+                "leave --read-only out when you mean it");
   if (!run.settings.drive.empty() || includes(command.needs, Needs::dictionary))
     if (const auto ready = prepare_profile(run); !ready) return ready;
   if (!includes(command.needs, Needs::bus)) return {};
   // What is wrong in the line itself is told before a bus is opened.
   if (includes(command.needs, Needs::node) && run.settings.nodes.empty())
-    return fail(Errc::usage, fmt::format("'{}' needs a node", command.path), "add -n 1 (or a list, or all); `scan` shows who is there");
+    return fail(Errc::usage, fmt::format("'{}' needs a node", command.path),
+                "add -n 1 (or a list, or all); `scan` shows who is there");
   if (!run.settings.nodes.empty())
-    if (const auto nodes = parse_nodes(run.settings.nodes); !nodes) return tl::unexpected<Error>(nodes.error());
+    if (const auto nodes = parse_nodes(run.settings.nodes); !nodes)
+      return tl::unexpected<Error>(nodes.error());
   const auto opened = open(run.settings);
   if (!opened) return tl::unexpected<Error>(opened.error());
   run.context.session = *opened;
@@ -127,20 +141,26 @@ tl::unexpected<Error> Shell::ask_for_family(Run& run) {
   std::vector<std::string> names;
   for (const auto& family : families) names.push_back(family.name);
   auto hint = names.empty() ? std::string("add -d FILE.eds") : "add -d " + one_of(names) + ", or -d FILE.eds";
-  const bool can_look = includes(run.command->needs, Needs::node) && !run.settings.nodes.empty() && !run.settings.bus.empty();
-  const auto nodes = can_look ? parse_nodes(run.settings.nodes) : Result<std::vector<std::uint8_t>>(std::vector<std::uint8_t>{});
+  const bool can_look =
+      includes(run.command->needs, Needs::node) && !run.settings.nodes.empty() && !run.settings.bus.empty();
+  const auto nodes = can_look ? parse_nodes(run.settings.nodes)
+                              : Result<std::vector<std::uint8_t>>(std::vector<std::uint8_t>{});
   if (nodes && !nodes->empty() && nodes->front() != 0) {
     if (const auto opened = open(run.settings)) {
       const auto found = session::scan(**opened, *nodes);
       if (found && !found->empty()) {
         std::vector<std::string> guesses;
-        for (const auto& guess : session::guess_families(found->front(), families)) guesses.push_back(guess.family);
+        for (const auto& guess : session::guess_families(found->front(), families))
+          guesses.push_back(guess.family);
         if (!guesses.empty())
-          hint = fmt::format("its identity fits {} (a guess, no proof): when the nameplate says so, add -d {}", one_of(guesses), guesses.front());
+          hint =
+              fmt::format("its identity fits {} (a guess, no proof): when the nameplate says so, add -d {}",
+                          one_of(guesses), guesses.front());
       }
     }
   }
-  return fail(Errc::usage, fmt::format("'{}' needs to know the drive family", run.command->path), std::move(hint));
+  return fail(Errc::usage, fmt::format("'{}' needs to know the drive family", run.command->path),
+              std::move(hint));
 }
 
 Result<void> Shell::prepare_nodes(Run& run) {
@@ -156,7 +176,8 @@ Result<void> Shell::prepare_nodes(Run& run) {
     nodes->clear();
     for (const auto& node : *found) nodes->push_back(node.node);
     if (nodes->empty())
-      return fail(Errc::timeout, fmt::format("no node answered on {}", run.settings.bus), "check power, cable, termination and bitrate");
+      return fail(Errc::timeout, fmt::format("no node answered on {}", run.settings.bus),
+                  "check power, cable, termination and bitrate");
   }
   run.context.nodes = std::move(*nodes);
   return {};
@@ -204,7 +225,8 @@ std::vector<std::string> Shell::take_notices(const drive::Profile* profile, bool
 int Shell::finish(Run& run, const Result<Value>& result) {
   auto& errors = run.context.errors;
   if (!result) errors.insert(errors.begin(), result.error());
-  for (auto& notice : take_notices(run.context.profile, run.settings.chinese)) run.context.notices.push_back(std::move(notice));
+  for (auto& notice : take_notices(run.context.profile, run.settings.chinese))
+    run.context.notices.push_back(std::move(notice));
   if (run.context.profile != nullptr && run.settings.chinese)
     for (auto& error : errors) {
       const auto& texts = run.context.profile->rules.abort_texts_zh;
@@ -220,7 +242,8 @@ int Shell::finish(Run& run, const Result<Value>& result) {
 
 int Shell::finish_json(Run& run, const Value& value, int code) {
   report::Record out{{"servoctl", 1}, {"command", run.command->path}, {"ok", code == 0}};
-  out.push_back({"bus", includes(run.command->needs, Needs::bus) ? report::text_or_null(run.settings.bus) : Value()});
+  out.push_back(
+      {"bus", includes(run.command->needs, Needs::bus) ? report::text_or_null(run.settings.bus) : Value()});
   if (code != 0) out.push_back({"error", commands::error_record(run.context.errors.front())});
   out.push_back({"result", value});
   report::List notices;
@@ -243,8 +266,13 @@ int Shell::report_error(const Error& error, bool json, std::string_view command)
     console_->err(errors_text(std::span(&error, 1)));
     return code;
   }
-  report::Record out{{"servoctl", 1}, {"command", command.empty() ? Value() : Value(command)}, {"ok", false}, {"bus", Value()},
-                     {"error", commands::error_record(error)}, {"result", Value()}, {"notices", report::List{}}};
+  report::Record out{{"servoctl", 1},
+                     {"command", command.empty() ? Value() : Value(command)},
+                     {"ok", false},
+                     {"bus", Value()},
+                     {"error", commands::error_record(error)},
+                     {"result", Value()},
+                     {"notices", report::List{}}};
   console_->out(report::to_json(out) + "\n");
   return code;
 }

@@ -15,8 +15,8 @@
 
 namespace servoctl::cli {
 
-/// Runs command lines, one after the other: opens what a command needs, runs it, renders its result. Keeps the bus and the
-/// drive data open from one line to the next. Every front end runs its lines here.
+/// Runs command lines, one after the other: opens what a command needs, runs it, renders its result. Keeps
+/// the bus and the drive data open from one line to the next. Every front end runs its lines here.
 class Shell {
  public:
   struct Options {

@@ -1,8 +1,8 @@
 #include "cli/signals.hpp"
 
+#include <unistd.h>
 #include <csignal>
 #include <initializer_list>
-#include <unistd.h>
 
 namespace servoctl::cli {
 namespace {

@@ -2,8 +2,8 @@
 
 namespace servoctl::cli {
 
-/// Catches SIGINT, SIGTERM and SIGHUP so that every wait ends in order; SIGPIPE is ignored. A second SIGINT while the first is
-/// still being worked on ends the process at once.
+/// Catches SIGINT, SIGTERM and SIGHUP so that every wait ends in order; SIGPIPE is ignored. A second SIGINT
+/// while the first is still being worked on ends the process at once.
 void install_signal_handlers();
 
 /// Whether one of them came since the last clear_interrupt().

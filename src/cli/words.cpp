@@ -27,7 +27,9 @@ Result<std::vector<std::string>> split_words(std::string_view line) {
       words.back() += c;
     }
   }
-  if (quote != '\0') return fail(Errc::usage, std::string("the quote ") + quote + " is not closed", "close it, or write \\" + std::string(1, quote));
+  if (quote != '\0')
+    return fail(Errc::usage, std::string("the quote ") + quote + " is not closed",
+                "close it, or write \\" + std::string(1, quote));
   return words;
 }
 

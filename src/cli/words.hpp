@@ -8,9 +8,9 @@
 
 namespace servoctl::cli {
 
-/// Splits a command line into words as a shell does: blanks separate, 'single' and "double" quotes keep them together, a
-/// backslash takes the next character as it is (not in single quotes), `#` at the start of a word begins a comment.
-/// Errc::usage when a quote is not closed.
+/// Splits a command line into words as a shell does: blanks separate, 'single' and "double" quotes keep them
+/// together, a backslash takes the next character as it is (not in single quotes), `#` at the start of a word
+/// begins a comment. Errc::usage when a quote is not closed.
 Result<std::vector<std::string>> split_words(std::string_view line);
 
 }  // namespace servoctl::cli

@@ -34,8 +34,10 @@ struct Transition {
 constexpr std::array kTransitions{
     Transition{DriveState::switch_on_disabled, ControlCommand::shutdown, DriveState::ready_to_switch_on},
     Transition{DriveState::ready_to_switch_on, ControlCommand::switch_on, DriveState::switched_on},
-    Transition{DriveState::ready_to_switch_on, ControlCommand::enable_operation, DriveState::operation_enabled},
-    Transition{DriveState::ready_to_switch_on, ControlCommand::disable_voltage, DriveState::switch_on_disabled},
+    Transition{DriveState::ready_to_switch_on, ControlCommand::enable_operation,
+               DriveState::operation_enabled},
+    Transition{DriveState::ready_to_switch_on, ControlCommand::disable_voltage,
+               DriveState::switch_on_disabled},
     Transition{DriveState::ready_to_switch_on, ControlCommand::quick_stop, DriveState::switch_on_disabled},
     Transition{DriveState::switched_on, ControlCommand::enable_operation, DriveState::operation_enabled},
     Transition{DriveState::switched_on, ControlCommand::shutdown, DriveState::ready_to_switch_on},
@@ -43,10 +45,13 @@ constexpr std::array kTransitions{
     Transition{DriveState::switched_on, ControlCommand::quick_stop, DriveState::switch_on_disabled},
     Transition{DriveState::operation_enabled, ControlCommand::switch_on, DriveState::switched_on},
     Transition{DriveState::operation_enabled, ControlCommand::shutdown, DriveState::ready_to_switch_on},
-    Transition{DriveState::operation_enabled, ControlCommand::disable_voltage, DriveState::switch_on_disabled},
+    Transition{DriveState::operation_enabled, ControlCommand::disable_voltage,
+               DriveState::switch_on_disabled},
     Transition{DriveState::operation_enabled, ControlCommand::quick_stop, DriveState::quick_stop_active},
-    Transition{DriveState::quick_stop_active, ControlCommand::disable_voltage, DriveState::switch_on_disabled},
-    Transition{DriveState::quick_stop_active, ControlCommand::enable_operation, DriveState::operation_enabled},
+    Transition{DriveState::quick_stop_active, ControlCommand::disable_voltage,
+               DriveState::switch_on_disabled},
+    Transition{DriveState::quick_stop_active, ControlCommand::enable_operation,
+               DriveState::operation_enabled},
     Transition{DriveState::fault, ControlCommand::fault_reset, DriveState::switch_on_disabled},
 };
 
@@ -55,9 +60,8 @@ struct BitRow {
   std::uint8_t bit;
   std::string_view name;
 };
-constexpr std::array kBits{BitRow{4, "voltage enabled"}, BitRow{7, "warning"},
-                           BitRow{9, "remote"},          BitRow{10, "target reached"},
-                           BitRow{11, "internal limit active"}};
+constexpr std::array kBits{BitRow{4, "voltage enabled"}, BitRow{7, "warning"}, BitRow{9, "remote"},
+                           BitRow{10, "target reached"}, BitRow{11, "internal limit active"}};
 
 std::string_view mode_bit(int bit, std::int8_t mode) {
   switch (mode) {
@@ -95,7 +99,8 @@ bool is_energised(DriveState state) {
 }
 
 ControlCommand decode_command(std::uint16_t controlword, std::uint16_t before) {
-  if ((controlword & 0x80U) != 0) return (before & 0x80U) == 0 ? ControlCommand::fault_reset : ControlCommand::none;
+  if ((controlword & 0x80U) != 0)
+    return (before & 0x80U) == 0 ? ControlCommand::fault_reset : ControlCommand::none;
   if ((controlword & 0x02U) == 0) return ControlCommand::disable_voltage;
   if ((controlword & 0x04U) == 0) return ControlCommand::quick_stop;
   if ((controlword & 0x01U) == 0) return ControlCommand::shutdown;

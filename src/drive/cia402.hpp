@@ -30,18 +30,27 @@ DriveState decode_state(std::uint16_t statusword);
 bool is_energised(DriveState state);
 
 /// The commands a controlword (6040h) can carry (CiA 402-2, table 28), by bits 0 to 3 and 7.
-enum class ControlCommand : std::uint8_t { none, shutdown, switch_on, enable_operation, disable_voltage, quick_stop, fault_reset };
+enum class ControlCommand : std::uint8_t {
+  none,
+  shutdown,
+  switch_on,
+  enable_operation,
+  disable_voltage,
+  quick_stop,
+  fault_reset
+};
 
-/// The command in a controlword. A fault reset is the rising edge of bit 7, seen against the controlword before; while bit
-/// 7 stays set no other command is carried out.
+/// The command in a controlword. A fault reset is the rising edge of bit 7, seen against the controlword
+/// before; while bit 7 stays set no other command is carried out.
 ControlCommand decode_command(std::uint16_t controlword, std::uint16_t before);
 
-/// The state the command leads to, or the same state where it does nothing there. Transitions 2 to 12, 15 and 16; those
-/// the drive makes by itself are not in it. Switch on + enable operation in one step (3 and 4) is followed.
+/// The state the command leads to, or the same state where it does nothing there. Transitions 2 to 12, 15 and
+/// 16; those the drive makes by itself are not in it. Switch on + enable operation in one step (3 and 4) is
+/// followed.
 DriveState next_state(DriveState state, ControlCommand command);
 
-/// The bits of a statusword with their common meaning, low to high: `quick_stop`, `warning`, `remote`, … Bits 12 and 13
-/// depend on the mode of operation (0 when unknown).
+/// The bits of a statusword with their common meaning, low to high: `quick_stop`, `warning`, `remote`, … Bits
+/// 12 and 13 depend on the mode of operation (0 when unknown).
 std::vector<std::string> statusword_bits(std::uint16_t statusword, std::int8_t mode);
 
 }  // namespace servoctl::drive

@@ -1,8 +1,8 @@
 #include "drive/fault.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
-#include <fmt/format.h>
 
 #include "base/csv.hpp"
 #include "base/number.hpp"
@@ -10,8 +10,9 @@
 namespace servoctl::drive {
 namespace {
 
-constexpr std::array<std::string_view, 11> kColumns{"code",    "extra", "panel",    "kind",    "resettable", "name",
-                                                    "name_zh", "check", "check_zh", "assumed", "line"};
+constexpr std::array<std::string_view, 11> kColumns{"code",       "extra",   "panel",   "kind",
+                                                    "resettable", "name",    "name_zh", "check",
+                                                    "check_zh",   "assumed", "line"};
 
 tl::unexpected<Error> bad_cell(std::string_view file, std::uint32_t line, std::string_view column,
                                std::string_view cell, std::string_view expected) {
@@ -62,7 +63,8 @@ Result<std::vector<Fault>> parse_faults(std::string_view csv, std::string_view f
     if (!kind) return bad_cell(file, row.line, "kind", cell("kind"), "fault, warning or status");
     fault.kind = *kind;
     if (const auto text = cell("resettable"); !text.empty()) {
-      if (text != "yes" && text != "no") return bad_cell(file, row.line, "resettable", text, "yes, no or empty");
+      if (text != "yes" && text != "no")
+        return bad_cell(file, row.line, "resettable", text, "yes, no or empty");
       fault.resettable = text == "yes";
     }
     const auto manual_line = parse_integer(cell("line"));

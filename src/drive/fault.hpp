@@ -17,10 +17,10 @@ struct Fault {
   std::string extra;                  ///< The vendor's second code, as printed.
   std::string panel;                  ///< What the panel shows.
   Kind kind = Kind::fault;
-  std::optional<bool> resettable;     ///< Empty: the manual does not say.
+  std::optional<bool> resettable;  ///< Empty: the manual does not say.
   std::string name;
   std::string name_zh;
-  std::string check;                  ///< Cause and remedy.
+  std::string check;  ///< Cause and remedy.
   std::string check_zh;
   std::string assumed;
   std::uint32_t line = 0;

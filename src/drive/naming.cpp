@@ -1,14 +1,16 @@
 #include "drive/naming.hpp"
 
-#include <algorithm>
 #include <fmt/format.h>
+#include <algorithm>
 
 #include "base/text.hpp"
 
 namespace servoctl::drive {
 namespace {
 
-bool is_plain(const od::Object& object) { return object.entries.size() == 1 && object.entries.front().address.sub == 0; }
+bool is_plain(const od::Object& object) {
+  return object.entries.size() == 1 && object.entries.front().address.sub == 0;
+}
 
 /// Entries of `object` that `part` names: exactly, or as a piece of one name.
 std::vector<const od::Entry*> entries_named(const od::Object& object, std::string_view part) {
@@ -16,7 +18,8 @@ std::vector<const od::Entry*> entries_named(const od::Object& object, std::strin
   for (const auto& entry : object.entries) {
     const auto name = od::identifier(entry.name);
     if (name == part) return {&entry};
-    if (entry.address.sub != 0 && !part.empty() && name.find(part) != std::string::npos) pieces.push_back(&entry);
+    if (entry.address.sub != 0 && !part.empty() && name.find(part) != std::string::npos)
+      pieces.push_back(&entry);
   }
   return pieces;
 }
@@ -24,13 +27,16 @@ std::vector<const od::Entry*> entries_named(const od::Object& object, std::strin
 tl::unexpected<Error> unknown(const Profile& profile, std::string_view text) {
   const auto known = names(profile);
   auto hint = did_you_mean(lower(text), known);
-  if (hint.empty()) hint = "`objects PATTERN` and `param search WORD` find names; an index is written 0x6041 or 6041h";
-  return fail(Errc::usage, fmt::format("'{}' is no object or parameter of {}", text, profile.family), std::move(hint));
+  if (hint.empty())
+    hint = "`objects PATTERN` and `param search WORD` find names; an index is written 0x6041 or 6041h";
+  return fail(Errc::usage, fmt::format("'{}' is no object or parameter of {}", text, profile.family),
+              std::move(hint));
 }
 
 tl::unexpected<Error> ambiguous(std::string_view text, const std::vector<std::string>& meanings) {
-  const std::vector<std::string> shown(meanings.begin(),
-                                       meanings.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(meanings.size(), 6)));
+  const std::vector<std::string> shown(
+      meanings.begin(),
+      meanings.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(meanings.size(), 6)));
   return fail(Errc::usage, fmt::format("'{}' is ambiguous: {} meanings", text, meanings.size()),
               "write " + one_of(shown) + (shown.size() < meanings.size() ? ", …" : ""));
 }
@@ -48,7 +54,8 @@ std::vector<Target> named(const Profile& profile, std::string_view text) {
       for (const auto& entry : object.entries)
         if (is_plain(object) || entry.address.sub != 0) out.push_back(target_at(&profile, entry.address));
     } else {
-      for (const auto* entry : entries_named(object, part)) out.push_back(target_at(&profile, entry->address));
+      for (const auto* entry : entries_named(object, part))
+        out.push_back(target_at(&profile, entry->address));
     }
   }
   return out;
@@ -57,7 +64,8 @@ std::vector<Target> named(const Profile& profile, std::string_view text) {
 std::string full_name(const Profile& profile, const Target& target) {
   if (target.parameter != nullptr) return target.parameter->id;
   const auto* object = profile.dictionary.object(target.address.index);
-  return object != nullptr && target.entry != nullptr ? entry_name(*object, *target.entry) : to_string(target.address);
+  return object != nullptr && target.entry != nullptr ? entry_name(*object, *target.entry)
+                                                      : to_string(target.address);
 }
 
 }  // namespace
@@ -111,17 +119,20 @@ Result<const od::Parameter*> resolve_parameter(const Profile& profile, std::stri
   auto hint = profile.parameters.empty() ? fmt::format("{} has no table of panel parameters", profile.family)
                                          : did_you_mean(text, known);
   if (hint.empty()) hint = "`param list` shows all, `param search WORD` finds them by name";
-  return fail(Errc::usage, fmt::format("'{}' is no panel parameter of {}", text, profile.family), std::move(hint));
+  return fail(Errc::usage, fmt::format("'{}' is no panel parameter of {}", text, profile.family),
+              std::move(hint));
 }
 
 Result<Target> resolve(const Profile* profile, std::string_view text) {
   if (const auto address = parse_object_address(text)) return target_at(profile, *address);
   if (profile == nullptr)
-    return fail(Errc::usage, fmt::format("'{}' is no object address, and without a drive family names are unknown", text),
+    return fail(Errc::usage,
+                fmt::format("'{}' is no object address, and without a drive family names are unknown", text),
                 "write an address such as 0x6041 or 0x6099:1, or add -d FAMILY (`drives` lists them)");
   if (const auto* parameter = profile->parameter(text)) {
     if (!parameter->object)
-      return fail(Errc::usage, fmt::format("{} ({}) has no object on the bus", parameter->id, parameter->name),
+      return fail(Errc::usage,
+                  fmt::format("{} ({}) has no object on the bus", parameter->id, parameter->name),
                   "it can be changed on the panel only; `param explain` tells what it does");
     return target_at(profile, *parameter->object);
   }

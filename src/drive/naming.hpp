@@ -10,8 +10,8 @@
 
 namespace servoctl::drive {
 
-/// What a name on the command line stands for. Entry and parameter point into the profile; each may be missing: an address
-/// needs no dictionary, a panel parameter may have no object.
+/// What a name on the command line stands for. Entry and parameter point into the profile; each may be
+/// missing: an address needs no dictionary, a panel parameter may have no object.
 struct Target {
   ObjectAddress address;
   const od::Entry* entry = nullptr;
@@ -22,18 +22,23 @@ struct Target {
   std::string label_zh() const;
 };
 
-/// Finds an object by address (`0x6041`, `6099h.1`), by name (`statusword`, `homing_speeds.switch`) or by panel number
-/// (`Pn202`), in any case. Without a profile only addresses are understood. Errc::usage when the name is unknown (nearest
-/// names offered), ambiguous (all meanings offered), or belongs to a parameter without an object.
+/// Finds an object by address (`0x6041`, `6099h.1`), by name (`statusword`, `homing_speeds.switch`) or by
+/// panel number
+/// (`Pn202`), in any case. Without a profile only addresses are understood. Errc::usage when the name is
+/// unknown (nearest names offered), ambiguous (all meanings offered), or belongs to a parameter without an
+/// object.
 Result<Target> resolve(const Profile* profile, std::string_view text);
 
-/// The panel parameter of this number or name. Errc::usage as in resolve(); one without an object is found as well.
+/// The panel parameter of this number or name. Errc::usage as in resolve(); one without an object is found as
+/// well.
 Result<const od::Parameter*> resolve_parameter(const Profile& profile, std::string_view text);
 
-/// All names that resolve() understands, for completion: panel numbers as printed, then objects in index order.
+/// All names that resolve() understands, for completion: panel numbers as printed, then objects in index
+/// order.
 std::vector<std::string> names(const Profile& profile);
 
-/// The name of one entry in the form resolve() reads: `statusword`, `homing_speeds.speed_during_search_for_switch`.
+/// The name of one entry in the form resolve() reads: `statusword`,
+/// `homing_speeds.speed_during_search_for_switch`.
 std::string entry_name(const od::Object& object, const od::Entry& entry);
 
 /// The target at this address, with whatever the profile (may be null) knows of it.

@@ -1,8 +1,8 @@
 #include "drive/profile.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cstdlib>
-#include <fmt/format.h>
 #include <system_error>
 
 #include "base/file.hpp"
@@ -13,7 +13,9 @@ namespace servoctl::drive {
 namespace fs = std::filesystem;
 namespace {
 
-fs::path with_extension(const fs::path& stem, std::string_view extension) { return stem.string() + std::string(extension); }
+fs::path with_extension(const fs::path& stem, std::string_view extension) {
+  return stem.string() + std::string(extension);
+}
 
 /// The program's own data: beside an installed program, or in the source tree of one that was just built.
 std::optional<fs::path> own_folder() {
@@ -22,7 +24,8 @@ std::optional<fs::path> own_folder() {
   if (ignored) return std::nullopt;
   for (auto folder = program.parent_path(); folder.has_relative_path(); folder = folder.parent_path()) {
     if (fs::is_directory(folder / "share/servoctl/eds", ignored)) return folder / "share/servoctl/eds";
-    if (fs::is_directory(folder / "eds", ignored) && fs::exists(folder / "CMakeLists.txt", ignored)) return folder / "eds";
+    if (fs::is_directory(folder / "eds", ignored) && fs::exists(folder / "CMakeLists.txt", ignored))
+      return folder / "eds";
   }
   return std::nullopt;
 }
@@ -33,7 +36,8 @@ Result<void> add_dictionary(Profile& profile, const fs::path& path) {
   auto file = od::read_eds(*text, path.string());
   if (!file) return tl::unexpected<Error>(file.error());
   profile.dictionary = std::move(file->dictionary);
-  for (const auto& finding : file->diagnostics) profile.warnings.push_back(od::to_string(finding, path.filename().string()));
+  for (const auto& finding : file->diagnostics)
+    profile.warnings.push_back(od::to_string(finding, path.filename().string()));
   if (profile.rules.name.empty()) profile.rules.name = file->device.product_name;
   if (profile.rules.vendor.empty()) profile.rules.vendor = file->device.vendor_name;
   return {};
@@ -78,8 +82,12 @@ struct Part {
 };
 /// In the order they need each other: the objects table annotates the dictionary.
 constexpr Part kParts[] = {
-    {".toml", add_rules},           {".eds", add_dictionary},      {".dcf", add_dictionary},
-    {".objects.csv", add_object_notes}, {".params.csv", add_parameters}, {".faults.csv", add_faults},
+    {".toml", add_rules},
+    {".eds", add_dictionary},
+    {".dcf", add_dictionary},
+    {".objects.csv", add_object_notes},
+    {".params.csv", add_parameters},
+    {".faults.csv", add_faults},
 };
 
 Result<Profile> load_parts(const Family& family) {
@@ -191,15 +199,17 @@ std::vector<Family> find_families(std::span<const fs::path> folders) {
 Result<Profile> load_profile(std::string_view family, std::span<const fs::path> folders) {
   if (names_a_file(family)) return load_single_file(fs::path(family));
   const auto families = find_families(folders);
-  const auto found =
-      std::find_if(families.begin(), families.end(), [&](const Family& f) { return equals_nocase(f.name, family); });
+  const auto found = std::find_if(families.begin(), families.end(),
+                                  [&](const Family& f) { return equals_nocase(f.name, family); });
   if (found != families.end()) return load_parts(*found);
   std::vector<std::string> names;
   for (const auto& known : families) names.push_back(known.name);
   auto hint = did_you_mean(family, names);
   if (hint.empty())
-    hint = names.empty() ? std::string("no drive data was found: set SERVOCTL_DRIVES to its folder, or name an .eds file")
-                         : "known families: " + one_of(names) + "; or name an .eds file";
+    hint =
+        names.empty()
+            ? std::string("no drive data was found: set SERVOCTL_DRIVES to its folder, or name an .eds file")
+            : "known families: " + one_of(names) + "; or name an .eds file";
   return fail(Errc::usage, fmt::format("no drive family is called '{}'", family), std::move(hint));
 }
 

@@ -39,12 +39,14 @@ struct Profile {
   std::unordered_map<ObjectAddress, std::size_t> by_object_;
 };
 
-/// The id without what people leave out: case, `_` and `-`, leading zeros of each number (`Pn0202` and `pn_202` are one).
+/// The id without what people leave out: case, `_` and `-`, leading zeros of each number (`Pn0202` and
+/// `pn_202` are one).
 std::string canonical_id(std::string_view id);
 
-/// Where families are looked for, in this order: the folders of $SERVOCTL_DRIVES (separated by `:`), the user's own
-/// (`$XDG_CONFIG_HOME/servoctl/drives`, `~/.config/servoctl/drives`), the data installed with the program or standing in its
-/// source tree.
+/// Where families are looked for, in this order: the folders of $SERVOCTL_DRIVES (separated by `:`), the
+/// user's own
+/// (`$XDG_CONFIG_HOME/servoctl/drives`, `~/.config/servoctl/drives`), the data installed with the program or
+/// standing in its source tree.
 std::vector<std::filesystem::path> drive_folders();
 
 /// A family that was found: its name and its files without extension.
@@ -53,11 +55,12 @@ struct Family {
   std::filesystem::path stem;  ///< `…/eds/vmmore/gsd600`
 };
 
-/// All families in the folders and one level below, by name; the first folder that has one wins. Reads no file.
+/// All families in the folders and one level below, by name; the first folder that has one wins. Reads no
+/// file.
 std::vector<Family> find_families(std::span<const std::filesystem::path> folders);
 
-/// Loads a family by name, or a user's own `.eds`, `.dcf` or `.csv` file by path. Errc::usage for an unknown name (nearest
-/// ones offered), Errc::file for a file that cannot be used.
+/// Loads a family by name, or a user's own `.eds`, `.dcf` or `.csv` file by path. Errc::usage for an unknown
+/// name (nearest ones offered), Errc::file for a file that cannot be used.
 Result<Profile> load_profile(std::string_view family, std::span<const std::filesystem::path> folders);
 
 /// Only the rules of a family, for recognising drives.

@@ -12,8 +12,8 @@
 
 namespace servoctl::drive {
 
-/// What is needed to turn text into the value of one object and back: from the panel parameter where there is one, else from
-/// the dictionary entry. Pointers into the profile the target came from.
+/// What is needed to turn text into the value of one object and back: from the panel parameter where there is
+/// one, else from the dictionary entry. Pointers into the profile the target came from.
 struct Meaning {
   od::DataType type = od::DataType::u32;
   bool type_known = false;
@@ -28,9 +28,9 @@ struct Meaning {
 
 Meaning meaning(const Target& target, std::uint8_t node);
 
-/// Reads what a user writes for this object: a plain number is the raw number that the drive and its panel show; a number
-/// with a unit (`60rpm`, `250ms`, `12%`) is converted and must come out exact; an enum label stands for its value. Checked
-/// against type and limits. Errc::usage tells range and unit.
+/// Reads what a user writes for this object: a plain number is the raw number that the drive and its panel
+/// show; a number with a unit (`60rpm`, `250ms`, `12%`) is converted and must come out exact; an enum label
+/// stands for its value. Checked against type and limits. Errc::usage tells range and unit.
 Result<od::Value> parse_quantity(const Meaning& meaning, std::string_view text);
 
 /// Checks a value against the limits; `what` names the object in the message.

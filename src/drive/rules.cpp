@@ -25,7 +25,8 @@ class Reader {
     for (const auto& [key, node] : *table_) {
       const auto handler = handlers.find(std::string_view(key.str()));
       if (handler == handlers.end()) return fail_at(node, fmt::format("unknown key '{}'", key.str()));
-      if (!handler->second(node)) return fail_at(node, fmt::format("the value of '{}' is of the wrong kind", key.str()));
+      if (!handler->second(node))
+        return fail_at(node, fmt::format("the value of '{}' is of the wrong kind", key.str()));
     }
     return {};
   }
@@ -107,24 +108,26 @@ class RulesReader {
 
   Result<Rules> read(const toml::table& root) {
     std::int64_t format = 0;
-    const auto done = Reader(root, file_).read({
-        {"format", [&](const auto& n) { return get_int(n, format) && format == 1; }},
-        {"family", [&](const auto& n) { return get(n, rules_.family); }},
-        {"vendor", [&](const auto& n) { return get(n, rules_.vendor); }},
-        {"name", [&](const auto& n) { return get(n, rules_.name); }},
-        {"name_zh", [&](const auto& n) { return get(n, rules_.name_zh); }},
-        {"identity", [&](const auto& n) { return table(n, &RulesReader::identity); }},
-        {"numbering", [&](const auto& n) { return table(n, &RulesReader::numbering); }},
-        {"sdo", [&](const auto& n) { return table(n, &RulesReader::sdo); }},
-        {"nmt", [&](const auto& n) { return table(n, &RulesReader::nmt); }},
-        {"mirror", [&](const auto& n) { return table(n, &RulesReader::mirror); }},
-        {"restart", [&](const auto& n) { return table(n, &RulesReader::restart); }},
-        {"statusword", [&](const auto& n) { return table(n, &RulesReader::statusword); }},
-        {"quick_stop", [&](const auto& n) { return table(n, &RulesReader::quick_stop); }},
-        {"fault_reset", [&](const auto& n) { return table(n, &RulesReader::fault_reset); }},
-        {"emergency", [&](const auto& n) { return table(n, &RulesReader::emergency); }},
-        {"abort_codes", [&](const auto& n) { return abort_codes(n); }},
-    });
+    const auto done =
+        Reader(root, file_)
+            .read({
+                {"format", [&](const auto& n) { return get_int(n, format) && format == 1; }},
+                {"family", [&](const auto& n) { return get(n, rules_.family); }},
+                {"vendor", [&](const auto& n) { return get(n, rules_.vendor); }},
+                {"name", [&](const auto& n) { return get(n, rules_.name); }},
+                {"name_zh", [&](const auto& n) { return get(n, rules_.name_zh); }},
+                {"identity", [&](const auto& n) { return table(n, &RulesReader::identity); }},
+                {"numbering", [&](const auto& n) { return table(n, &RulesReader::numbering); }},
+                {"sdo", [&](const auto& n) { return table(n, &RulesReader::sdo); }},
+                {"nmt", [&](const auto& n) { return table(n, &RulesReader::nmt); }},
+                {"mirror", [&](const auto& n) { return table(n, &RulesReader::mirror); }},
+                {"restart", [&](const auto& n) { return table(n, &RulesReader::restart); }},
+                {"statusword", [&](const auto& n) { return table(n, &RulesReader::statusword); }},
+                {"quick_stop", [&](const auto& n) { return table(n, &RulesReader::quick_stop); }},
+                {"fault_reset", [&](const auto& n) { return table(n, &RulesReader::fault_reset); }},
+                {"emergency", [&](const auto& n) { return table(n, &RulesReader::emergency); }},
+                {"abort_codes", [&](const auto& n) { return abort_codes(n); }},
+            });
     if (inner_) return tl::unexpected<Error>(*inner_);
     if (!done) return tl::unexpected<Error>(done.error());
     return std::move(rules_);
@@ -195,7 +198,8 @@ class RulesReader {
   }
 
   Result<void> quick_stop(const Reader& reader) {
-    return reader.read({{"stays_enabled", [&](const auto& n) { return get(n, rules_.quick_stop_stays_enabled); }}});
+    return reader.read(
+        {{"stays_enabled", [&](const auto& n) { return get(n, rules_.quick_stop_stays_enabled); }}});
   }
 
   Result<void> fault_reset(const Reader& reader) {

@@ -20,7 +20,8 @@ struct Condition {
   std::uint64_t value = 0;
 };
 
-/// How panel numbers map to objects: parameter n stands at `index + n / block`, sub-index `n % block + first_sub`.
+/// How panel numbers map to objects: parameter n stands at `index + n / block`, sub-index `n % block +
+/// first_sub`.
 struct Numbering {
   std::string prefix;
   std::uint16_t index = 0;
@@ -35,7 +36,8 @@ struct ModeBits {
   std::uint16_t enabled = 0;
 };
 
-/// What `<family>.toml` says: the rules of a family that no table can carry. Parameters are named by their id.
+/// What `<family>.toml` says: the rules of a family that no table can carry. Parameters are named by their
+/// id.
 struct Rules {
   std::string family;
   std::string vendor;
@@ -68,8 +70,8 @@ struct Rules {
   std::map<std::uint32_t, std::string> abort_texts_zh;
 };
 
-/// Reads a rules file. Errc::file with file and line for a syntax error, an unknown key or a value of the wrong kind: a
-/// rule that is misspelt would silently not hold.
+/// Reads a rules file. Errc::file with file and line for a syntax error, an unknown key or a value of the
+/// wrong kind: a rule that is misspelt would silently not hold.
 Result<Rules> parse_rules(std::string_view toml, std::string_view file);
 
 }  // namespace servoctl::drive

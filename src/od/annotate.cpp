@@ -1,5 +1,5 @@
-#include <array>
 #include <fmt/format.h>
+#include <array>
 
 #include "base/text.hpp"
 #include "od/parameter.hpp"
@@ -8,9 +8,21 @@
 namespace servoctl::od {
 namespace {
 
-enum Column : std::size_t { kObject, kUnit, kScale, kEffect, kEnum, kEnumZh, kNameZh, kFlags, kAssumed, kNote, kLine };
-constexpr std::array<std::string_view, 11> kColumns{"object",  "unit",  "scale",   "effect", "enum", "enum_zh",
-                                                    "name_zh", "flags", "assumed", "note",   "line"};
+enum Column : std::size_t {
+  kObject,
+  kUnit,
+  kScale,
+  kEffect,
+  kEnum,
+  kEnumZh,
+  kNameZh,
+  kFlags,
+  kAssumed,
+  kNote,
+  kLine
+};
+constexpr std::array<std::string_view, 11> kColumns{
+    "object", "unit", "scale", "effect", "enum", "enum_zh", "name_zh", "flags", "assumed", "note", "line"};
 
 void read_flags(TableRow& row, Entry& entry) {
   bool rpdo = false;

@@ -77,7 +77,8 @@ const Entry* Dictionary::find(ObjectAddress address) const {
 }
 
 Entry* Dictionary::find(ObjectAddress address) {
-  return const_cast<Entry*>(static_cast<const Dictionary&>(*this).find(address));  // NOLINT: the object is ours.
+  return const_cast<Entry*>(
+      static_cast<const Dictionary&>(*this).find(address));  // NOLINT: the object is ours.
 }
 
 std::size_t Dictionary::entry_count() const {

@@ -19,13 +19,21 @@ std::string_view name(Access access);  ///< `ro rw wo const`
 inline bool readable(Access access) { return access != Access::wo; }
 inline bool writable(Access access) { return access == Access::rw || access == Access::wo; }
 
-/// Which process data objects an entry may be mapped into. An EDS tells only whether; the direction comes from access
+/// Which process data objects an entry may be mapped into. An EDS tells only whether; the direction comes
+/// from access
 /// (`rwr` and `rww` included) or from the objects table.
 enum class PdoMapping : std::uint8_t { no, rpdo, tpdo, both };
 
 std::string_view name(PdoMapping mapping);  ///< `no rpdo tpdo both`
 
-enum class ObjectCode : std::uint8_t { domain = 0x02, deftype = 0x05, defstruct = 0x06, var = 0x07, array = 0x08, record = 0x09 };
+enum class ObjectCode : std::uint8_t {
+  domain = 0x02,
+  deftype = 0x05,
+  defstruct = 0x06,
+  var = 0x07,
+  array = 0x08,
+  record = 0x09
+};
 
 /// Value and its label, in the order of the table it comes from.
 struct EnumLabel {
@@ -42,7 +50,7 @@ std::optional<Effect> parse_effect(std::string_view name);
 
 /// A value that may contain the node-ID: `$NODEID+0x600`.
 struct NodeValue {
-  Value value;                ///< Without the node-ID.
+  Value value;  ///< Without the node-ID.
   bool plus_node_id = false;
   /// The value for one node.
   Value for_node(std::uint8_t node) const;
@@ -51,7 +59,7 @@ struct NodeValue {
 /// One entry: an index and a sub-index with a type of its own (CiA 301, 7.4.5).
 struct Entry {
   ObjectAddress address;
-  std::string name;      ///< Of the entry; for a plain variable the same as the object's.
+  std::string name;  ///< Of the entry; for a plain variable the same as the object's.
   std::string name_zh;
   DataType type = DataType::u32;
   Access access = Access::rw;
@@ -61,8 +69,8 @@ struct Entry {
   std::optional<NodeValue> high;
   std::optional<NodeValue> configured;  ///< ParameterValue of a DCF.
 
-  std::string unit;      ///< After scaling; empty if none.
-  double scale = 1;      ///< Value in `unit` = raw × scale.
+  std::string unit;  ///< After scaling; empty if none.
+  double scale = 1;  ///< Value in `unit` = raw × scale.
   Effect effect = Effect::unstated;
   std::vector<EnumLabel> labels;
   std::string note;
@@ -98,8 +106,8 @@ class Dictionary {
   std::vector<Object> objects_;
 };
 
-/// `Position actual value` → `position_actual_value`, `Homing speeds` → `homing_speeds`: the form in which objects are
-/// named on the command line.
+/// `Position actual value` → `position_actual_value`, `Homing speeds` → `homing_speeds`: the form in which
+/// objects are named on the command line.
 std::string identifier(std::string_view name);
 
 }  // namespace servoctl::od

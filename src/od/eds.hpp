@@ -42,8 +42,9 @@ struct EdsFile {
   std::size_t error_count() const;
 };
 
-/// Reads the text of an electronic data sheet or device configuration file (CiA 306-1). A bad entry is reported and
-/// skipped, never the whole file; Errc::file only when there is not one object in it. `file` is used in messages.
+/// Reads the text of an electronic data sheet or device configuration file (CiA 306-1). A bad entry is
+/// reported and skipped, never the whole file; Errc::file only when there is not one object in it. `file` is
+/// used in messages.
 Result<EdsFile> read_eds(std::string_view text, std::string_view file);
 
 /// `gsd600.eds:12:9: error: …`, the form that compilers use and editors understand.

@@ -1,8 +1,8 @@
 #include "od/eds_entry.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
-#include <fmt/format.h>
 #include <utility>
 
 #include "base/number.hpp"
@@ -21,9 +21,9 @@ struct AccessRow {
 
 /// CiA 306-1, 4.6.2.4: rwr is mapped when read (TPDO), rww when written (RPDO).
 constexpr std::array kAccess{
-    AccessRow{"ro", Access::ro, PdoMapping::tpdo},    AccessRow{"rw", Access::rw, PdoMapping::both},
-    AccessRow{"wo", Access::wo, PdoMapping::rpdo},    AccessRow{"const", Access::constant, PdoMapping::tpdo},
-    AccessRow{"rwr", Access::rw, PdoMapping::tpdo},   AccessRow{"rww", Access::rw, PdoMapping::rpdo},
+    AccessRow{"ro", Access::ro, PdoMapping::tpdo},  AccessRow{"rw", Access::rw, PdoMapping::both},
+    AccessRow{"wo", Access::wo, PdoMapping::rpdo},  AccessRow{"const", Access::constant, PdoMapping::tpdo},
+    AccessRow{"rwr", Access::rw, PdoMapping::tpdo}, AccessRow{"rww", Access::rw, PdoMapping::rpdo},
 };
 
 bool has_leading_zero(std::string_view text) {
@@ -32,7 +32,8 @@ bool has_leading_zero(std::string_view text) {
 
 void warn_of_leading_zero(const IniKey& key, std::string_view number, Findings& findings) {
   if (has_leading_zero(number))
-    findings.warn(key, "leading-zero", fmt::format("'{}' is taken as decimal; by the standard a leading zero means octal", number),
+    findings.warn(key, "leading-zero",
+                  fmt::format("'{}' is taken as decimal; by the standard a leading zero means octal", number),
                   "write it without leading zeros, or with 0x");
 }
 
@@ -49,7 +50,8 @@ std::pair<std::string_view, bool> without_node_id(std::string_view text) {
 std::optional<DataType> entry_type(const IniSection& section, Findings& findings) {
   const auto* key = section.find("DataType");
   if (key == nullptr || key->value.empty()) {
-    findings.add(Severity::error, section.line, 1, "missing-data-type", fmt::format("[{}] has no DataType", section.name),
+    findings.add(Severity::error, section.line, 1, "missing-data-type",
+                 fmt::format("[{}] has no DataType", section.name),
                  "add DataType, for example DataType=0x0007 for an unsigned number of 32 bits");
     return std::nullopt;
   }
@@ -69,10 +71,12 @@ void read_access(const IniSection& section, Entry& entry, Findings& findings) {
     for (const auto& candidate : kAccess)
       if (equals_nocase(candidate.word, key->value)) row = &candidate;
   if (key == nullptr) {
-    findings.add(Severity::error, section.line, 1, "missing-access-type", fmt::format("[{}] has no AccessType; taken as ro", section.name),
+    findings.add(Severity::error, section.line, 1, "missing-access-type",
+                 fmt::format("[{}] has no AccessType; taken as ro", section.name),
                  "add AccessType=ro, rw, wo or const");
   } else if (row == nullptr) {
-    findings.error(*key, "unknown-access-type", fmt::format("'{}' is no access type; taken as ro", key->value),
+    findings.error(*key, "unknown-access-type",
+                   fmt::format("'{}' is no access type; taken as ro", key->value),
                    "write ro, rw, wo, const, rwr or rww");
   }
   // What is not known to be writable is not written.
@@ -86,7 +90,8 @@ void read_access(const IniSection& section, Entry& entry, Findings& findings) {
 
 void check_order(const IniSection& section, const Entry& entry, Findings& findings) {
   const auto tell = [&](std::string_view rule, const std::string& message) {
-    findings.add(Severity::warning, section.line, 1, std::string(rule), fmt::format("[{}]: {}", section.name, message),
+    findings.add(Severity::warning, section.line, 1, std::string(rule),
+                 fmt::format("[{}]: {}", section.name, message),
                  "correct LowLimit, HighLimit or DefaultValue");
   };
   const auto above = [](const std::optional<NodeValue>& a, const std::optional<NodeValue>& b) {
@@ -99,7 +104,8 @@ void check_order(const IniSection& section, const Entry& entry, Findings& findin
 
 }  // namespace
 
-void Findings::add(Severity severity, std::uint32_t line, std::uint32_t column, std::string rule, std::string message, std::string remedy) {
+void Findings::add(Severity severity, std::uint32_t line, std::uint32_t column, std::string rule,
+                   std::string message, std::string remedy) {
   all_.push_back({severity, line, column, std::move(rule), std::move(message), std::move(remedy)});
 }
 
@@ -112,14 +118,17 @@ void Findings::warn(const IniKey& key, std::string rule, std::string message, st
 }
 
 std::vector<Diagnostic> Findings::take() {
-  std::stable_sort(all_.begin(), all_.end(), [](const Diagnostic& a, const Diagnostic& b) { return a.line < b.line; });
+  std::stable_sort(all_.begin(), all_.end(),
+                   [](const Diagnostic& a, const Diagnostic& b) { return a.line < b.line; });
   return std::move(all_);
 }
 
 std::optional<std::uint64_t> eds_number(const IniKey& key, std::uint64_t max, Findings& findings) {
   const auto number = parse_integer(key.value);
   if (!number || number->negative || number->magnitude > max) {
-    findings.error(key, "bad-number", fmt::format("{}: '{}' is no number of 0 to {}", key.key, key.value, max), "write a number such as 7 or 0x7");
+    findings.error(key, "bad-number",
+                   fmt::format("{}: '{}' is no number of 0 to {}", key.key, key.value, max),
+                   "write a number such as 7 or 0x7");
     return std::nullopt;
   }
   warn_of_leading_zero(key, key.value, findings);
@@ -130,7 +139,8 @@ std::optional<NodeValue> eds_value(const IniKey* key, DataType type, Findings& f
   if (key == nullptr || key->value.empty()) return std::nullopt;
   const auto [text, plus_node_id] = without_node_id(key->value);
   if (plus_node_id && !is_integer(type)) {
-    findings.error(*key, "bad-value", fmt::format("{}: $NODEID in a value of {}", key->key, name(type)), "only integers can contain the node-ID");
+    findings.error(*key, "bad-value", fmt::format("{}: $NODEID in a value of {}", key->key, name(type)),
+                   "only integers can contain the node-ID");
     return std::nullopt;
   }
   auto value = parse_value(type, text);
@@ -152,7 +162,8 @@ std::optional<Entry> eds_entry(const IniSection& section, ObjectAddress address,
   entry.line = section.line;
   const auto* name = section.find("ParameterName");
   if (name == nullptr || name->value.empty())
-    findings.add(Severity::warning, section.line, 1, "missing-name", fmt::format("[{}] has no ParameterName", section.name), "add ParameterName");
+    findings.add(Severity::warning, section.line, 1, "missing-name",
+                 fmt::format("[{}] has no ParameterName", section.name), "add ParameterName");
   else
     entry.name = std::string(name->value);
   read_access(section, entry, findings);

@@ -1,6 +1,6 @@
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
-#include <fmt/format.h>
 #include <map>
 
 #include "base/number.hpp"
@@ -10,9 +10,11 @@
 namespace servoctl::od {
 namespace {
 
-constexpr std::array<std::string_view, 3> kLists{"MandatoryObjects", "OptionalObjects", "ManufacturerObjects"};
-constexpr std::array<std::string_view, 9> kOtherSections{"FileInfo",    "DeviceInfo",        "DummyUsage",          "Comments", "DeviceComissioning",
-                                                         "DeviceCommissioning", "Tools", "DynamicChannels", "SupportedModules"};
+constexpr std::array<std::string_view, 3> kLists{"MandatoryObjects", "OptionalObjects",
+                                                 "ManufacturerObjects"};
+constexpr std::array<std::string_view, 9> kOtherSections{
+    "FileInfo", "DeviceInfo",      "DummyUsage",      "Comments", "DeviceComissioning", "DeviceCommissioning",
+    "Tools",    "DynamicChannels", "SupportedModules"};
 
 struct SectionName {
   std::uint16_t index = 0;
@@ -39,7 +41,8 @@ class Reader {
 
   EdsFile read() {
     for (const auto& stray : ini_.strays)
-      findings_.add(Severity::error, stray.line, 1, "stray-line", fmt::format("'{}' is neither a section nor a key", clip(stray.text, 40)),
+      findings_.add(Severity::error, stray.line, 1, "stray-line",
+                    fmt::format("'{}' is neither a section nor a key", clip(stray.text, 40)),
                     "remove the line, or begin it with ; when it is a comment");
     read_device();
     sort_sections();
@@ -78,7 +81,8 @@ class Reader {
     for (const auto* name : {"DeviceComissioning", "DeviceCommissioning"}) {
       const auto* section = ini_.find(name);
       const auto* id = section == nullptr ? nullptr : section->find("NodeID");
-      if (id != nullptr && !id->value.empty()) out_.node_id = static_cast<std::uint8_t>(eds_number(*id, 127, findings_).value_or(0));
+      if (id != nullptr && !id->value.empty())
+        out_.node_id = static_cast<std::uint8_t>(eds_number(*id, 127, findings_).value_or(0));
     }
   }
 
@@ -88,7 +92,8 @@ class Reader {
       const auto name = parse_section_name(section.name);
       if (!name) {
         if (!is_known(section.name))
-          findings_.add(Severity::warning, section.line, 1, "unknown-section", fmt::format("[{}] is no section of CiA 306", section.name),
+          findings_.add(Severity::warning, section.line, 1, "unknown-section",
+                        fmt::format("[{}] is no section of CiA 306", section.name),
                         "correct its name, or remove it");
         continue;
       }
@@ -96,7 +101,9 @@ class Reader {
       auto*& place = name->sub ? object.subs[*name->sub] : object.main;
       if (place != nullptr)
         findings_.add(Severity::error, section.line, 1, "duplicate-section",
-                      fmt::format("[{}] stands here again, first in line {}; the first one counts", section.name, place->line), "remove one of them");
+                      fmt::format("[{}] stands here again, first in line {}; the first one counts",
+                                  section.name, place->line),
+                      "remove one of them");
       else
         place = &section;
     }
@@ -104,38 +111,49 @@ class Reader {
 
   static bool is_known(std::string_view name) {
     const auto same = [&](std::string_view known) { return equals_nocase(known, name); };
-    if (std::any_of(kLists.begin(), kLists.end(), same) || std::any_of(kOtherSections.begin(), kOtherSections.end(), same)) return true;
+    if (std::any_of(kLists.begin(), kLists.end(), same) ||
+        std::any_of(kOtherSections.begin(), kOtherSections.end(), same))
+      return true;
     // [1018Name], [1018Value], [1018Denotation], [1018ObjectLinks] belong to an object.
     const auto folded = lower(name);
     return std::any_of(kBelonging.begin(), kBelonging.end(), [&](std::string_view end) {
-      return folded.size() > end.size() && folded.ends_with(end) && parse_digits(std::string_view(folded).substr(0, folded.size() - end.size()), 16);
+      return folded.size() > end.size() && folded.ends_with(end) &&
+             parse_digits(std::string_view(folded).substr(0, folded.size() - end.size()), 16);
     });
   }
 
   void check_doubles(const IniSection& section) {
     std::vector<std::pair<std::string, const IniKey*>> seen;
     for (const auto& key : section.keys) seen.emplace_back(lower(key.key), &key);
-    std::stable_sort(seen.begin(), seen.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::stable_sort(seen.begin(), seen.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
     for (std::size_t i = 1; i < seen.size(); ++i)
       if (seen[i].first == seen[i - 1].first)
-        findings_.warn(*seen[i].second, "duplicate-key", fmt::format("{} stands here again; the last one counts", seen[i].second->key), "remove one of them");
+        findings_.warn(*seen[i].second, "duplicate-key",
+                       fmt::format("{} stands here again; the last one counts", seen[i].second->key),
+                       "remove one of them");
   }
 
   void read_object(std::uint16_t index, const Sections& sections) {
     if (sections.main == nullptr) {
       const auto* first = sections.subs.begin()->second;
-      findings_.add(Severity::error, first->line, 1, "missing-object", fmt::format("[{}] has no section [{:04X}]", first->name, index),
+      findings_.add(Severity::error, first->line, 1, "missing-object",
+                    fmt::format("[{}] has no section [{:04X}]", first->name, index),
                     "add the section of the object");
     }
     Object object;
     object.index = index;
     if (sections.main != nullptr) read_head(*sections.main, object);
-    const bool plain = sections.subs.empty() && (object.code == ObjectCode::var || object.code == ObjectCode::domain) && !has_compact(sections.main);
+    const bool plain = sections.subs.empty() &&
+                       (object.code == ObjectCode::var || object.code == ObjectCode::domain) &&
+                       !has_compact(sections.main);
     if (plain && sections.main != nullptr) {
-      if (auto entry = eds_entry(*sections.main, {index, 0}, findings_)) object.entries.push_back(std::move(*entry));
+      if (auto entry = eds_entry(*sections.main, {index, 0}, findings_))
+        object.entries.push_back(std::move(*entry));
     } else {
       for (const auto& sub : sections.subs)
-        if (auto entry = eds_entry(*sub.second, {index, sub.first}, findings_)) object.entries.push_back(std::move(*entry));
+        if (auto entry = eds_entry(*sub.second, {index, sub.first}, findings_))
+          object.entries.push_back(std::move(*entry));
       if (has_compact(sections.main)) read_compact(*sections.main, object);
       check_sub_number(sections, object);
     }
@@ -160,12 +178,14 @@ class Reader {
       case 0x08: object.code = ObjectCode::array; break;
       case 0x09: object.code = ObjectCode::record; break;
       default:
-        findings_.error(*code, "unknown-object-type", fmt::format("'{}' is no object type; taken as VAR", code->value),
+        findings_.error(*code, "unknown-object-type",
+                        fmt::format("'{}' is no object type; taken as VAR", code->value),
                         "write 0x7 for a variable, 0x8 for an array, 0x9 for a record");
     }
   }
 
-  /// CompactSubObj: sub 0 and N equal entries, names and values in sections of their own (CiA 306-1, 4.6.3.3).
+  /// CompactSubObj: sub 0 and N equal entries, names and values in sections of their own (CiA
+  /// 306-1, 4.6.3.3).
   void read_compact(const IniSection& section, Object& object) {
     const auto count = eds_number(*section.find("CompactSubObj"), 254, findings_).value_or(0);
     const auto pattern = eds_entry(section, {object.index, 1}, findings_);
@@ -186,8 +206,10 @@ class Reader {
       entry.address.sub = static_cast<std::uint8_t>(sub);
       const auto key = fmt::format("{}", sub);
       const auto* name = names == nullptr ? nullptr : names->find(key);
-      entry.name = name != nullptr && !name->value.empty() ? std::string(name->value) : fmt::format("{}{}", object.name, sub);
-      if (const auto* value = values == nullptr ? nullptr : values->find(key)) entry.default_value = eds_value(value, entry.type, findings_);
+      entry.name = name != nullptr && !name->value.empty() ? std::string(name->value)
+                                                           : fmt::format("{}{}", object.name, sub);
+      if (const auto* value = values == nullptr ? nullptr : values->find(key))
+        entry.default_value = eds_value(value, entry.type, findings_);
       object.entries.push_back(std::move(entry));
     }
   }
@@ -196,13 +218,16 @@ class Reader {
     if (sections.main == nullptr || has_compact(sections.main)) return;
     const auto* key = sections.main->find("SubNumber");
     if (key == nullptr || key->value.empty()) {
-      findings_.add(Severity::warning, sections.main->line, 1, "missing-sub-number", fmt::format("[{}] has no SubNumber", sections.main->name),
+      findings_.add(Severity::warning, sections.main->line, 1, "missing-sub-number",
+                    fmt::format("[{}] has no SubNumber", sections.main->name),
                     fmt::format("add SubNumber={}", sections.subs.size()));
       return;
     }
     const auto number = eds_number(*key, 256, findings_);
     if (number && *number != sections.subs.size())
-      findings_.warn(*key, "wrong-sub-number", fmt::format("SubNumber is {}, but [{:04X}] has {} sub-indexes", *number, object.index, sections.subs.size()),
+      findings_.warn(*key, "wrong-sub-number",
+                     fmt::format("SubNumber is {}, but [{:04X}] has {} sub-indexes", *number, object.index,
+                                 sections.subs.size()),
                      fmt::format("write SubNumber={}", sections.subs.size()));
   }
 
@@ -220,16 +245,20 @@ class Reader {
         listed.emplace(static_cast<std::uint16_t>(*index), key.line);
         const auto object = objects_.find(static_cast<std::uint16_t>(*index));
         if (object == objects_.end())
-          findings_.error(key, "listed-but-absent", fmt::format("0x{:04X} is listed and has no section", *index), "add the section, or take it off the list");
+          findings_.error(key, "listed-but-absent",
+                          fmt::format("0x{:04X} is listed and has no section", *index),
+                          "add the section, or take it off the list");
       }
     }
     for (const auto& object : objects_)
       if (any && object.second.main != nullptr && listed.find(object.first) == listed.end())
-        findings_.add(Severity::warning, object.second.main->line, 1, "not-listed", fmt::format("[{}] is in none of the lists of objects", object.second.main->name),
+        findings_.add(Severity::warning, object.second.main->line, 1, "not-listed",
+                      fmt::format("[{}] is in none of the lists of objects", object.second.main->name),
                       "add it to MandatoryObjects, OptionalObjects or ManufacturerObjects");
   }
 
-  static constexpr std::array<std::string_view, 5> kBelonging{"name", "value", "denotation", "objectlinks", "subobjlinks"};
+  static constexpr std::array<std::string_view, 5> kBelonging{"name", "value", "denotation", "objectlinks",
+                                                              "subobjlinks"};
 
   IniText ini_;
   std::map<std::uint16_t, Sections> objects_;
@@ -241,7 +270,8 @@ class Reader {
 
 std::size_t EdsFile::error_count() const {
   return static_cast<std::size_t>(
-      std::count_if(diagnostics.begin(), diagnostics.end(), [](const Diagnostic& d) { return d.severity == Severity::error; }));
+      std::count_if(diagnostics.begin(), diagnostics.end(),
+                    [](const Diagnostic& d) { return d.severity == Severity::error; }));
 }
 
 Result<EdsFile> read_eds(std::string_view text, std::string_view file) {
@@ -250,13 +280,15 @@ Result<EdsFile> read_eds(std::string_view text, std::string_view file) {
   Error error;
   error.code = Errc::file;
   error.message = fmt::format("{}: there is no usable object in this file", file);
-  error.hint = out.diagnostics.empty() ? "is it an EDS or DCF file (CiA 306)?" : to_string(out.diagnostics.front(), file);
+  error.hint = out.diagnostics.empty() ? "is it an EDS or DCF file (CiA 306)?"
+                                       : to_string(out.diagnostics.front(), file);
   return fail(std::move(error));
 }
 
 std::string to_string(const Diagnostic& diagnostic, std::string_view file) {
   return fmt::format("{}:{}:{}: {}: {} [{}]", file, diagnostic.line, diagnostic.column,
-                     diagnostic.severity == Severity::error ? "error" : "warning", diagnostic.message, diagnostic.rule);
+                     diagnostic.severity == Severity::error ? "error" : "warning", diagnostic.message,
+                     diagnostic.rule);
 }
 
 }  // namespace servoctl::od

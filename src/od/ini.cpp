@@ -55,7 +55,8 @@ IniText parse_ini(std::string_view text) {
       continue;
     }
     const auto value = trim(line.substr(equals + 1));
-    const auto column = static_cast<std::uint32_t>((value.empty() ? line.data() + equals + 1 : value.data()) - whole.data() + 1);
+    const auto column = static_cast<std::uint32_t>((value.empty() ? line.data() + equals + 1 : value.data()) -
+                                                   whole.data() + 1);
     out.sections.back().keys.push_back({trim(line.substr(0, equals)), value, number, column});
   }
   return out;

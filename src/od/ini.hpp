@@ -31,8 +31,9 @@ struct IniStray {
   std::string_view text;
 };
 
-/// A text in sections, as EDS files are written (CiA 306-1, 4): `[section]`, `key=value`, `;` comments. Lines end with LF, CRLF
-/// or CR; a byte order mark is skipped. All views point into the text. Linear in its length.
+/// A text in sections, as EDS files are written (CiA 306-1, 4): `[section]`, `key=value`, `;` comments. Lines
+/// end with LF, CRLF or CR; a byte order mark is skipped. All views point into the text. Linear in its
+/// length.
 struct IniText {
   std::vector<IniSection> sections;  ///< In the order of the file; a name may stand several times.
   std::vector<IniStray> strays;

@@ -1,7 +1,7 @@
 #include "od/parameter.hpp"
 
-#include <array>
 #include <fmt/format.h>
+#include <array>
 #include <unordered_set>
 
 #include "base/text.hpp"
@@ -11,12 +11,30 @@ namespace servoctl::od {
 namespace {
 
 enum Column : std::size_t {
-  kId, kObject, kType, kAccess, kUnit, kScale, kDefault, kMin, kMax, kEffect, kEnum, kEnumZh,
-  kName, kNameZh, kGroup, kFlags, kAssumed, kNote, kNoteZh, kLine
+  kId,
+  kObject,
+  kType,
+  kAccess,
+  kUnit,
+  kScale,
+  kDefault,
+  kMin,
+  kMax,
+  kEffect,
+  kEnum,
+  kEnumZh,
+  kName,
+  kNameZh,
+  kGroup,
+  kFlags,
+  kAssumed,
+  kNote,
+  kNoteZh,
+  kLine
 };
-constexpr std::array<std::string_view, 20> kColumns{"id",      "object", "type",  "access",  "unit", "scale",   "default",
-                                                    "min",     "max",    "effect", "enum",   "enum_zh", "name", "name_zh",
-                                                    "group",   "flags",  "assumed", "note",  "note_zh", "line"};
+constexpr std::array<std::string_view, 20> kColumns{
+    "id",   "object",  "type", "access",  "unit",  "scale", "default", "min",  "max",     "effect",
+    "enum", "enum_zh", "name", "name_zh", "group", "flags", "assumed", "note", "note_zh", "line"};
 
 std::optional<Access> parse_access(std::string_view text) {
   for (const auto access : {Access::ro, Access::rw, Access::wo, Access::constant})
@@ -43,7 +61,8 @@ void read_limits(TableRow& row, Parameter& out) {
   out.default_value = row.value(kDefault, out.type);
   out.min = row.value(kMin, out.type);
   out.max = row.value(kMax, out.type);
-  if (out.min && out.max && compare_numbers(*out.min, *out.max) > 0) row.refuse(fmt::format("{}: min is above max", out.id));
+  if (out.min && out.max && compare_numbers(*out.min, *out.max) > 0)
+    row.refuse(fmt::format("{}: min is above max", out.id));
 }
 
 Parameter read_row(TableRow& row) {
@@ -91,9 +110,11 @@ Result<std::vector<Parameter>> parse_parameters(std::string_view csv, std::strin
     TableRow row(cells, *columns, kColumns, file);
     auto parameter = read_row(row);
     parameter.file_line = cells.line;
-    if (!ids.insert(lower(parameter.id)).second) row.refuse(fmt::format("{} stands here twice", parameter.id));
+    if (!ids.insert(lower(parameter.id)).second)
+      row.refuse(fmt::format("{} stands here twice", parameter.id));
     if (parameter.object && !objects.insert(*parameter.object).second)
-      row.refuse(fmt::format("{}: object {} belongs to another parameter as well", parameter.id, to_string(*parameter.object)));
+      row.refuse(fmt::format("{}: object {} belongs to another parameter as well", parameter.id,
+                             to_string(*parameter.object)));
     if (row.error()) return tl::unexpected<Error>(*row.error());
     out.push_back(std::move(parameter));
   }

@@ -11,15 +11,15 @@
 
 namespace servoctl::od {
 
-/// One panel parameter: a line of `<family>.params.csv` (docs/drive-data.md). Default and limits are raw numbers, as the panel
-/// shows them.
+/// One panel parameter: a line of `<family>.params.csv` (docs/drive-data.md). Default and limits are raw
+/// numbers, as the panel shows them.
 struct Parameter {
-  std::string id;                        ///< As the manual writes it: `Pn0202`.
-  std::optional<ObjectAddress> object;   ///< Empty: it can be changed on the panel only.
+  std::string id;                       ///< As the manual writes it: `Pn0202`.
+  std::optional<ObjectAddress> object;  ///< Empty: it can be changed on the panel only.
   DataType type = DataType::u16;
   Access access = Access::rw;
-  std::string unit;                      ///< After scaling; empty if none.
-  double scale = 1;                      ///< Value in `unit` = raw × scale.
+  std::string unit;  ///< After scaling; empty if none.
+  double scale = 1;  ///< Value in `unit` = raw × scale.
   std::optional<Value> default_value;
   std::optional<Value> min;
   std::optional<Value> max;
@@ -28,22 +28,22 @@ struct Parameter {
   std::string name;
   std::string name_zh;
   std::string group;
-  bool command = false;                  ///< Writing it starts an action; kept out of backups.
-  bool is_volatile = false;              ///< A reading, not a setting; kept out of backups.
-  std::optional<ObjectAddress> mirror;   ///< The object whose stored value it is.
-  std::string assumed;                   ///< Fields the manual does not state, separated by `;`.
+  bool command = false;                 ///< Writing it starts an action; kept out of backups.
+  bool is_volatile = false;             ///< A reading, not a setting; kept out of backups.
+  std::optional<ObjectAddress> mirror;  ///< The object whose stored value it is.
+  std::string assumed;                  ///< Fields the manual does not state, separated by `;`.
   std::string note;
   std::string note_zh;
-  std::uint32_t line = 0;                ///< Line of the manual.
-  std::uint32_t file_line = 0;           ///< Line of the table.
+  std::uint32_t line = 0;       ///< Line of the manual.
+  std::uint32_t file_line = 0;  ///< Line of the table.
 };
 
-/// Reads a table of panel parameters. Errc::file with file and line for an unknown column, a bad cell, a value that does not
-/// fit its type, min above max, an id or object that stands twice, an unknown flag.
+/// Reads a table of panel parameters. Errc::file with file and line for an unknown column, a bad cell, a
+/// value that does not fit its type, min above max, an id or object that stands twice, an unknown flag.
 Result<std::vector<Parameter>> parse_parameters(std::string_view csv, std::string_view file);
 
-/// Merges `<family>.objects.csv` into the dictionary: unit, scale, effect, labels, Chinese name, PDO direction, flags. Errc::file
-/// with file and line for a bad cell or an object the dictionary does not have.
+/// Merges `<family>.objects.csv` into the dictionary: unit, scale, effect, labels, Chinese name, PDO
+/// direction, flags. Errc::file with file and line for a bad cell or an object the dictionary does not have.
 Result<void> annotate(Dictionary& dictionary, std::string_view csv, std::string_view file);
 
 }  // namespace servoctl::od

@@ -1,7 +1,7 @@
 #include "od/table_row.hpp"
 
-#include <algorithm>
 #include <fmt/format.h>
+#include <algorithm>
 
 #include "base/number.hpp"
 #include "base/text.hpp"
@@ -26,7 +26,8 @@ std::optional<std::vector<std::pair<std::int64_t, std::string>>> parse_labels(st
 
 }  // namespace
 
-Result<TableColumns> TableColumns::find(const CsvTable& table, std::span<const std::string_view> known, std::string_view file) {
+Result<TableColumns> TableColumns::find(const CsvTable& table, std::span<const std::string_view> known,
+                                        std::string_view file) {
   for (const auto& column : table.columns) {
     if (std::find(known.begin(), known.end(), column) != known.end()) continue;
     Error error;
@@ -101,9 +102,11 @@ std::vector<EnumLabel> TableRow::labels(std::size_t column, std::size_t column_z
     out.push_back({label.first, label.second, {}});
   }
   for (const auto& label : *chinese) {
-    const auto same = std::find_if(out.begin(), out.end(), [&](const EnumLabel& e) { return e.value == label.first; });
+    const auto same =
+        std::find_if(out.begin(), out.end(), [&](const EnumLabel& e) { return e.value == label.first; });
     if (same == out.end())
-      refuse(column_zh, fmt::format("a list with the values of the English one ({} is not in it)", label.first));
+      refuse(column_zh,
+             fmt::format("a list with the values of the English one ({} is not in it)", label.first));
     else
       same->label_zh = label.second;
   }

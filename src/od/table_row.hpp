@@ -18,7 +18,8 @@ namespace servoctl::od {
 class TableColumns {
  public:
   /// Errc::file when the table has a column that is not in `known`.
-  static Result<TableColumns> find(const CsvTable& table, std::span<const std::string_view> known, std::string_view file);
+  static Result<TableColumns> find(const CsvTable& table, std::span<const std::string_view> known,
+                                   std::string_view file);
   std::size_t place(std::size_t known_index) const { return places_[known_index]; }
 
  private:
@@ -28,7 +29,8 @@ class TableColumns {
 /// Reads the cells of one row; remembers the first that is wrong.
 class TableRow {
  public:
-  TableRow(const CsvTable::Row& row, const TableColumns& columns, std::span<const std::string_view> names, std::string_view file)
+  TableRow(const CsvTable::Row& row, const TableColumns& columns, std::span<const std::string_view> names,
+           std::string_view file)
       : row_(&row), columns_(&columns), names_(names), file_(file) {}
 
   /// The cell of the column at this place in the list of names; empty when the table has no such column.

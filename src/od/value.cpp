@@ -1,8 +1,8 @@
 #include "od/value.hpp"
 
+#include <fmt/format.h>
 #include <bit>
 #include <cmath>
-#include <fmt/format.h>
 #include <limits>
 
 #include "base/number.hpp"
@@ -30,13 +30,15 @@ std::string range_of(DataType type) {
 }
 
 tl::unexpected<Error> does_not_fit(DataType type, std::string_view text) {
-  if (is_integer(type)) return fail(Errc::usage, fmt::format("{} does not fit {} ({})", text, name(type), range_of(type)));
+  if (is_integer(type))
+    return fail(Errc::usage, fmt::format("{} does not fit {} ({})", text, name(type), range_of(type)));
   return fail(Errc::usage, fmt::format("'{}' does not fit {}", text, name(type)));
 }
 
 tl::unexpected<Error> not_a_value(DataType type, std::string_view text) {
   if (is_integer(type))
-    return fail(Errc::usage, fmt::format("'{}' is no number", text), fmt::format("write an integer of {}: 100, 0x64 or 64h", range_of(type)));
+    return fail(Errc::usage, fmt::format("'{}' is no number", text),
+                fmt::format("write an integer of {}: 100, 0x64 or 64h", range_of(type)));
   return fail(Errc::usage, fmt::format("'{}' is no {}", text, name(type)));
 }
 
@@ -49,9 +51,11 @@ std::int64_t sign_extended(std::uint64_t raw, std::size_t bits) {
   return static_cast<std::int64_t>(raw << shift) >> shift;
 }
 
-/// The double whose digits are those of the float: 0.1f becomes 0.1, not 0.10000000149; encoded again it is the same float.
+/// The double whose digits are those of the float: 0.1f becomes 0.1, not 0.10000000149; encoded again it is
+/// the same float.
 double shortest(float value) {
-  return std::isfinite(value) ? parse_real(fmt::format("{}", value)).value_or(value) : static_cast<double>(value);
+  return std::isfinite(value) ? parse_real(fmt::format("{}", value)).value_or(value)
+                              : static_cast<double>(value);
 }
 
 Result<Value> parse_integer_value(DataType type, std::string_view text) {
@@ -74,7 +78,8 @@ Result<Value> parse_integer_value(DataType type, std::string_view text) {
 Result<Value> parse_bytes_value(DataType type, std::string_view text) {
   auto digits = starts_with_nocase(text, "hex:") ? text.substr(4) : text;
   auto bytes = parse_hex_bytes(digits);
-  if (!bytes) return fail(Errc::usage, fmt::format("'{}' is no {}", text, name(type)), "write bytes as hex:00 64 FF");
+  if (!bytes)
+    return fail(Errc::usage, fmt::format("'{}' is no {}", text, name(type)), "write bytes as hex:00 64 FF");
   return Value(std::move(*bytes));
 }
 
@@ -84,7 +89,8 @@ Result<Bytes> encode_number(DataType type, const Value& value) {
     std::int64_t number = 0;
     if (const auto* i = std::get_if<std::int64_t>(&value))
       number = *i;
-    else if (const auto* u = std::get_if<std::uint64_t>(&value); u != nullptr && *u <= static_cast<std::uint64_t>(max_signed(type)))
+    else if (const auto* u = std::get_if<std::uint64_t>(&value);
+             u != nullptr && *u <= static_cast<std::uint64_t>(max_signed(type)))
       number = static_cast<std::int64_t>(*u);
     else
       return does_not_fit(type, to_string(value));
@@ -107,7 +113,8 @@ Result<Bytes> encode_number(DataType type, const Value& value) {
 Result<Bytes> encode(DataType type, const Value& value) {
   if (is_integer(type)) return encode_number(type, value);
   if (is_real(type)) {
-    if (std::holds_alternative<std::string>(value) || std::holds_alternative<Bytes>(value)) return does_not_fit(type, to_string(value));
+    if (std::holds_alternative<std::string>(value) || std::holds_alternative<Bytes>(value))
+      return does_not_fit(type, to_string(value));
     const double number = to_double(value);
     if (type == DataType::f64) return store_le(std::bit_cast<std::uint64_t>(number), 8);
     const auto narrow = static_cast<float>(number);
@@ -119,7 +126,8 @@ Result<Bytes> encode(DataType type, const Value& value) {
   if (const auto* bytes = std::get_if<Bytes>(&value)) {
     const auto size = size_of(type);
     if (size && bytes->size() != *size)
-      return fail(Errc::usage, fmt::format("{} bytes do not fit {} ({} bytes)", bytes->size(), name(type), *size));
+      return fail(Errc::usage,
+                  fmt::format("{} bytes do not fit {} ({} bytes)", bytes->size(), name(type), *size));
     return *bytes;
   }
   return does_not_fit(type, to_string(value));
@@ -132,7 +140,8 @@ Result<Value> decode(DataType type, ByteSpan bytes) {
                 "the dictionary in use may belong to another drive or firmware");
   if (is_signed(type)) return Value(sign_extended(load_le(bytes), bits_of(type)));
   if (is_unsigned(type)) return Value(load_le(bytes));
-  if (type == DataType::f32) return Value(shortest(std::bit_cast<float>(static_cast<std::uint32_t>(load_le(bytes)))));
+  if (type == DataType::f32)
+    return Value(shortest(std::bit_cast<float>(static_cast<std::uint32_t>(load_le(bytes)))));
   if (type == DataType::f64) return Value(std::bit_cast<double>(load_le(bytes)));
   if (type != DataType::string) return Value(Bytes(bytes.begin(), bytes.end()));
   std::string text(bytes.begin(), bytes.end());
@@ -175,10 +184,13 @@ double to_double(const Value& value) {
 }
 
 int compare_numbers(const Value& a, const Value& b) {
-  const auto is_text = [](const Value& v) { return std::holds_alternative<std::string>(v) || std::holds_alternative<Bytes>(v); };
+  const auto is_text = [](const Value& v) {
+    return std::holds_alternative<std::string>(v) || std::holds_alternative<Bytes>(v);
+  };
   if (is_text(a) || is_text(b)) return 0;
   const auto order = [](auto x, auto y) { return x < y ? -1 : y < x ? 1 : 0; };
-  if (std::holds_alternative<double>(a) || std::holds_alternative<double>(b)) return order(to_double(a), to_double(b));
+  if (std::holds_alternative<double>(a) || std::holds_alternative<double>(b))
+    return order(to_double(a), to_double(b));
   const auto* sa = std::get_if<std::int64_t>(&a);
   const auto* sb = std::get_if<std::int64_t>(&b);
   const bool negative_a = sa != nullptr && *sa < 0;
@@ -187,7 +199,8 @@ int compare_numbers(const Value& a, const Value& b) {
   const auto magnitude = [](const Value& v, const std::int64_t* s) {
     return s != nullptr ? static_cast<std::uint64_t>(*s) : std::get<std::uint64_t>(v);
   };
-  return order(magnitude(a, sa), magnitude(b, sb));  // Two negative ones keep their order as unsigned numbers.
+  return order(magnitude(a, sa),
+               magnitude(b, sb));  // Two negative ones keep their order as unsigned numbers.
 }
 
 }  // namespace servoctl::od

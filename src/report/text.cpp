@@ -1,5 +1,5 @@
-#include <algorithm>
 #include <fmt/format.h>
+#include <algorithm>
 
 #include "base/text.hpp"
 #include "report/value.hpp"
@@ -17,8 +17,8 @@ Overloaded(Fs...) -> Overloaded<Fs...>;  // clang 14 has no aggregate deduction.
 constexpr std::size_t kGap = 2;
 
 bool is_number(const Value& value) {
-  return std::holds_alternative<std::int64_t>(value.data()) || std::holds_alternative<std::uint64_t>(value.data()) ||
-         std::holds_alternative<double>(value.data());
+  return std::holds_alternative<std::int64_t>(value.data()) ||
+         std::holds_alternative<std::uint64_t>(value.data()) || std::holds_alternative<double>(value.data());
 }
 
 /// What a value says in one line.
@@ -39,7 +39,8 @@ std::string inline_text(const Value& value) {
                         [](const Record& r) {
                           std::string out;
                           for (const auto& f : r)
-                            if (f.show != Show::json) out += (out.empty() ? "" : ", ") + f.key + "=" + inline_text(f.value);
+                            if (f.show != Show::json)
+                              out += (out.empty() ? "" : ", ") + f.key + "=" + inline_text(f.value);
                           return out;
                         },
                         [](const Table&) { return std::string(); },
@@ -114,8 +115,9 @@ class TableText {
     for (;;) {
       std::size_t total = columns_.empty() ? 0 : (columns_.size() - 1) * kGap;
       for (const auto& column : columns_) total += column.width;
-      const auto widest = std::max_element(columns_.begin(), columns_.end(),
-                                           [](const Column& a, const Column& b) { return a.width < b.width; });
+      const auto widest =
+          std::max_element(columns_.begin(), columns_.end(),
+                           [](const Column& a, const Column& b) { return a.width < b.width; });
       if (total <= width || widest == columns_.end() || widest->width <= 12) return;
       widest->width = std::max<std::size_t>(12, widest->width - std::min(widest->width, total - width));
     }
@@ -125,7 +127,8 @@ class TableText {
     std::string line;
     for (const auto& column : columns_) {
       const auto& head = table.columns[column.index];
-      const auto cell = row == nullptr ? (head.title.empty() ? head.key : head.title) : cell_text((*row)[column.index]);
+      const auto cell =
+          row == nullptr ? (head.title.empty() ? head.key : head.title) : cell_text((*row)[column.index]);
       const auto clipped = clip(cell, column.width);
       if (!line.empty()) line += std::string(kGap, ' ');
       line += column.right ? pad_left(clipped, column.width) : pad_right(clipped, column.width);
@@ -142,7 +145,8 @@ std::string record_text(const Record& record, std::size_t width) {
   std::size_t left = 0;
   const auto title = [](const Field& f) { return f.title.empty() ? f.key : f.title; };
   for (const auto& field : record)
-    if (field.show != Show::json && !is_block(field.value)) left = std::max(left, display_width(title(field)));
+    if (field.show != Show::json && !is_block(field.value))
+      left = std::max(left, display_width(title(field)));
   std::string out;
   std::string blocks;  // Below the lines, whatever their place.
   for (const auto& field : record) {
@@ -150,7 +154,8 @@ std::string record_text(const Record& record, std::size_t width) {
     if (is_block(field.value))
       blocks += "\n" + title(field) + ":\n" + to_text(field.value, width);
     else
-      out += pad_right(title(field), left + kGap) + wrapped(cell_text(field.value), left + kGap, width) + '\n';
+      out +=
+          pad_right(title(field), left + kGap) + wrapped(cell_text(field.value), left + kGap, width) + '\n';
   }
   return out + blocks;
 }
@@ -159,11 +164,13 @@ std::string record_text(const Record& record, std::size_t width) {
 
 std::string to_text(const Value& value, std::size_t width) {
   if (value.is_null()) return {};
-  if (const auto* table = std::get_if<Table>(&value.data())) return table->json_only ? std::string() : TableText(*table, width).take();
+  if (const auto* table = std::get_if<Table>(&value.data()))
+    return table->json_only ? std::string() : TableText(*table, width).take();
   if (const auto* record = std::get_if<Record>(&value.data())) return record_text(*record, width);
   if (const auto* list = std::get_if<List>(&value.data())) {
     std::string out;
-    for (const auto& element : *list) out += (out.empty() || !is_block(element) ? "" : "\n") + to_text(element, width);
+    for (const auto& element : *list)
+      out += (out.empty() || !is_block(element) ? "" : "\n") + to_text(element, width);
     return out;
   }
   return inline_text(value) + '\n';

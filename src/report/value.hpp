@@ -23,11 +23,11 @@ struct Field;
 using List = std::vector<Value>;
 using Record = std::vector<Field>;  ///< Keeps the order in which it was written.
 
-/// Rows with the same fields: columns in text, an array of objects in JSON. A column in which every cell is empty is left out
-/// of the text.
+/// Rows with the same fields: columns in text, an array of objects in JSON. A column in which every cell is
+/// empty is left out of the text.
 struct Table {
   struct Column {
-    std::string key;    ///< Name in JSON.
+    std::string key;         ///< Name in JSON.
     std::string title = {};  ///< Heading in text; the key when empty.
     Show show = Show::everywhere;
   };
@@ -39,21 +39,23 @@ struct Table {
 /// What a command says. Commands build it; only report/text.cpp and report/json.cpp turn it into characters.
 class Value {
  public:
-  using Data = std::variant<std::monostate, bool, std::int64_t, std::uint64_t, double, std::string, Hex, List, Record, Table>;
+  using Data = std::variant<std::monostate, bool, std::int64_t, std::uint64_t, double, std::string, Hex, List,
+                            Record, Table>;
   Value() = default;
-  Value(const char* text) : data_(std::string(text)) {}              // NOLINT(google-explicit-constructor)
-  Value(std::string_view text) : data_(std::string(text)) {}         // NOLINT(google-explicit-constructor)
+  Value(const char* text) : data_(std::string(text)) {}       // NOLINT(google-explicit-constructor)
+  Value(std::string_view text) : data_(std::string(text)) {}  // NOLINT(google-explicit-constructor)
   template <class T>
-    requires(std::is_integral_v<T> && !std::is_same_v<T, bool>)
-  Value(T number) {                                                  // NOLINT(google-explicit-constructor)
+  requires(std::is_integral_v<T> && !std::is_same_v<T, bool>)
+      Value(T number) {  // NOLINT(google-explicit-constructor)
     if constexpr (std::is_signed_v<T>)
       data_ = static_cast<std::int64_t>(number);
     else
       data_ = static_cast<std::uint64_t>(number);
   }
   template <class T>
-    requires(std::is_constructible_v<Data, T> && (!std::is_integral_v<T> || std::is_same_v<T, bool>))
-  Value(T value) : data_(std::move(value)) {}                        // NOLINT(google-explicit-constructor)
+  requires(std::is_constructible_v<Data, T> && (!std::is_integral_v<T> || std::is_same_v<T, bool>))
+      Value(T value)
+      : data_(std::move(value)) {}  // NOLINT(google-explicit-constructor)
 
   const Data& data() const { return data_; }
   bool is_null() const { return std::holds_alternative<std::monostate>(data_); }
@@ -72,7 +74,8 @@ struct Field {
 /// A text, or nothing when it is empty.
 inline Value text_or_null(std::string text) { return text.empty() ? Value() : Value(std::move(text)); }
 
-/// The value as people read it, in at most `width` columns (0: no limit). Ends with a line break unless empty.
+/// The value as people read it, in at most `width` columns (0: no limit). Ends with a line break unless
+/// empty.
 std::string to_text(const Value& value, std::size_t width = 0);
 
 /// The value as one JSON document in one line, without line break.

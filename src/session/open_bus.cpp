@@ -34,7 +34,8 @@ Result<std::unique_ptr<can::Bus>> open_bus(std::string_view url, const BusOption
   const auto name = url.substr(0, colon) == "socketcan" ? url.substr(colon + 1) : url.substr(0, colon);
   // A simulated clock does not run with the wall's.
   const bool simulated = name == "sim" && options.clock == sim::SimBus::Clock::virtual_time;
-  return can::trace_to(std::move(*bus), options.trace, name, simulated ? can::TraceClock::bus : can::TraceClock::wall);
+  return can::trace_to(std::move(*bus), options.trace, name,
+                       simulated ? can::TraceClock::bus : can::TraceClock::wall);
 }
 
 }  // namespace servoctl::session

@@ -87,12 +87,14 @@ std::vector<Guess> guess_families(const Identity& identity, std::span<const driv
   for (const auto& family : families) {
     const auto rules = drive::load_rules(family);
     if (!rules || rules->identity.empty()) continue;
-    const bool fits = std::all_of(rules->identity.begin(), rules->identity.end(), [&](const drive::Condition& condition) {
-      return identity_number(identity, condition.object) == condition.value;
-    });
+    const bool fits =
+        std::all_of(rules->identity.begin(), rules->identity.end(), [&](const drive::Condition& condition) {
+          return identity_number(identity, condition.object) == condition.value;
+        });
     if (fits) out.push_back({family.name, rules->identity_certain});
   }
-  std::stable_sort(out.begin(), out.end(), [](const Guess& a, const Guess& b) { return a.certain && !b.certain; });
+  std::stable_sort(out.begin(), out.end(),
+                   [](const Guess& a, const Guess& b) { return a.certain && !b.certain; });
   return out;
 }
 

@@ -25,8 +25,9 @@ struct Identity {
   std::optional<canopen::NmtState> nmt;       ///< Heard from heartbeat or boot-up, if any.
 };
 
-/// Asks all `nodes` for 1000h at once, without retries: the answer takes one timeout however many there are. A node that
-/// refuses the read is there as well. Then reads the identity of those found. Errc::bus when the bus is lost.
+/// Asks all `nodes` for 1000h at once, without retries: the answer takes one timeout however many there are.
+/// A node that refuses the read is there as well. Then reads the identity of those found. Errc::bus when the
+/// bus is lost.
 Result<std::vector<Identity>> scan(Session& session, std::span<const std::uint8_t> nodes);
 
 /// A family whose identity rule fits a node.

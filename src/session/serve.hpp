@@ -5,8 +5,8 @@
 
 namespace servoctl::session {
 
-/// Lets simulated drives live on the bus of the session until it is cancelled. Returns when `Options::cancelled` says so;
-/// Errc::bus when the bus is lost.
+/// Lets simulated drives live on the bus of the session until it is cancelled. Returns when
+/// `Options::cancelled` says so; Errc::bus when the bus is lost.
 Result<void> serve(Session& session, sim::Cell& cell);
 
 }  // namespace servoctl::session

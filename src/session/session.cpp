@@ -8,7 +8,8 @@
 namespace servoctl::session {
 namespace {
 
-/// A signal that comes between the question and the wait would otherwise be noticed at the end of the wait only.
+/// A signal that comes between the question and the wait would otherwise be noticed at the end of the wait
+/// only.
 constexpr Duration kCancelSlice = std::chrono::milliseconds(250);
 
 }  // namespace

@@ -27,18 +27,20 @@ struct SdoRequest {
 
 struct Options {
   Duration timeout = std::chrono::milliseconds(500);  ///< Longest wait for one SDO answer.
-  std::uint32_t retries = 1;                          ///< Further tries of a read that was not answered; never of a write.
-  std::function<bool()> cancelled;                    ///< Asked in every wait; may be empty.
+  std::uint32_t retries = 1;        ///< Further tries of a read that was not answered; never of a write.
+  std::function<bool()> cancelled;  ///< Asked in every wait; may be empty.
 };
 
-/// A bus with its nodes. One pump drives any number of protocol machines; listeners see every frame in every wait.
+/// A bus with its nodes. One pump drives any number of protocol machines; listeners see every frame in every
+/// wait.
 class Session {
  public:
   Session(std::unique_ptr<can::Bus> bus, std::string url, Options options);
 
-  /// Runs all requests: those of one node one after the other, those of different nodes at the same time. The answers stand
-  /// in the order of the requests. After a node has not answered, or has refused a write, its further writes are not sent;
-  /// after it has not answered, its further reads neither: a dead node costs one timeout (and its retries).
+  /// Runs all requests: those of one node one after the other, those of different nodes at the same time. The
+  /// answers stand in the order of the requests. After a node has not answered, or has refused a write, its
+  /// further writes are not sent; after it has not answered, its further reads neither: a dead node costs one
+  /// timeout (and its retries).
   std::vector<Result<Bytes>> transfer(std::span<const SdoRequest> requests);
   Result<Bytes> upload(std::uint8_t node, ObjectAddress object);
   Result<void> download(std::uint8_t node, ObjectAddress object, Bytes data);
@@ -66,7 +68,8 @@ class Session {
  private:
   friend class TransferRun;
 
-  /// Receives one frame or lets the deadline pass; the listeners see it first. Errc::interrupted when cancelled.
+  /// Receives one frame or lets the deadline pass; the listeners see it first. Errc::interrupted when
+  /// cancelled.
   Result<std::optional<can::Frame>> receive(TimePoint deadline);
 
   std::unique_ptr<can::Bus> bus_;

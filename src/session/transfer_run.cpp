@@ -1,7 +1,7 @@
 #include "session/transfer_run.hpp"
 
-#include <algorithm>
 #include <fmt/format.h>
+#include <algorithm>
 
 #include "canopen/cob_id.hpp"
 
@@ -11,15 +11,20 @@ namespace {
 constexpr int kNone = -1;
 
 std::string silence_hint(std::uint8_t node) {
-  return fmt::format("is node {} powered and connected, does it run at this bitrate and is this its node-ID? `scan` shows who "
-                     "answers",
-                     node);
+  return fmt::format(
+      "is node {} powered and connected, does it run at this bitrate and is this its node-ID? `scan` shows "
+      "who "
+      "answers",
+      node);
 }
 
 }  // namespace
 
 TransferRun::TransferRun(Session& session, std::span<const SdoRequest> requests)
-    : session_(&session), requests_(requests), results_(requests.size(), Result<Bytes>(Bytes{})), open_(requests.size()) {
+    : session_(&session),
+      requests_(requests),
+      results_(requests.size(), Result<Bytes>(Bytes{})),
+      open_(requests.size()) {
   channel_of_node_.fill(kNone);
   for (std::size_t i = 0; i < requests.size(); ++i) {
     const auto node = requests[i].node & 0x7FU;
@@ -107,7 +112,8 @@ void TransferRun::skip_rest(Channel& channel, const Error& reason, bool reads_to
     }
     Error error = reason;  // Keeps the object that failed: that is the cause.
     error.message = fmt::format("node {}, object {}: not tried after {} failed", requests_[index].node,
-                                to_string(requests_[index].object), reason.object ? to_string(*reason.object) : "an object");
+                                to_string(requests_[index].object),
+                                reason.object ? to_string(*reason.object) : "an object");
     results_[index] = tl::unexpected<Error>(std::move(error));
     --open_;
   }

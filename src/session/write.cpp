@@ -22,11 +22,13 @@ bool answer_lost(const Error& error, const SdoRequest& request) {
 
 Result<Written> after_lost_answer(const SdoRequest& request, const Result<Bytes>& found) {
   if (!found)
-    return fail(about(request, Errc::timeout, "the write was sent, the answer never came, and the value cannot be read back",
+    return fail(about(request, Errc::timeout,
+                      "the write was sent, the answer never came, and the value cannot be read back",
                       "it is unknown whether the value was written: read it when the node answers again"));
   if (*found != *request.data)
     return fail(about(request, Errc::timeout,
-                      fmt::format("the write was not answered and had no effect: the object still holds {}", to_hex(*found)),
+                      fmt::format("the write was not answered and had no effect: the object still holds {}",
+                                  to_hex(*found)),
                       "write it again"));
   Written done;
   done.answer_lost = true;
@@ -41,9 +43,10 @@ Result<Written> after_answer(const SdoRequest& request, const Result<Bytes>& fou
     return fail(std::move(error));
   }
   if (*found != *request.data)
-    return fail(about(request, Errc::negative,
-                      fmt::format("the drive acknowledged {} and holds {}", to_hex(*request.data), to_hex(*found)),
-                      "the drive limits or rounds the value, or another setting overrides it"));
+    return fail(
+        about(request, Errc::negative,
+              fmt::format("the drive acknowledged {} and holds {}", to_hex(*request.data), to_hex(*found)),
+              "the drive limits or rounds the value, or another setting overrides it"));
   Written done;
   done.read_back = *found;
   return done;
@@ -51,7 +54,8 @@ Result<Written> after_answer(const SdoRequest& request, const Result<Bytes>& fou
 
 }  // namespace
 
-std::vector<Result<Written>> write_all(Session& session, std::span<const SdoRequest> requests, bool read_back) {
+std::vector<Result<Written>> write_all(Session& session, std::span<const SdoRequest> requests,
+                                       bool read_back) {
   const auto answers = session.transfer(requests);
   std::vector<Result<Written>> out;
   std::vector<SdoRequest> questions;

@@ -1,7 +1,7 @@
 #include "sim/cell.hpp"
 
-#include <algorithm>
 #include <fmt/format.h>
+#include <algorithm>
 #include <utility>
 
 #include "base/duration.hpp"
@@ -18,7 +18,8 @@ struct Place {
 };
 
 tl::unexpected<Error> bad_spec(std::string what) {
-  return fail(Errc::usage, std::move(what), "simulated drives are written sim:FAMILY@NODE, for example sim:gsd600@1,gsd600@2?state=FILE");
+  return fail(Errc::usage, std::move(what),
+              "simulated drives are written sim:FAMILY@NODE, for example sim:gsd600@1,gsd600@2?state=FILE");
 }
 
 Result<Place> parse_place(std::string_view text) {
@@ -34,7 +35,8 @@ Result<Place> parse_place(std::string_view text) {
   return place;
 }
 
-Result<const drive::Profile*> profile_of(Cell& cell, const std::string& family, std::span<const std::filesystem::path> folders) {
+Result<const drive::Profile*> profile_of(Cell& cell, const std::string& family,
+                                         std::span<const std::filesystem::path> folders) {
   for (const auto& known : cell.profiles)
     if (known->family == family) return known.get();
   auto loaded = drive::load_profile(family, folders);
@@ -49,7 +51,8 @@ Result<void> plan_fault(Cell& cell, std::string_view text, TimePoint now) {
   const auto delay = parse_duration(at == std::string_view::npos ? "0" : text.substr(at + 1));
   if (!code || code->negative || code->magnitude > 0xFFFF || !delay)
     return bad_spec(fmt::format("'fault={}' is not CODE@TIME, such as fault=0xFF00@2s", text));
-  for (const auto& drive : cell.drives) drive->raise_fault_at(static_cast<std::uint16_t>(code->magnitude), now + *delay);
+  for (const auto& drive : cell.drives)
+    drive->raise_fault_at(static_cast<std::uint16_t>(code->magnitude), now + *delay);
   return {};
 }
 
@@ -100,9 +103,11 @@ class CellBus final : public can::Bus {
 
 }  // namespace
 
-Result<Cell> build_cell(std::string_view spec, std::span<const std::filesystem::path> folders, TimePoint now) {
+Result<Cell> build_cell(std::string_view spec, std::span<const std::filesystem::path> folders,
+                        TimePoint now) {
   const auto question = spec.find('?');
-  const auto options = question == std::string_view::npos ? std::vector<std::string_view>() : split(spec.substr(question + 1), '&');
+  const auto options = question == std::string_view::npos ? std::vector<std::string_view>()
+                                                          : split(spec.substr(question + 1), '&');
   const auto places = split(spec.substr(0, question), ',');
   if (places.empty()) return bad_spec("no simulated drive is named");
   Cell cell;
@@ -115,16 +120,19 @@ Result<Cell> build_cell(std::string_view spec, std::span<const std::filesystem::
     const auto profile = profile_of(cell, place->family, folders);
     if (!profile) return tl::unexpected<Error>(profile.error());
     for (const auto& other : cell.drives)
-      if (other->node() == place->node) return bad_spec(fmt::format("node-ID {} is given twice", place->node));
+      if (other->node() == place->node)
+        return bad_spec(fmt::format("node-ID {} is given twice", place->node));
     const auto key = fmt::format("{}.{}", cell.drives.size() + 1, place->family);
     cell.drives.push_back(std::make_unique<SimDrive>(**profile, place->node, *cell.memory, key));
   }
   for (const auto option : options)
-    if (const auto applied = apply_option(cell, option, now); !applied) return tl::unexpected<Error>(applied.error());
+    if (const auto applied = apply_option(cell, option, now); !applied)
+      return tl::unexpected<Error>(applied.error());
   return cell;
 }
 
-Result<std::unique_ptr<can::Bus>> open_sim(std::string_view spec, std::span<const std::filesystem::path> folders,
+Result<std::unique_ptr<can::Bus>> open_sim(std::string_view spec,
+                                           std::span<const std::filesystem::path> folders,
                                            SimBus::Clock clock) {
   const auto now = SimBus(clock).now();
   auto cell = build_cell(spec, folders, now);

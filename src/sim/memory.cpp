@@ -39,7 +39,8 @@ Result<void> Memory::parse(std::string_view text) {
     const auto object = words.size() == 3 ? parse_object_address(words[1]) : std::nullopt;
     const auto bytes = words.size() == 3 ? parse_hex_bytes(words[2]) : std::nullopt;
     if (!object || !bytes)
-      return fail(Errc::file, fmt::format("{}:{}: expected a drive, an object and its bytes", file_.string(), number),
+      return fail(Errc::file,
+                  fmt::format("{}:{}: expected a drive, an object and its bytes", file_.string(), number),
                   "mend the line or delete the file");
     drives_[std::string(words[0])][*object] = *bytes;
   }

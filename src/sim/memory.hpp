@@ -11,8 +11,8 @@
 
 namespace servoctl::sim {
 
-/// Non-volatile memory of simulated drives, kept in a file when there is one. Drives are told apart by a key that does not
-/// change with their node-ID: their place in the list and their family.
+/// Non-volatile memory of simulated drives, kept in a file when there is one. Drives are told apart by a key
+/// that does not change with their node-ID: their place in the list and their family.
 class Memory {
  public:
   using Cells = std::map<ObjectAddress, Bytes>;

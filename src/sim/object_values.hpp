@@ -9,8 +9,8 @@
 
 namespace servoctl::sim {
 
-/// The values of all entries of a drive, as bytes, with the checks a drive makes before it takes a new one: existence,
-/// access, length and limits. Rules that depend on the drive's state are made by the drive.
+/// The values of all entries of a drive, as bytes, with the checks a drive makes before it takes a new one:
+/// existence, access, length and limits. Rules that depend on the drive's state are made by the drive.
 class ObjectValues {
  public:
   explicit ObjectValues(const drive::Profile& profile) : profile_(&profile) {}

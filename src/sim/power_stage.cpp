@@ -18,7 +18,8 @@ void PowerStage::reset() {
   deadline_ = kNever;
 }
 
-void PowerStage::on_controlword(std::uint16_t controlword, std::int64_t quick_stop_option, bool may_reset, TimePoint now) {
+void PowerStage::on_controlword(std::uint16_t controlword, std::int64_t quick_stop_option, bool may_reset,
+                                TimePoint now) {
   const auto command = drive::decode_command(controlword, controlword_);
   controlword_ = controlword;
   was_reset_ = false;

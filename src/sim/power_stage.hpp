@@ -8,8 +8,8 @@
 
 namespace servoctl::sim {
 
-/// The CiA 402 state machine of a simulated drive: controlwords in, statuswords out, in the numbers the family's manual
-/// prints. Quick stop and fault reaction take 20 ms.
+/// The CiA 402 state machine of a simulated drive: controlwords in, statuswords out, in the numbers the
+/// family's manual prints. Quick stop and fault reaction take 20 ms.
 class PowerStage {
  public:
   explicit PowerStage(const drive::Rules& rules) : rules_(&rules) {}
@@ -17,7 +17,8 @@ class PowerStage {
   /// Power-on: straight to "switch on disabled".
   void reset();
   /// `quick_stop_option` is 605Ah, `may_reset` whether the family allows a fault to be reset now.
-  void on_controlword(std::uint16_t controlword, std::int64_t quick_stop_option, bool may_reset, TimePoint now);
+  void on_controlword(std::uint16_t controlword, std::int64_t quick_stop_option, bool may_reset,
+                      TimePoint now);
   void raise_fault(TimePoint now);
   void on_time(TimePoint now);
   TimePoint deadline() const { return deadline_; }

@@ -8,7 +8,8 @@
 namespace servoctl::sim {
 namespace {
 
-/// A frame of 8 bytes takes about this long at 1 Mbit/s; virtual time moves on by it with every frame received.
+/// A frame of 8 bytes takes about this long at 1 Mbit/s; virtual time moves on by it with every frame
+/// received.
 constexpr Duration kFrameTime{120};
 
 }  // namespace

@@ -8,8 +8,8 @@
 
 namespace servoctl::sim {
 
-/// A bus inside this process, with its devices. With the virtual clock every wait ends at once and costs no real time; with
-/// the real clock it behaves like a bus of hardware.
+/// A bus inside this process, with its devices. With the virtual clock every wait ends at once and costs no
+/// real time; with the real clock it behaves like a bus of hardware.
 class SimBus final : public can::Bus {
  public:
   enum class Clock : std::uint8_t { virtual_time, real_time };

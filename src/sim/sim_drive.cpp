@@ -147,7 +147,8 @@ void SimDrive::restore_if_asked() {
     return cell != cells.end() && load_le(cell->second) == 1;
   };
   if (set(profile_->rules.restore_defaults_parameter)) cells.clear();
-  if (set(profile_->rules.clear_alarms_parameter)) cells.erase(*parameter(profile_->rules.clear_alarms_parameter)->object);
+  if (set(profile_->rules.clear_alarms_parameter))
+    cells.erase(*parameter(profile_->rules.clear_alarms_parameter)->object);
   (void)memory_->save();
 }
 
@@ -246,7 +247,8 @@ std::uint32_t SimDrive::save_objects() {
   auto& cells = memory_->cells(key_);
   for (const auto& object : profile_->dictionary.objects())
     for (const auto& entry : object.entries)
-      if (entry.access == od::Access::rw && !entry.command && !entry.is_volatile && entry.address != kControlword)
+      if (entry.access == od::Access::rw && !entry.command && !entry.is_volatile &&
+          entry.address != kControlword)
         cells[entry.address] = values_.get(entry.address);
   return memory_->save() ? 0 : abort::kCannotStore;
 }

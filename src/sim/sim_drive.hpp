@@ -18,20 +18,22 @@ namespace servoctl::sim {
 
 /// Ways in which a simulated drive misbehaves; all off at first.
 struct Misbehaviour {
-  bool silent = false;                   ///< Says nothing and hears nothing: power off or cable out.
-  std::uint32_t drop_answers = 0;        ///< So many SDO answers are lost on the way.
-  std::uint32_t duplicate_answers = 0;   ///< So many SDO answers arrive twice.
-  Duration answer_delay{};               ///< Every SDO answer comes this late.
+  bool silent = false;                  ///< Says nothing and hears nothing: power off or cable out.
+  std::uint32_t drop_answers = 0;       ///< So many SDO answers are lost on the way.
+  std::uint32_t duplicate_answers = 0;  ///< So many SDO answers arrive twice.
+  Duration answer_delay{};              ///< Every SDO answer comes this late.
 };
 
-/// A drive of a family, made from its profile: object dictionary behind an SDO server, NMT slave, boot-up, heartbeat,
-/// emergencies, CiA 402 states, panel parameters with non-volatile memory.
+/// A drive of a family, made from its profile: object dictionary behind an SDO server, NMT slave, boot-up,
+/// heartbeat, emergencies, CiA 402 states, panel parameters with non-volatile memory.
 ///
-/// What the manual leaves open is answered like this: a panel parameter is kept at once when it is written, an object of the
-/// communication or device profile only by 1010h; an NMT reset of the node restarts the drive as a power cycle does.
+/// What the manual leaves open is answered like this: a panel parameter is kept at once when it is written,
+/// an object of the communication or device profile only by 1010h; an NMT reset of the node restarts the
+/// drive as a power cycle does.
 class SimDrive final : public Device, private canopen::ObjectStore {
  public:
-  /// `profile` and `memory` outlive the drive. `key` names its cells in the memory; `node` is the node-ID it is set to.
+  /// `profile` and `memory` outlive the drive. `key` names its cells in the memory; `node` is the node-ID it
+  /// is set to.
   SimDrive(const drive::Profile& profile, std::uint8_t node, Memory& memory, std::string key);
 
   void on_frame(const can::Frame& frame, TimePoint now) override;
@@ -76,7 +78,9 @@ class SimDrive final : public Device, private canopen::ObjectStore {
   void plan_heartbeat(TimePoint now);
   void send_emergency(std::uint16_t code, std::array<std::uint8_t, 5> vendor);
   std::uint64_t effective(ObjectAddress object) const;
-  const od::Parameter* parameter(const std::string& id) const { return id.empty() ? nullptr : profile_->parameter(id); }
+  const od::Parameter* parameter(const std::string& id) const {
+    return id.empty() ? nullptr : profile_->parameter(id);
+  }
 
   const drive::Profile* profile_;
   Memory* memory_;

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <rapidcheck/gtest.h>
+#include <filesystem>
 
 #include "base/bytes.hpp"
 #include "base/csv.hpp"
@@ -19,9 +19,16 @@ using namespace std::chrono_literals;
 
 TEST(ExitCode, IsTheOneScriptsRelyOn) {
   const std::pair<Errc, std::pair<int, std::string_view>> rows[] = {
-      {Errc::negative, {1, "negative"}}, {Errc::usage, {2, "usage"}},       {Errc::bus, {3, "bus"}},      {Errc::timeout, {4, "no-answer"}},
-      {Errc::sdo_abort, {5, "sdo-abort"}}, {Errc::protocol, {6, "protocol"}}, {Errc::file, {7, "file"}},    {Errc::refused, {8, "refused"}},
-      {Errc::bug, {70, "bug"}},            {Errc::interrupted, {130, "interrupted"}}};
+      {Errc::negative, {1, "negative"}},
+      {Errc::usage, {2, "usage"}},
+      {Errc::bus, {3, "bus"}},
+      {Errc::timeout, {4, "no-answer"}},
+      {Errc::sdo_abort, {5, "sdo-abort"}},
+      {Errc::protocol, {6, "protocol"}},
+      {Errc::file, {7, "file"}},
+      {Errc::refused, {8, "refused"}},
+      {Errc::bug, {70, "bug"}},
+      {Errc::interrupted, {130, "interrupted"}}};
   for (const auto& row : rows) {
     EXPECT_EQ(exit_code(row.first), row.second.first);
     EXPECT_EQ(name(row.first), row.second.second);
@@ -47,7 +54,8 @@ TEST(Integer, IsReadAsPeopleWriteIt) {
 }
 
 TEST(Integer, WithAnythingElseInItIsNone) {
-  for (const auto* text : {"", "-", "+", "0x", "h", "1 ", " 1", "1.5", "12a", "--1", "0x1G", "18446744073709551616", "１"})
+  for (const auto* text :
+       {"", "-", "+", "0x", "h", "1 ", " 1", "1.5", "12a", "--1", "0x1G", "18446744073709551616", "１"})
     EXPECT_FALSE(parse_integer(text)) << text;
 }
 
@@ -55,7 +63,8 @@ TEST(Real, HasAPointWhateverTheLocale) {
   EXPECT_EQ(parse_real("1.5"), 1.5);
   EXPECT_EQ(parse_real("-.25"), -0.25);
   EXPECT_EQ(parse_real("+1e3"), 1000);
-  for (const auto* text : {"", "1,5", "inf", "nan", "1e999", "1.5x", "+-1"}) EXPECT_FALSE(parse_real(text)) << text;
+  for (const auto* text : {"", "1,5", "inf", "nan", "1e999", "1.5x", "+-1"})
+    EXPECT_FALSE(parse_real(text)) << text;
 }
 
 TEST(Bytes, GoToHexAndBack) {
@@ -74,11 +83,13 @@ RC_GTEST_PROP(Bytes, AreLittleEndian, (std::uint64_t value)) {
 
 TEST(ObjectAddress, IsReadInEverySpelling) {
   const ObjectAddress plain{0x6041, 0};
-  for (const auto* text : {"0x6041", "6041h", "6041", "6041H", "0X6041", "0x6041:0", "6041h.00", "6041sub0"}) EXPECT_EQ(parse_object_address(text), plain) << text;
+  for (const auto* text : {"0x6041", "6041h", "6041", "6041H", "0X6041", "0x6041:0", "6041h.00", "6041sub0"})
+    EXPECT_EQ(parse_object_address(text), plain) << text;
   EXPECT_EQ(parse_object_address("0x2000:65"), (ObjectAddress{0x2000, 0x65}));
   EXPECT_EQ(parse_object_address("2000h:65h"), (ObjectAddress{0x2000, 0x65}));
   EXPECT_EQ(parse_object_address("2000SUB1f"), (ObjectAddress{0x2000, 0x1F}));
-  for (const auto* text : {"", "60", "604", "60411", "0x60411", "0x6041:", "0x6041:100", "6041-1", "pn202", "0x", "6041:g"})
+  for (const auto* text :
+       {"", "60", "604", "60411", "0x60411", "0x6041:", "0x6041:100", "6041-1", "pn202", "0x", "6041:g"})
     EXPECT_FALSE(parse_object_address(text)) << text;
 }
 
@@ -92,7 +103,8 @@ TEST(Duration, IsReadWithAndWithoutUnit) {
   EXPECT_EQ(parse_duration("1.5s"), 1500ms);
   EXPECT_EQ(parse_duration("100 us"), 100us);
   EXPECT_EQ(parse_duration("2min"), 2min);
-  for (const auto* text : {"", "soon", "-1s", "1h", "1e99s", "5 parsecs"}) EXPECT_FALSE(parse_duration(text)) << text;
+  for (const auto* text : {"", "soon", "-1s", "1h", "1e99s", "5 parsecs"})
+    EXPECT_FALSE(parse_duration(text)) << text;
   EXPECT_EQ(to_string(Duration(2s)), "2 s");
   EXPECT_EQ(to_string(Duration(250ms)), "250 ms");
   EXPECT_EQ(to_string(Duration(120us)), "120 us");
@@ -193,7 +205,8 @@ TEST_F(FileTest, IsReplacedAsAWholeAndLeavesNothingBehind) {
 
 TEST_F(FileTest, ThatCannotBeReplacedStaysAsItIs) {
   const auto path = folder / "f";
-  std::filesystem::create_directories(path / "full");  // A folder with something in it cannot be replaced by a file.
+  std::filesystem::create_directories(path /
+                                      "full");  // A folder with something in it cannot be replaced by a file.
   const auto written = write_file_atomically(path, "x");
   ASSERT_FALSE(written);
   EXPECT_EQ(written.error().code, Errc::file);

@@ -22,11 +22,13 @@ TEST(Nmt, CommandsAreTwoBytesOnIdZero) {
 
 TEST(Nmt, FramesOfOtherShapeAreNoCommand) {
   EXPECT_TRUE(parse_nmt(frame("000#0105")));
-  for (const auto* text : {"000#01", "000#010500", "001#0105", "000#0305", "00000000#0105", "000#R2"}) EXPECT_FALSE(parse_nmt(frame(text))) << text;
+  for (const auto* text : {"000#01", "000#010500", "001#0105", "000#0305", "00000000#0105", "000#R2"})
+    EXPECT_FALSE(parse_nmt(frame(text))) << text;
 }
 
 TEST(Nmt, NamesGoBothWays) {
-  for (const auto command : {NmtCommand::start, NmtCommand::stop, NmtCommand::enter_pre_operational, NmtCommand::reset_node, NmtCommand::reset_communication})
+  for (const auto command : {NmtCommand::start, NmtCommand::stop, NmtCommand::enter_pre_operational,
+                             NmtCommand::reset_node, NmtCommand::reset_communication})
     EXPECT_EQ(parse_nmt_command(name(command)), command);
   EXPECT_FALSE(parse_nmt_command("run"));
 }
@@ -36,7 +38,8 @@ TEST(ErrorControl, TellsBootUpAndStatesAndDropsTheToggleBit) {
   EXPECT_EQ(parse_error_control(frame("705#05"))->state, NmtState::operational);
   EXPECT_EQ(parse_error_control(frame("705#85"))->state, NmtState::operational);
   EXPECT_EQ(parse_error_control(frame("77F#7F"))->node, 127);
-  for (const auto* text : {"700#05", "780#05", "705#", "705#0500", "705#R", "00000705#05"}) EXPECT_FALSE(parse_error_control(frame(text))) << text;
+  for (const auto* text : {"700#05", "780#05", "705#", "705#0500", "705#R", "00000705#05"})
+    EXPECT_FALSE(parse_error_control(frame(text))) << text;
 }
 
 TEST(Emergency, IsTakenApart) {
@@ -72,15 +75,17 @@ TEST(Emergency, CodesAreNamedByTheirClass) {
 
 TEST(SdoAbort, HasATextForEveryCodeOfCia301) {
   // CiA 301 v4.2, 7.2.4.3.17, typed from the standard's list.
-  const std::uint32_t codes[] = {0x05030000, 0x05040000, 0x05040001, 0x05040002, 0x05040003, 0x05040004, 0x05040005, 0x06010000,
-                                 0x06010001, 0x06010002, 0x06020000, 0x06040041, 0x06040042, 0x06040043, 0x06040047, 0x06060000,
-                                 0x06070010, 0x06070012, 0x06070013, 0x06090011, 0x06090030, 0x06090031, 0x06090032, 0x06090036,
-                                 0x060A0023, 0x08000000, 0x08000020, 0x08000021, 0x08000022, 0x08000023, 0x08000024};
+  const std::uint32_t codes[] = {
+      0x05030000, 0x05040000, 0x05040001, 0x05040002, 0x05040003, 0x05040004, 0x05040005, 0x06010000,
+      0x06010001, 0x06010002, 0x06020000, 0x06040041, 0x06040042, 0x06040043, 0x06040047, 0x06060000,
+      0x06070010, 0x06070012, 0x06070013, 0x06090011, 0x06090030, 0x06090031, 0x06090032, 0x06090036,
+      0x060A0023, 0x08000000, 0x08000020, 0x08000021, 0x08000022, 0x08000023, 0x08000024};
   for (const auto code : codes) {
     EXPECT_TRUE(is_standard_sdo_abort(code)) << std::hex << code;
     EXPECT_FALSE(sdo_abort_text(code).empty());
   }
-  EXPECT_EQ(sdo_abort_text(0x0607'0010), "data type does not match, length of service parameter does not match");
+  EXPECT_EQ(sdo_abort_text(0x0607'0010),
+            "data type does not match, length of service parameter does not match");
   EXPECT_EQ(sdo_abort_text(0x0602'0000), "object does not exist in the object dictionary");
 }
 

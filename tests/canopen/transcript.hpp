@@ -17,7 +17,8 @@ inline can::Frame frame(std::string_view text) {
   return parsed.value_or(can::Frame{});
 }
 
-/// Plays a transcript in candump notation against a machine: `> 602#…` is what it must send, `< 582#…` what it is told,
+/// Plays a transcript in candump notation against a machine: `> 602#…` is what it must send, `< 582#…` what
+/// it is told,
 /// `+ 500ms` lets time pass. What it sends beyond the transcript is a failure.
 template <class Machine>
 void play(Machine& machine, TimePoint& now, std::initializer_list<std::string_view> lines) {

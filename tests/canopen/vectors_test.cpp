@@ -1,9 +1,9 @@
-// Frames printed in the drives' manuals (tests/vectors/*.txt) against client, server and decoders. They are outside evidence: our
-// own client and server share code and could agree on the same mistake.
+// Frames printed in the drives' manuals (tests/vectors/*.txt) against client, server and decoders. They are
+// outside evidence: our own client and server share code and could agree on the same mistake.
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <fmt/format.h>
+#include <filesystem>
 #include <map>
 #include <sstream>
 
@@ -21,8 +21,8 @@ namespace servoctl::canopen {
 namespace {
 
 struct Vector {
-  std::string place;   ///< `ts.txt:123`
-  std::string text;    ///< The frame as printed.
+  std::string place;  ///< `ts.txt:123`
+  std::string text;   ///< The frame as printed.
   bool to_drive = false;
   std::vector<std::string> meaning;  ///< Words behind `=`.
   bool misprinted = false;
@@ -34,9 +34,14 @@ std::vector<Vector> read_vectors(const std::filesystem::path& path) {
   std::string line;
   for (int number = 1; std::getline(lines, line); ++number) {
     if (line.starts_with("> ") || line.starts_with("< "))
-      out.push_back({fmt::format("{}:{}", path.filename().string(), number), std::string(trim(line.substr(2, line.find(' ', 2) - 2))), line[0] == '>', {}, false});
+      out.push_back({fmt::format("{}:{}", path.filename().string(), number),
+                     std::string(trim(line.substr(2, line.find(' ', 2) - 2))),
+                     line[0] == '>',
+                     {},
+                     false});
     else if (line.starts_with("= "))
-      for (const auto word : split(trim(std::string_view(line).substr(2)), ' ')) out.back().meaning.emplace_back(word);
+      for (const auto word : split(trim(std::string_view(line).substr(2)), ' '))
+        out.back().meaning.emplace_back(word);
     else if (line.starts_with("!"))
       out.back().misprinted = true;
   }
@@ -50,7 +55,8 @@ ObjectAddress object_of(const Vector& v) {
 }
 
 Bytes value_of(const Vector& v) {
-  const std::map<std::string, std::size_t> sizes{{"i8", 1}, {"u8", 1}, {"i16", 2}, {"u16", 2}, {"i32", 4}, {"u32", 4}};
+  const std::map<std::string, std::size_t> sizes{{"i8", 1},  {"u8", 1},  {"i16", 2},
+                                                 {"u16", 2}, {"i32", 4}, {"u32", 4}};
   const auto number = parse_integer(v.meaning.at(3));
   EXPECT_TRUE(number) << v.place;
   const auto raw = number->negative ? ~number->magnitude + 1 : number->magnitude;

@@ -1,10 +1,10 @@
-// Golden command-line cases: tests/cli/golden/cases.txt names them, one file each holds what the program must say, as text and
-// as JSON. `./dev golden` writes the files anew; read the diff.
+// Golden command-line cases: tests/cli/golden/cases.txt names them, one file each holds what the program must
+// say, as text and as JSON. `./dev golden` writes the files anew; read the diff.
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
 #include <cstdlib>
 #include <filesystem>
-#include <fmt/format.h>
 #include <fstream>
 #include <sstream>
 
@@ -85,12 +85,13 @@ TEST_P(Golden, SaysWhatItSaidBefore) {
   EXPECT_EQ(slurp(path), said) << "`./dev golden` writes " << path << " anew";
 }
 
-INSTANTIATE_TEST_SUITE_P(Cases, Golden, testing::ValuesIn(read_cases()), [](const testing::TestParamInfo<Case>& c_info) {
-  std::string name = c_info.param.name;
-  for (auto& c : name)
-    if (c == '-') c = '_';
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Cases, Golden, testing::ValuesIn(read_cases()),
+                         [](const testing::TestParamInfo<Case>& c_info) {
+                           std::string name = c_info.param.name;
+                           for (auto& c : name)
+                             if (c == '-') c = '_';
+                           return name;
+                         });
 
 TEST(GoldenCases, EveryFileBelongsToACase) {
   const auto cases = read_cases();
@@ -98,7 +99,8 @@ TEST(GoldenCases, EveryFileBelongsToACase) {
   for (const auto& entry : fs::directory_iterator(kFolder)) {
     const auto stem = entry.path().stem().string();
     if (stem == "cases") continue;
-    EXPECT_TRUE(std::any_of(cases.begin(), cases.end(), [&](const Case& c) { return c.name == stem; })) << entry.path();
+    EXPECT_TRUE(std::any_of(cases.begin(), cases.end(), [&](const Case& c) { return c.name == stem; }))
+        << entry.path();
   }
 }
 

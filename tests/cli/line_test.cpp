@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "base/text.hpp"
 #include "cli/completer.hpp"
 #include "cli/line_runner.hpp"
 #include "cli/parse.hpp"
-#include "base/text.hpp"
 #include "cli/words.hpp"
 #include "recording_console.hpp"
 
@@ -18,7 +18,8 @@ using Words = std::vector<std::string>;
 
 TEST(Words, AreSplitAsAShellDoes) {
   EXPECT_EQ(split_words("write  0x2000 -5").value(), (Words{"write", "0x2000", "-5"}));
-  EXPECT_EQ(split_words(R"(write x "two words" 'a "b"' c\ d e"f g"h)").value(), (Words{"write", "x", "two words", "a \"b\"", "c d", "ef gh"}));
+  EXPECT_EQ(split_words(R"(write x "two words" 'a "b"' c\ d e"f g"h)").value(),
+            (Words{"write", "x", "two words", "a \"b\"", "c d", "ef gh"}));
   EXPECT_EQ(split_words(R"(a "" '')").value(), (Words{"a", "", ""}));
   EXPECT_EQ(split_words("read x # a comment").value(), (Words{"read", "x"}));
   EXPECT_EQ(split_words("a#b").value(), Words{"a#b"});
@@ -28,7 +29,8 @@ TEST(Words, AreSplitAsAShellDoes) {
 }
 
 TEST(ParseLine, TakesGlobalOptionsOnBothSidesOfTheCommand) {
-  for (const auto& words : {Words{"-n", "3", "--bus", "can0", "param", "get", "Pn0202"}, Words{"param", "get", "Pn0202", "--bus=can0", "-n3"},
+  for (const auto& words : {Words{"-n", "3", "--bus", "can0", "param", "get", "Pn0202"},
+                            Words{"param", "get", "Pn0202", "--bus=can0", "-n3"},
                             Words{"--bus", "can0", "param", "get", "-n", "3", "Pn0202"}}) {
     const auto line = parse_line(words);
     ASSERT_TRUE(line) << line.error().message;
@@ -66,7 +68,8 @@ TEST(Nodes, AreListsAndRanges) {
   EXPECT_EQ(parse_nodes("0x10").value(), Nodes{16});
   EXPECT_EQ(parse_nodes("ALL").value(), Nodes{0});
   EXPECT_EQ(parse_nodes("1-127").value().size(), 127U);
-  for (const auto* text : {"", "0", "128", "8-5", "1,,2", "-1", "a", "1-", "1-2-3"}) EXPECT_FALSE(parse_nodes(text)) << text;
+  for (const auto* text : {"", "0", "128", "8-5", "1,,2", "-1", "a", "1-", "1-2-3"})
+    EXPECT_FALSE(parse_nodes(text)) << text;
 }
 
 class ShellTest : public testing::Test {
@@ -119,7 +122,8 @@ TEST_F(ShellTest, AsksBeforeAResetAndSendsNothingWhenTheAnswerIsNo) {
 
 TEST_F(ShellTest, TellsEmergenciesThatComeWhileACommandRuns) {
   EXPECT_EQ(shell.run({"read", "0x6041", "-n", "9", "--bus", "sim:gsd600@1?fault=0xFF00@100ms"}), 4);
-  EXPECT_NE(console.err_text.find("notice: node 1: EMCY 0xFF00 Servo alarm"), std::string::npos) << console.err_text;
+  EXPECT_NE(console.err_text.find("notice: node 1: EMCY 0xFF00 Servo alarm"), std::string::npos)
+      << console.err_text;
 }
 
 TEST_F(ShellTest, KeepsTheBusOpenBetweenLines) {
@@ -132,11 +136,14 @@ TEST_F(ShellTest, KeepsTheBusOpenBetweenLines) {
 
 TEST_F(ShellTest, FitsItsTextIntoEightyColumns) {
   console.columns = 80;
-  for (const Words& words : {Words{"scan"}, Words{"param", "list"}, Words{"objects"}, Words{"fault", "list"}, Words{"status", "-n", "1"},
-                             Words{"param", "explain", "Pn0030"}, Words{"param", "get", "Pn02*", "-n", "1"}, Words{"param", "list", "--lang", "zh"}}) {
+  for (const Words& words :
+       {Words{"scan"}, Words{"param", "list"}, Words{"objects"}, Words{"fault", "list"},
+        Words{"status", "-n", "1"}, Words{"param", "explain", "Pn0030"},
+        Words{"param", "get", "Pn02*", "-n", "1"}, Words{"param", "list", "--lang", "zh"}}) {
     console.out_text.clear();
     EXPECT_EQ(shell.run(words), 0);
-    for (const auto line : split(std::string_view(console.out_text), '\n')) EXPECT_LE(display_width(line), 80U) << line;
+    for (const auto line : split(std::string_view(console.out_text), '\n'))
+      EXPECT_LE(display_width(line), 80U) << line;
   }
 }
 

@@ -14,9 +14,11 @@ namespace {
 const std::string kFolder = SERVOCTL_SOURCE_DIR "/completions/";
 
 TEST(CompletionScripts, InTheTreeAreFresh) {
-  const std::pair<const char*, const char*> files[] = {{"bash", "servoctl.bash"}, {"zsh", "_servoctl"}, {"fish", "servoctl.fish"}};
+  const std::pair<const char*, const char*> files[] = {
+      {"bash", "servoctl.bash"}, {"zsh", "_servoctl"}, {"fish", "servoctl.fish"}};
   for (const auto& entry : files)
-    EXPECT_EQ(read_file(kFolder + entry.second).value(), completion_script(entry.first)) << entry.second << ": run ./dev completions";
+    EXPECT_EQ(read_file(kFolder + entry.second).value(), completion_script(entry.first))
+        << entry.second << ": run ./dev completions";
 }
 
 TEST(CompletionScripts, KnowEveryCommandOptionAndChoice) {
@@ -24,7 +26,8 @@ TEST(CompletionScripts, KnowEveryCommandOptionAndChoice) {
     const auto script = completion_script(shell);
     const auto knows = [&](std::string_view word) { return script.find(word) != std::string::npos; };
     for (const auto* command : registry()) {
-      for (const auto word : split(command->path, ' ')) EXPECT_TRUE(knows(word)) << shell << " " << command->path;
+      for (const auto word : split(command->path, ' '))
+        EXPECT_TRUE(knows(word)) << shell << " " << command->path;
       for (const auto& p : command->parameters) {
         if (p.name.starts_with("-")) {
           EXPECT_TRUE(knows(p.name.substr(2))) << shell << " " << p.name;
@@ -40,20 +43,23 @@ TEST(Help, OfEveryCommandNamesItsParametersAndFitsEightyColumns) {
   for (const auto* command : registry()) {
     const auto text = help_text(command->path, 80);
     ASSERT_TRUE(text) << command->path;
-    for (const auto& p : command->parameters) EXPECT_NE(lower(*text).find(p.name), std::string::npos) << command->path << " " << p.name;
+    for (const auto& p : command->parameters)
+      EXPECT_NE(lower(*text).find(p.name), std::string::npos) << command->path << " " << p.name;
     for (const auto line : split(*text, '\n')) EXPECT_LE(display_width(line), 80U) << line;
     EXPECT_FALSE(command->summary.empty()) << command->path;
     EXPECT_NE(command->summary.back(), '.') << command->path;
     EXPECT_NE(command->run, nullptr) << command->path;
   }
   const auto program = help_text("", 80);
-  for (const auto* command : registry()) EXPECT_NE(program->find(command->path), std::string::npos) << command->path;
+  for (const auto* command : registry())
+    EXPECT_NE(program->find(command->path), std::string::npos) << command->path;
 }
 
 TEST(Help, OfAGroupListsItsCommands) {
   const auto text = help_text("param", 80);
   ASSERT_TRUE(text);
-  for (const auto* name : {"param list", "param get", "param set", "param search", "param explain"}) EXPECT_NE(text->find(name), std::string::npos);
+  for (const auto* name : {"param list", "param get", "param set", "param search", "param explain"})
+    EXPECT_NE(text->find(name), std::string::npos);
   EXPECT_FALSE(help_text("parm", 80));
 }
 

@@ -65,24 +65,25 @@ TEST(NextState, FollowsEveryTransitionOfTheProfileAndNoOther) {
   using S = DriveState;
   using C = ControlCommand;
   const Arrow arrows[] = {
-      {S::switch_on_disabled, C::shutdown, S::ready_to_switch_on},           // 2
-      {S::ready_to_switch_on, C::switch_on, S::switched_on},                 // 3
-      {S::ready_to_switch_on, C::enable_operation, S::operation_enabled},    // 3 + 4
-      {S::switched_on, C::enable_operation, S::operation_enabled},           // 4
-      {S::operation_enabled, C::switch_on, S::switched_on},                  // 5
-      {S::switched_on, C::shutdown, S::ready_to_switch_on},                  // 6
-      {S::ready_to_switch_on, C::disable_voltage, S::switch_on_disabled},    // 7
-      {S::ready_to_switch_on, C::quick_stop, S::switch_on_disabled},         // 7
-      {S::operation_enabled, C::shutdown, S::ready_to_switch_on},            // 8
-      {S::operation_enabled, C::disable_voltage, S::switch_on_disabled},     // 9
-      {S::switched_on, C::disable_voltage, S::switch_on_disabled},           // 10
-      {S::switched_on, C::quick_stop, S::switch_on_disabled},                // 10
-      {S::operation_enabled, C::quick_stop, S::quick_stop_active},           // 11
-      {S::quick_stop_active, C::disable_voltage, S::switch_on_disabled},     // 12
-      {S::fault, C::fault_reset, S::switch_on_disabled},                     // 15
-      {S::quick_stop_active, C::enable_operation, S::operation_enabled},     // 16
+      {S::switch_on_disabled, C::shutdown, S::ready_to_switch_on},         // 2
+      {S::ready_to_switch_on, C::switch_on, S::switched_on},               // 3
+      {S::ready_to_switch_on, C::enable_operation, S::operation_enabled},  // 3 + 4
+      {S::switched_on, C::enable_operation, S::operation_enabled},         // 4
+      {S::operation_enabled, C::switch_on, S::switched_on},                // 5
+      {S::switched_on, C::shutdown, S::ready_to_switch_on},                // 6
+      {S::ready_to_switch_on, C::disable_voltage, S::switch_on_disabled},  // 7
+      {S::ready_to_switch_on, C::quick_stop, S::switch_on_disabled},       // 7
+      {S::operation_enabled, C::shutdown, S::ready_to_switch_on},          // 8
+      {S::operation_enabled, C::disable_voltage, S::switch_on_disabled},   // 9
+      {S::switched_on, C::disable_voltage, S::switch_on_disabled},         // 10
+      {S::switched_on, C::quick_stop, S::switch_on_disabled},              // 10
+      {S::operation_enabled, C::quick_stop, S::quick_stop_active},         // 11
+      {S::quick_stop_active, C::disable_voltage, S::switch_on_disabled},   // 12
+      {S::fault, C::fault_reset, S::switch_on_disabled},                   // 15
+      {S::quick_stop_active, C::enable_operation, S::operation_enabled},   // 16
   };
-  const C commands[] = {C::none, C::shutdown, C::switch_on, C::enable_operation, C::disable_voltage, C::quick_stop, C::fault_reset};
+  const C commands[] = {C::none,       C::shutdown,   C::switch_on, C::enable_operation, C::disable_voltage,
+                        C::quick_stop, C::fault_reset};
   for (const auto from : kAll) {
     for (const auto command : commands) {
       auto expected = from;
@@ -105,8 +106,11 @@ TEST(DriveState, ThatIsUnknownCountsAsEnergised) {
 }
 
 TEST(StatuswordBits, AreNamedByModeWhereTheirMeaningDependsOnIt) {
-  EXPECT_EQ(statusword_bits(0x1637, 1), (std::vector<std::string>{"voltage enabled", "remote", "target reached", "set-point acknowledge"}));
-  EXPECT_EQ(statusword_bits(0x1231, 3), (std::vector<std::string>{"voltage enabled", "remote", "speed is zero"}));
+  EXPECT_EQ(
+      statusword_bits(0x1637, 1),
+      (std::vector<std::string>{"voltage enabled", "remote", "target reached", "set-point acknowledge"}));
+  EXPECT_EQ(statusword_bits(0x1231, 3),
+            (std::vector<std::string>{"voltage enabled", "remote", "speed is zero"}));
   EXPECT_EQ(statusword_bits(0x2000, 6), (std::vector<std::string>{"homing error"}));
   EXPECT_EQ(statusword_bits(0x0000, 1), std::vector<std::string>{});
 }

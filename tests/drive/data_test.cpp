@@ -1,8 +1,8 @@
 // Every family in eds/ loads, agrees with itself and keeps the rules that docs/drive-data.md promises.
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <fmt/format.h>
+#include <filesystem>
 #include <set>
 
 #include "base/file.hpp"
@@ -63,8 +63,8 @@ TEST_P(DriveData, HasEveryIdObjectAndNameOnce) {
   }
 }
 
-void expect_in_order(std::string_view what, const std::optional<od::Value>& low, const std::optional<od::Value>& value,
-                     const std::optional<od::Value>& high) {
+void expect_in_order(std::string_view what, const std::optional<od::Value>& low,
+                     const std::optional<od::Value>& value, const std::optional<od::Value>& high) {
   if (low && value) {
     EXPECT_LE(od::compare_numbers(*low, *value), 0) << what;
   }
@@ -84,9 +84,12 @@ TEST_P(DriveData, HasDefaultsWithinLimitsAndWithinTheirType) {
         EXPECT_TRUE(od::encode(p.type, *value)) << p.id;
       }
   }
-  const auto plain = [](const std::optional<od::NodeValue>& v) { return v ? std::optional(v->for_node(1)) : std::nullopt; };
+  const auto plain = [](const std::optional<od::NodeValue>& v) {
+    return v ? std::optional(v->for_node(1)) : std::nullopt;
+  };
   for (const auto& object : profile.dictionary.objects())
-    for (const auto& e : object.entries) expect_in_order(to_string(e.address), plain(e.low), plain(e.default_value), plain(e.high));
+    for (const auto& e : object.entries)
+      expect_in_order(to_string(e.address), plain(e.low), plain(e.default_value), plain(e.high));
 }
 
 TEST_P(DriveData, HasLabelsThatTheirParameterCanTake) {
@@ -134,7 +137,8 @@ TEST_P(DriveData, NamesRulesAfterParametersThatExist) {
     if (!id.empty()) {
       EXPECT_NE(profile.parameter(id), nullptr) << id;
     }
-  for (const auto& object : rules.mirror_add_node_id) EXPECT_NE(profile.dictionary.find(object), nullptr) << to_string(object);
+  for (const auto& object : rules.mirror_add_node_id)
+    EXPECT_NE(profile.dictionary.find(object), nullptr) << to_string(object);
   for (const auto& p : profile.parameters)
     if (p.mirror) {
       EXPECT_NE(profile.dictionary.find(*p.mirror), nullptr) << p.id;
@@ -160,7 +164,8 @@ TEST(Gsd600Data, HasAsManyParametersAndObjectsAsTheManual) {
   const auto profile = load_profile("gsd600", kFolders);
   ASSERT_TRUE(profile);
   // Rows of the overview tables 4.3.1 to 4.3.7: lines 1764, 2057, 2712, 3203, 3801, 4393 and 5123 ff.
-  const std::pair<unsigned, std::size_t> chapters[] = {{0, 25}, {100, 57}, {200, 43}, {300, 52}, {400, 51}, {600, 83}, {1000, 20}};
+  const std::pair<unsigned, std::size_t> chapters[] = {{0, 25},   {100, 57}, {200, 43}, {300, 52},
+                                                       {400, 51}, {600, 83}, {1000, 20}};
   for (std::size_t i = 0; i < std::size(chapters); ++i) {
     const unsigned first = chapters[i].first;
     const unsigned last = i + 1 < std::size(chapters) ? chapters[i + 1].first : 2000;

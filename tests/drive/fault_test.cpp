@@ -5,13 +5,15 @@
 namespace servoctl::drive {
 namespace {
 
-constexpr std::string_view kHeader = "code,extra,panel,kind,resettable,name,name_zh,check,check_zh,assumed,line\n";
+constexpr std::string_view kHeader =
+    "code,extra,panel,kind,resettable,name,name_zh,check,check_zh,assumed,line\n";
 
 TEST(Faults, AreReadWithTheirUnknownsLeftOpen) {
-  const auto faults = parse_faults(std::string(kHeader) +
-                                       "0x8130,,AL.09,fault,yes,Heartbeat lost,心跳超时,\"cable, master\",,,820\n"
-                                       ",,AL.28,warning,,Software limit,软件限位,,,code,5796\n",
-                                   "f.csv");
+  const auto faults =
+      parse_faults(std::string(kHeader) +
+                       "0x8130,,AL.09,fault,yes,Heartbeat lost,心跳超时,\"cable, master\",,,820\n"
+                       ",,AL.28,warning,,Software limit,软件限位,,,code,5796\n",
+                   "f.csv");
   ASSERT_TRUE(faults) << faults.error().message;
   ASSERT_EQ(faults->size(), 2U);
   EXPECT_EQ((*faults)[0].code, 0x8130);
@@ -33,14 +35,13 @@ void expect_refused(std::string_view row, std::string_view message) {
 TEST(Faults, WithABadCellAreRefusedWithLineAndColumn) {
   expect_refused("0x18130,,,fault,,N,,,,,1\n", "f.csv:2: column code: '0x18130' is not a code of 16 bits");
   expect_refused("0x8130,,,oops,,N,,,,,1\n", "f.csv:2: column kind: 'oops' is not fault, warning or status");
-  expect_refused("0x8130,,,fault,maybe,N,,,,,1\n", "f.csv:2: column resettable: 'maybe' is not yes, no or empty");
+  expect_refused("0x8130,,,fault,maybe,N,,,,,1\n",
+                 "f.csv:2: column resettable: 'maybe' is not yes, no or empty");
   expect_refused("0x8130,,,fault,,,,,,,1\n", "f.csv:2: column name: '' is not a name");
   expect_refused("0x8130,,,fault,,N,,,,,x\n", "f.csv:2: column line: 'x' is not a line number");
 }
 
-TEST(Faults, WithAnUnknownColumnAreRefused) {
-  EXPECT_FALSE(parse_faults("code,colour\n1,red\n", "f.csv"));
-}
+TEST(Faults, WithAnUnknownColumnAreRefused) { EXPECT_FALSE(parse_faults("code,colour\n1,red\n", "f.csv")); }
 
 }  // namespace
 }  // namespace servoctl::drive

@@ -24,11 +24,19 @@ Profile profile() {
   Profile out;
   out.family = "example";
   out.dictionary.add({0x6041, "Statusword", od::ObjectCode::var, {entry({0x6041, 0}, "Statusword")}});
-  out.dictionary.add({0x6099, "Homing speeds", od::ObjectCode::array,
-                      {entry({0x6099, 0}, "Highest sub-index supported"), entry({0x6099, 1}, "Speed during search for switch"),
+  out.dictionary.add({0x6099,
+                      "Homing speeds",
+                      od::ObjectCode::array,
+                      {entry({0x6099, 0}, "Highest sub-index supported"),
+                       entry({0x6099, 1}, "Speed during search for switch"),
                        entry({0x6099, 2}, "Speed during search for zero")}});
-  out.dictionary.add({0x2001, "Gain", od::ObjectCode::record, {entry({0x2001, 0}, "Highest sub-index supported"), entry({0x2001, 3}, "Xn0202 Tuning")}});
-  out.parameters = {parameter("Xn0202", "Tuning mode", ObjectAddress{0x2001, 3}), parameter("Xn0009", "Panel brightness", std::nullopt)};
+  out.dictionary.add(
+      {0x2001,
+       "Gain",
+       od::ObjectCode::record,
+       {entry({0x2001, 0}, "Highest sub-index supported"), entry({0x2001, 3}, "Xn0202 Tuning")}});
+  out.parameters = {parameter("Xn0202", "Tuning mode", ObjectAddress{0x2001, 3}),
+                    parameter("Xn0009", "Panel brightness", std::nullopt)};
   out.build_index();
   return out;
 }
@@ -40,7 +48,8 @@ ObjectAddress found(const Profile& p, std::string_view text) {
 }
 
 TEST(Resolve, TakesAllWaysToWriteAnAddressWithoutADictionary) {
-  for (const auto* text : {"0x6099:1", "6099h.1", "6099sub1", "6099H:01", "0X6099SUB1", "6099h.1h", "6099:1"}) {
+  for (const auto* text :
+       {"0x6099:1", "6099h.1", "6099sub1", "6099H:01", "0X6099SUB1", "6099h.1h", "6099:1"}) {
     const auto target = resolve(nullptr, text);
     ASSERT_TRUE(target) << text;
     EXPECT_EQ(target->address, (ObjectAddress{0x6099, 1})) << text;
@@ -76,7 +85,9 @@ TEST(Resolve, OffersAllMeaningsOfAnAmbiguousName) {
   const auto target = resolve(&p, "homing_speeds");
   ASSERT_FALSE(target);
   EXPECT_EQ(target.error().message, "'homing_speeds' is ambiguous: 2 meanings");
-  EXPECT_EQ(target.error().hint, "write homing_speeds.speed_during_search_for_switch or homing_speeds.speed_during_search_for_zero");
+  EXPECT_EQ(
+      target.error().hint,
+      "write homing_speeds.speed_during_search_for_switch or homing_speeds.speed_during_search_for_zero");
   EXPECT_FALSE(resolve(&p, "homing_speeds.search"));
 }
 
@@ -107,10 +118,11 @@ TEST(CanonicalId, IsTheSameForAllSpellingsAndOnlyForThem) {
 }
 
 TEST(Names, HoldEveryParameterAndEveryOtherEntryOnce) {
-  EXPECT_EQ(names(profile()), (std::vector<std::string>{"Xn0202", "Xn0009", "gain.highest_sub_index_supported", "statusword",
-                                                        "homing_speeds.highest_sub_index_supported",
-                                                        "homing_speeds.speed_during_search_for_switch",
-                                                        "homing_speeds.speed_during_search_for_zero"}));
+  EXPECT_EQ(names(profile()),
+            (std::vector<std::string>{"Xn0202", "Xn0009", "gain.highest_sub_index_supported", "statusword",
+                                      "homing_speeds.highest_sub_index_supported",
+                                      "homing_speeds.speed_during_search_for_switch",
+                                      "homing_speeds.speed_during_search_for_zero"}));
 }
 
 }  // namespace

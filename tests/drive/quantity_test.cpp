@@ -36,7 +36,8 @@ std::int64_t signed_of(const Result<od::Value>& value) {
   return value ? std::get<std::int64_t>(*value) : 0;
 }
 
-void expect_refused(const Meaning& meaning, std::string_view text, std::string_view message, std::string_view hint) {
+void expect_refused(const Meaning& meaning, std::string_view text, std::string_view message,
+                    std::string_view hint) {
   const auto value = parse_quantity(meaning, text);
   ASSERT_FALSE(value) << text;
   EXPECT_EQ(value.error().code, Errc::usage);
@@ -62,7 +63,8 @@ TEST(Quantity, WithAUnitIsConvertedExactly) {
 }
 
 TEST(Quantity, ThatDoesNotComeOutExactIsRefusedWithTheNearest) {
-  expect_refused(hertz(), "40.05Hz", "'40.05Hz' is 400.5 steps of 0.1 Hz: not a whole number", "the nearest value is 40 Hz");
+  expect_refused(hertz(), "40.05Hz", "'40.05Hz' is 400.5 steps of 0.1 Hz: not a whole number",
+                 "the nearest value is 40 Hz");
 }
 
 TEST(Quantity, InAForeignUnitIsRefused) {

@@ -7,9 +7,10 @@
 namespace servoctl::od {
 namespace {
 
-constexpr DataType kIntegers[] = {DataType::boolean, DataType::i8,  DataType::i16, DataType::i24, DataType::i32, DataType::i40,
-                                  DataType::i48,     DataType::i56, DataType::i64, DataType::u8,  DataType::u16, DataType::u24,
-                                  DataType::u32,     DataType::u40, DataType::u48, DataType::u56, DataType::u64};
+constexpr DataType kIntegers[] = {
+    DataType::boolean, DataType::i8,  DataType::i16, DataType::i24, DataType::i32, DataType::i40,
+    DataType::i48,     DataType::i56, DataType::i64, DataType::u8,  DataType::u16, DataType::u24,
+    DataType::u32,     DataType::u40, DataType::u48, DataType::u56, DataType::u64};
 
 Bytes bytes_of(DataType type, std::string_view text) {
   const auto value = parse_value(type, text);
@@ -29,7 +30,8 @@ TEST(Value, IsEncodedLittleEndian) {
   EXPECT_EQ(bytes_of(DataType::u24, "0x123456"), (Bytes{0x56, 0x34, 0x12}));
   EXPECT_EQ(bytes_of(DataType::i32, "-2"), (Bytes{0xFE, 0xFF, 0xFF, 0xFF}));
   EXPECT_EQ(bytes_of(DataType::i40, "-1"), (Bytes{0xFF, 0xFF, 0xFF, 0xFF, 0xFF}));
-  EXPECT_EQ(bytes_of(DataType::f32, "0.1"), (Bytes{0xCD, 0xCC, 0xCC, 0x3D}));  // 0x3DCCCCCD, as a manual prints it.
+  EXPECT_EQ(bytes_of(DataType::f32, "0.1"),
+            (Bytes{0xCD, 0xCC, 0xCC, 0x3D}));  // 0x3DCCCCCD, as a manual prints it.
   EXPECT_EQ(bytes_of(DataType::f64, "1"), (Bytes{0, 0, 0, 0, 0, 0, 0xF0, 0x3F}));
   EXPECT_EQ(bytes_of(DataType::string, "AB"), (Bytes{0x41, 0x42}));
   EXPECT_EQ(bytes_of(DataType::domain, "hex:00 64 FF"), (Bytes{0x00, 0x64, 0xFF}));
@@ -42,7 +44,8 @@ TEST(Value, OutsideItsTypeIsRefusedWithTheRange) {
   expect_refused(DataType::i8, "128", "128 does not fit i8 (-128..127)");
   expect_refused(DataType::i8, "-129", "-129 does not fit i8 (-128..127)");
   expect_refused(DataType::i24, "8388608", "8388608 does not fit i24 (-8388608..8388607)");
-  expect_refused(DataType::i64, "9223372036854775808", "9223372036854775808 does not fit i64 (-9223372036854775808..9223372036854775807)");
+  expect_refused(DataType::i64, "9223372036854775808",
+                 "9223372036854775808 does not fit i64 (-9223372036854775808..9223372036854775807)");
   expect_refused(DataType::u32, "fast", "'fast' is no number");
   expect_refused(DataType::u64, "18446744073709551616", "'18446744073709551616' is no number");
   expect_refused(DataType::boolean, "2", "2 does not fit bool (0..1)");
@@ -68,7 +71,8 @@ TEST(Value, OfTheWrongLengthIsRefused) {
 }
 
 TEST(Value, OfAStringLosesTrailingNulsOnly) {
-  EXPECT_EQ(std::get<std::string>(decode(DataType::string, Bytes{'A', 0, 'B', 0, 0}).value()), std::string("A\0B", 3));
+  EXPECT_EQ(std::get<std::string>(decode(DataType::string, Bytes{'A', 0, 'B', 0, 0}).value()),
+            std::string("A\0B", 3));
   EXPECT_EQ(std::get<std::string>(decode(DataType::string, Bytes{}).value()), "");
 }
 

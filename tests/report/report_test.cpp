@@ -17,12 +17,15 @@ Table table() {
 }
 
 TEST(Text, AlignsTablesAndLeavesJsonColumnsOut) {
-  EXPECT_EQ(to_text(table()), "index   name         value\n0x6040  Controlword      6\n0x607A  目标位置         -\n");
+  EXPECT_EQ(to_text(table()),
+            "index   name         value\n0x6040  Controlword      6\n0x607A  目标位置         -\n");
 }
 
 TEST(Json, KeepsNumbersNumbersAndTheOrderOfFields) {
-  EXPECT_EQ(to_json(table()), R"([{"name":"Controlword","raw":6,"value":6},{"name":"目标位置","raw":-20,"value":null}])");
-  EXPECT_EQ(to_json(Record{{"b", 1}, {"a", true}, {"h", Hex{0x6041, 4}}, {"t", "x"s, Show::text}}), R"({"b":1,"a":true,"h":24641})");
+  EXPECT_EQ(to_json(table()),
+            R"([{"name":"Controlword","raw":6,"value":6},{"name":"目标位置","raw":-20,"value":null}])");
+  EXPECT_EQ(to_json(Record{{"b", 1}, {"a", true}, {"h", Hex{0x6041, 4}}, {"t", "x"s, Show::text}}),
+            R"({"b":1,"a":true,"h":24641})");
 }
 
 TEST(Text, ShrinksTheWidestColumnToTheTerminal) {
@@ -46,7 +49,11 @@ TEST(Text, LeavesOutColumnsThatAreEmptyThroughout) {
 }
 
 TEST(Text, ShowsRecordsWithTheirBlocksBelow) {
-  const Record r{{"name", "Gain"}, {"enum", Record{{"0", "Off"}, {"1", "On"}}}, {"empty", Value()}, {"modes", List{"pp", "pv"}}, {"ok", false}};
+  const Record r{{"name", "Gain"},
+                 {"enum", Record{{"0", "Off"}, {"1", "On"}}},
+                 {"empty", Value()},
+                 {"modes", List{"pp", "pv"}},
+                 {"ok", false}};
   EXPECT_EQ(to_text(r), "name   Gain\nmodes  pp, pv\nok     no\n\nenum:\n0  Off\n1  On\n");
 }
 

@@ -91,7 +91,8 @@ TEST_F(SessionTest, RepeatsAReadWithoutAnswer) {
   open("gsd600@1");
   bench->cell.drives[0]->misbehaviour().drop_answers = 1;
   EXPECT_TRUE(session->upload(1, {0x6041, 0}));
-  EXPECT_EQ(bench->sent, (std::vector<std::string>{"601#4041600000000000", "601#8041600000000405", "601#4041600000000000"}));
+  EXPECT_EQ(bench->sent, (std::vector<std::string>{"601#4041600000000000", "601#8041600000000405",
+                                                   "601#4041600000000000"}));
 }
 
 TEST_F(SessionTest, CostsOneTimeoutAndItsRetriesForADeadNodeHoweverMuchIsAsked) {
@@ -152,13 +153,15 @@ TEST_F(SessionTest, SaysSoWhenAWriteWithoutAnswerHadNoEffect) {
   const auto written = write_all(lossy_session, std::span(&request, 1), false);
   ASSERT_FALSE(written.front());
   EXPECT_EQ(written.front().error().code, Errc::timeout);
-  EXPECT_EQ(written.front().error().message,
-            "node 1, object 0x6060:0: the write was not answered and had no effect: the object still holds 01");
+  EXPECT_EQ(
+      written.front().error().message,
+      "node 1, object 0x6060:0: the write was not answered and had no effect: the object still holds 01");
 }
 
 TEST_F(SessionTest, SendsNoFurtherWriteAfterARefusedOne) {
   open("gsd600@1");
-  const std::vector<SdoRequest> requests{{1, {0x6060, 0}, Bytes{3}}, {1, {0x5FFF, 0}, Bytes{1}}, {1, {0x6060, 0}, Bytes{1}}};
+  const std::vector<SdoRequest> requests{
+      {1, {0x6060, 0}, Bytes{3}}, {1, {0x5FFF, 0}, Bytes{1}}, {1, {0x6060, 0}, Bytes{1}}};
   const auto answers = session->transfer(requests);
   EXPECT_TRUE(answers[0]);
   EXPECT_EQ(answers[1].error().code, Errc::sdo_abort);

@@ -161,7 +161,8 @@ TEST_F(Gsd600, StoresObjectsBySaveAndForgetsThemByLoad) {
 
 TEST_F(Gsd600, ChangesStandstillObjectsOnlyWhileDisabled) {
   EXPECT_EQ(ask("601#2B5A600005000000"), "581#605A600000000000");
-  for (const auto* word : {"06", "07", "0F"}) EXPECT_EQ(ask("601#2B406000" + std::string(word) + "000000"), "581#6040600000000000");
+  for (const auto* word : {"06", "07", "0F"})
+    EXPECT_EQ(ask("601#2B406000" + std::string(word) + "000000"), "581#6040600000000000");
   EXPECT_EQ(ask("601#2B5A600002000000"), "581#805A600022000008");
 }
 
