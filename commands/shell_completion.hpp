@@ -10,4 +10,7 @@ namespace servoctl::commands {
 /// user types, for the drive named on the line or in $SERVOCTL_DRIVE.
 std::string completion_script(std::string_view shell);
 
+/// The one for fish; the other two share their functions.
+std::string fish_completion();
+
 }  // namespace servoctl::commands
