@@ -85,7 +85,10 @@ std::string program_help(std::size_t width) {
          "  servoctl [OPTIONS] COMMAND …    run one command\n"
          "  servoctl [OPTIONS]              the prompt; command lines from a pipe likewise\n\n"
          "Commands:\n" +
-         command_rows({}, width) + "\nOptions of every command:\n" + rows(global_options(), true, width) +
+         command_rows({}, width) +
+         "\nAt the prompt also: use NODE, drive FAMILY, bus BUS choose for the lines that follow; exit.\n"
+         "\nOptions of every command:\n" +
+         rows(global_options(), true, width) +
          "\n`help COMMAND` tells more. Exit codes: 0 done, 1 the answer is no, 2 usage, 3 bus, 4 no answer,\n"
          "5 refused by the drive, 6 protocol violated, 7 file, 8 refused for safety, 70 a bug, 130 Ctrl-C.\n";
 }

@@ -3,14 +3,16 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
 #include <string>
 
 namespace servoctl::cli {
 
 void StandardConsole::out(std::string_view text) {
-  std::fwrite(text.data(), 1, text.size(), stdout);
-  std::fflush(stdout);
+  const bool written =
+      std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+  if (!written && write_error_ == 0) write_error_ = errno;
 }
 
 void StandardConsole::err(std::string_view text) { std::fwrite(text.data(), 1, text.size(), stderr); }

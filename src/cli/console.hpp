@@ -29,6 +29,12 @@ class StandardConsole final : public Console {
   bool ask(std::string_view question) override;
   bool can_ask() const override;
   std::size_t width() const override;
+
+  /// The first error (errno) that kept data from being written; 0 when all of it was.
+  int write_error() const { return write_error_; }
+
+ private:
+  int write_error_ = 0;
 };
 
 }  // namespace servoctl::cli

@@ -3,6 +3,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <exception>
 #include <iostream>
 
@@ -34,8 +36,7 @@ Result<Settings> settings_for_lines(const Settings& defaults, std::vector<std::s
   return apply_options(defaults, parsed->arguments);
 }
 
-int run(const std::vector<std::string>& words) {
-  StandardConsole console;
+int run(const std::vector<std::string>& words, StandardConsole& console) {
   Shell::Options options;
   options.defaults = settings_from_environment();
   options.drive_folders = drive::drive_folders();
@@ -61,7 +62,13 @@ int run(const std::vector<std::string>& words) {
 
 int run_program(const std::vector<std::string>& words) {
   try {
-    return run(words);
+    StandardConsole console;
+    const int code = run(words, console);
+    // A reader that has closed the pipe has seen enough.
+    if (console.write_error() == 0 || console.write_error() == EPIPE) return code;
+    std::cerr << "error: the output could not be written (" << std::strerror(console.write_error())
+              << "); what was shown is not complete\n  hint: what the command did on the bus is done\n";
+    return code != 0 ? code : exit_code(Errc::file);
   } catch (const std::exception& e) {
     std::cerr << "error: servoctl failed: " << e.what()
               << "\n  hint: this is a bug; please report it with the command line\n";

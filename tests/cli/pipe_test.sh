@@ -25,8 +25,11 @@ check "errors are on stderr" "" "$("$servoctl" read 0x6041 -n 9 --timeout 10ms 2
 check "with --json they are on stdout" 4 "$("$servoctl" read 0x6041 -n 9 --timeout 10ms --json 2>/dev/null | jq .error.exit)"
 check "nothing is on stderr then" "" "$("$servoctl" read 0x6041 -n 9 --timeout 10ms --json 2>&1 >/dev/null)"
 check "a usage error is JSON too" 2 "$("$servoctl" raed --json | jq .error.exit)"
-"$servoctl" objects -d gsd600 | head -1 >/dev/null
-check "a closed pipe is no crash" 0 "${PIPESTATUS[1]}"
+# SIGPIPE ends it, or where that is ignored the exit code is that of the command.
+out=$({ { sleep 0.2; "$servoctl" objects -d gsd600; echo "$?" >&3; } | true; } 3>&1 2>&1 | sed 's/^141$/0/')
+check "a closed pipe is met in silence" 0 "$out"
+"$servoctl" objects -d gsd600 >/dev/full 2>/dev/null
+check "output that could not be written is an error" 7 $?
 check "the environment names bus, node and drive" 600 "$(SERVOCTL_NODE=1 SERVOCTL_DRIVE=gsd600 "$servoctl" param get Pn214 --json | jq '.result[0].raw')"
 check "--version" "servoctl" "$("$servoctl" --version | cut -d' ' -f1)"
 check "one document a command" 1 "$("$servoctl" scan --json | wc -l)"
