@@ -9,8 +9,6 @@
 namespace servoctl::commands {
 namespace {
 
-using report::Field;
-using report::Hex;
 using report::List;
 using report::Record;
 using report::Show;

@@ -33,7 +33,7 @@ std::optional<Duration> parse_time(std::string_view text) {
   if (text.size() < 2 || text.front() != '(' || text.back() != ')') return std::nullopt;
   text = text.substr(1, text.size() - 2);
   const auto point = text.find('.');
-  if (point == std::string_view::npos || point > 12) return std::nullopt;
+  if (point > 12) return std::nullopt;
   const auto seconds = parse_digits(text.substr(0, point), 10);
   const auto behind = text.substr(point + 1);
   const auto digits = parse_digits(behind, 10);

@@ -19,8 +19,8 @@ namespace servoctl::cli {
 namespace {
 
 /// Lines from a pipe or file: stops at the first that fails, whose exit code is the answer.
-int run_pipe(Shell& shell, Console& console) {
-  LineRunner runner(shell, console);
+int run_pipe(Shell& shell) {
+  LineRunner runner(shell);
   std::string line;
   while (!runner.wants_exit() && !interrupted() && std::getline(std::cin, line))
     if (const int code = runner.run(line); code != 0) return code;
@@ -51,7 +51,7 @@ int run(const std::vector<std::string>& words, StandardConsole& console) {
   auto settings = settings_for_lines(shell.defaults(), words);
   if (!settings) return shell.report_error(settings.error(), false);
   shell.defaults() = std::move(*settings);
-  if (::isatty(STDIN_FILENO) != 1) return run_pipe(shell, console);
+  if (::isatty(STDIN_FILENO) != 1) return run_pipe(shell);
   if (!shell.defaults().bus.empty())
     if (const auto opened = shell.open(shell.defaults()); !opened)
       return shell.report_error(opened.error(), false);

@@ -21,7 +21,7 @@ std::vector<PromptWord> prompt_words();
 /// lines after them.
 class LineRunner {
  public:
-  LineRunner(Shell& shell, Console& console) : shell_(&shell), console_(&console) {}
+  explicit LineRunner(Shell& shell) : shell_(&shell) {}
 
   /// Exit code of the line; 0 for an empty one or a comment.
   int run(std::string_view line);
@@ -33,7 +33,6 @@ class LineRunner {
   int bus(const std::string& url);
 
   Shell* shell_;
-  Console* console_;
   bool exit_ = false;
 };
 

@@ -21,7 +21,7 @@ constexpr int kHistoryLines = 2000;
 
 class Prompt {
  public:
-  Prompt(Shell& shell, Console& console) : shell_(&shell), console_(&console), runner_(shell, console) {}
+  Prompt(Shell& shell, Console& console) : shell_(&shell), console_(&console), runner_(shell) {}
   Prompt(const Prompt&) = delete;
   Prompt& operator=(const Prompt&) = delete;
   ~Prompt() {
@@ -163,7 +163,7 @@ char** Prompt::candidates(const char* text, int, int end) {
   rl_attempted_completion_over = completions_.files ? 0 : 1;
   if (completions_.words.empty()) return nullptr;
   const bool opens = completions_.words.size() == 1 && completions_.words.front().back() == ':';
-  rl_completion_append_character = opens ? '\0' : ' ';
+  rl_completion_append_character = opens ? 0 : ' ';
   return rl_completion_matches(text, next_candidate);
 }
 

@@ -1,6 +1,7 @@
 #include "od/value.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -11,16 +12,17 @@
 namespace servoctl::od {
 namespace {
 
-std::size_t bits_of(DataType type) { return type == DataType::boolean ? 1 : 8 * size_of(type).value_or(0); }
+/// 1..64; types without a fixed size do not come here.
+std::size_t bits_of(DataType type) {
+  return type == DataType::boolean ? 1 : 8 * std::clamp<std::size_t>(size_of(type).value_or(8), 1, 8);
+}
 
 std::uint64_t max_unsigned(DataType type) {
   const auto bits = bits_of(type);
   return bits >= 64 ? std::numeric_limits<std::uint64_t>::max() : (std::uint64_t{1} << bits) - 1;
 }
 
-std::int64_t max_signed(DataType type) {
-  return static_cast<std::int64_t>(std::numeric_limits<std::uint64_t>::max() >> (65 - bits_of(type)));
-}
+std::int64_t max_signed(DataType type) { return static_cast<std::int64_t>(max_unsigned(type) >> 1U); }
 
 std::int64_t min_signed(DataType type) { return -max_signed(type) - 1; }
 

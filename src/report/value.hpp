@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -41,21 +43,26 @@ class Value {
  public:
   using Data = std::variant<std::monostate, bool, std::int64_t, std::uint64_t, double, std::string, Hex, List,
                             Record, Table>;
-  Value() = default;
-  Value(const char* text) : data_(std::string(text)) {}       // NOLINT(google-explicit-constructor)
-  Value(std::string_view text) : data_(std::string(text)) {}  // NOLINT(google-explicit-constructor)
+  // Defined where Field is complete.
+  Value();
+  Value(const Value&);
+  Value(Value&&) noexcept;
+  Value& operator=(const Value&);
+  Value& operator=(Value&&) noexcept;
+  ~Value();
+
+  // NOLINTBEGIN(google-explicit-constructor)
+  Value(const char* text);
+  Value(std::string_view text);
+  Value(std::string text);
+  Value(double number);
+  Value(Hex number);
+  Value(List list);
+  Value(Record record);
+  Value(Table table);
   template <class T>
-  requires(std::is_integral_v<T> && !std::is_same_v<T, bool>)
-      Value(T number) {  // NOLINT(google-explicit-constructor)
-    if constexpr (std::is_signed_v<T>)
-      data_ = static_cast<std::int64_t>(number);
-    else
-      data_ = static_cast<std::uint64_t>(number);
-  }
-  template <class T>
-  requires(std::is_constructible_v<Data, T> && (!std::is_integral_v<T> || std::is_same_v<T, bool>))
-      Value(T value)
-      : data_(std::move(value)) {}  // NOLINT(google-explicit-constructor)
+  requires std::is_integral_v<T> Value(T number);
+  // NOLINTEND(google-explicit-constructor)
 
   const Data& data() const { return data_; }
   bool is_null() const { return std::holds_alternative<std::monostate>(data_); }
@@ -70,6 +77,16 @@ struct Field {
   Show show = Show::everywhere;
   std::string title = {};  ///< Heading in text; the key when empty.
 };
+
+template <class T>
+requires std::is_integral_v<T> Value::Value(T number) {
+  if constexpr (std::is_same_v<T, bool>)
+    data_ = number;
+  else if constexpr (std::is_signed_v<T>)
+    data_ = static_cast<std::int64_t>(number);
+  else
+    data_ = static_cast<std::uint64_t>(number);
+}
 
 /// A text, or nothing when it is empty.
 inline Value text_or_null(std::string text) { return text.empty() ? Value() : Value(std::move(text)); }

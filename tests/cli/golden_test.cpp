@@ -51,7 +51,7 @@ std::string play(const Case& c, bool json) {
   options.clock = sim::SimBus::Clock::virtual_time;
   options.defaults.bus = "sim:gsd600@1";
   Shell shell(console, std::move(options));
-  LineRunner runner(shell, console);
+  LineRunner runner(shell);
   std::string out;
   for (const auto& line : c.lines) {
     console.out_text.clear();
