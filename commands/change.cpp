@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "canopen/sdo_client.hpp"
+#include "drive/cia402.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -33,9 +34,27 @@ Result<od::DataType> learn_type(Context& context, std::uint8_t node, const drive
   return type;
 }
 
-bool is_parameter(const drive::Profile* profile, const Change& change, const std::string& id) {
-  return profile != nullptr && !id.empty() && change.target.parameter != nullptr &&
-         change.target.parameter == profile->parameter(id);
+bool is_parameter(const drive::Profile& profile, const Change& change, const std::string& id) {
+  return !id.empty() && change.target.parameter != nullptr &&
+         change.target.parameter == profile.parameter(id);
+}
+
+/// What the write does beside changing a value; empty when nothing.
+std::string_view reason_to_ask(const drive::Profile* profile, const Change& change) {
+  const auto* entry = change.target.entry;
+  const auto* parameter = change.target.parameter;
+  const auto index = change.target.address.index;
+  if (index == 0x1010 || index == 0x1011 || (entry != nullptr && entry->command) ||
+      (parameter != nullptr && parameter->command))
+    return "It starts an action or stores or restores parameters.";
+  // Bit 7 is left out: with it set the drive looks at its edge only, and the word may follow another.
+  const auto controlword = static_cast<std::uint16_t>(load_le(change.data) & 0xFF7FU);
+  if (index == 0x6040 && drive::decode_command(controlword, 0) == drive::ControlCommand::enable_operation)
+    return "It enables the drive: the motor is energised and may move.";
+  if (profile != nullptr && (is_parameter(*profile, change, profile->rules.node_id_parameter) ||
+                             is_parameter(*profile, change, profile->rules.bitrate_parameter)))
+    return "After a restart the drive is found under another address.";
+  return {};
 }
 
 std::string effect_text(od::Effect effect) {
@@ -116,21 +135,9 @@ Result<Change> make_change(Context& context, std::uint8_t node, const drive::Tar
 
 Result<void> confirm_changes(Context& context, std::span<const Change> changes) {
   for (const auto& change : changes) {
-    const auto* entry = change.target.entry;
-    const auto* parameter = change.target.parameter;
-    const auto index = change.target.address.index;
-    const bool stores = index == 0x1010 || index == 0x1011 || (entry != nullptr && entry->command) ||
-                        (parameter != nullptr && parameter->command);
-    const auto* profile = context.profile;
-    const bool addresses =
-        is_parameter(profile, change, profile == nullptr ? "" : profile->rules.node_id_parameter) ||
-        is_parameter(profile, change, profile == nullptr ? "" : profile->rules.bitrate_parameter);
-    if (!stores && !addresses) continue;
-    const auto question =
-        stores ? fmt::format("Write {} on node {}? It starts an action or stores or restores parameters.",
-                             called(change), change.node)
-               : fmt::format("Write {} on node {}? After a restart the drive is found under another address.",
-                             called(change), change.node);
+    const auto reason = reason_to_ask(context.profile, change);
+    if (reason.empty()) continue;
+    const auto question = fmt::format("Write {} on node {}? {}", called(change), change.node, reason);
     if (const auto answer = context.confirm(question); !answer) return answer;
   }
   return {};

@@ -44,10 +44,9 @@ const Command kWrite{
     .summary = "Write one object of a node",
     .details =
         "The value is checked against type and limits before a frame is sent. A plain number is the raw "
-        "number the drive "
-        "shows; a number with a unit is converted. A write is never repeated: when its answer is lost, the "
-        "object is read "
-        "and the outcome told. Objects that store or restore, and the node-ID and bitrate, ask first.",
+        "number the drive shows; a number with a unit is converted. A write is never repeated: when its "
+        "answer is lost, the object is read and the outcome told. Asked before: what stores or restores, "
+        "changes node-ID or bitrate, and a controlword that enables the drive.",
     .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::writes,
