@@ -12,11 +12,6 @@ namespace {
 using report::Show;
 using report::Value;
 
-std::string called(const Change& change) {
-  const auto label = change.target.label();
-  return label.empty() ? to_string(change.target.address) : label;
-}
-
 /// An object no dictionary knows is read to learn its size: a write of another length would be refused or
 /// worse.
 Result<od::DataType> learn_type(Context& context, std::uint8_t node, const drive::Target& target) {
@@ -103,13 +98,16 @@ report::List change_row(const Change& change, const Result<session::Written>& wr
 
 }  // namespace
 
+std::string name_of(const drive::Target& target) {
+  const auto label = target.label();
+  return label.empty() ? to_string(target.address) : label;
+}
+
 Result<Change> make_change(Context& context, std::uint8_t node, const drive::Target& target,
                            std::string_view value, std::optional<od::DataType> type) {
   auto meaning = drive::meaning(target, node);
   const auto named = [&](Error error, std::string_view separator = ": ") {
-    const auto label = target.label();
-    error.message =
-        (label.empty() ? to_string(target.address) : label) + std::string(separator) + error.message;
+    error.message = name_of(target) + std::string(separator) + error.message;
     return tl::unexpected<Error>(located(std::move(error), node, target.address));
   };
   if (!od::writable(meaning.access)) {
@@ -137,7 +135,7 @@ Result<void> confirm_changes(Context& context, std::span<const Change> changes) 
   for (const auto& change : changes) {
     const auto reason = reason_to_ask(context.profile, change);
     if (reason.empty()) continue;
-    const auto question = fmt::format("Write {} on node {}? {}", called(change), change.node, reason);
+    const auto question = fmt::format("Write {} on node {}? {}", name_of(change.target), change.node, reason);
     if (const auto answer = context.confirm(question); !answer) return answer;
   }
   return {};
@@ -148,7 +146,7 @@ Value planned_frames(std::span<const Change> changes) {
   table.columns = {{"node"}, {"object"}, {"name"}, {"frame"}};
   for (const auto& change : changes) {
     canopen::SdoClient client(change.node, std::chrono::seconds(1));
-    client.start_download(change.target.address, change.data, TimePoint{});
+    client.start_download(change.target.address, change.data, TimePoint{}, change.transfer);
     const auto frame = client.take_frame();
     table.rows.push_back({change.node, to_string(change.target.address),
                           report::text_or_null(change.target.label()),
@@ -159,7 +157,8 @@ Value planned_frames(std::span<const Change> changes) {
 
 Value write_changes(Context& context, std::span<const Change> changes, bool read_back) {
   std::vector<session::SdoRequest> requests;
-  for (const auto& change : changes) requests.push_back({change.node, change.target.address, change.data});
+  for (const auto& change : changes)
+    requests.push_back({change.node, change.target.address, change.data, change.transfer});
   const auto written = session::write_all(*context.session, requests, read_back);
   report::Table table;
   table.columns = {{"node"},

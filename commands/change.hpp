@@ -17,7 +17,11 @@ struct Change {
   drive::Target target;
   od::DataType type = od::DataType::u32;
   Bytes data;
+  canopen::Transfer transfer = canopen::Transfer::automatic;
 };
+
+/// Name of the object for a message: its label, else its address.
+std::string name_of(const drive::Target& target);
 
 /// Turns a name and a value into a change. Errc::usage for an unknown name, a read-only object, a value that
 /// does not fit; an object of unknown type is read first to learn its size.

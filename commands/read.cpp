@@ -1,5 +1,7 @@
 #include "commands/command.hpp"
+#include "commands/file_transfer.hpp"
 #include "commands/records.hpp"
+#include "commands/transfer_option.hpp"
 #include "commands/type_option.hpp"
 
 namespace servoctl::commands {
@@ -15,9 +17,23 @@ constexpr Parameter kParameters[] = {
      .help = "data type, when the dictionary does not know it",
      .kind = Kind::type,
      .choices = kTypeNames},
+    {.name = "--to", .help = "put the bytes of one object into this file", .kind = Kind::file},
+    kTransferOption,
 };
 
+/// `--to` takes the bytes of one object of one node.
+Result<report::Value> run_to_file(Context& context, const Arguments& arguments) {
+  if (arguments.all("object").size() != 1 || context.nodes.size() != 1)
+    return fail(Errc::usage, "--to takes one object of one node",
+                "one line for each object and node, each with a file of its own");
+  const auto target = drive::resolve(context.profile, arguments.text("object"));
+  if (!target) return tl::unexpected<Error>(target.error());
+  return read_to_file(context, context.nodes.front(), *target, read_transfer(context, arguments, true),
+                      arguments.text("--to"));
+}
+
 Result<report::Value> run(Context& context, const Arguments& arguments) {
+  if (arguments.has("--to")) return run_to_file(context, arguments);
   const auto type = parse_type_option(arguments);
   if (!type) return tl::unexpected<Error>(type.error());
   std::vector<Reading> readings;
@@ -29,7 +45,8 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
       if (!od::readable(drive::meaning(*target, node).access))
         return fail(Errc::usage, "'" + word + "' is write-only", "it can be written, not read");
       readings.push_back({node, *target, *type, Bytes{}});
-      requests.push_back({node, target->address, {}});
+      const bool large = drive::meaning(*target, node).type == od::DataType::domain;
+      requests.push_back({node, target->address, {}, read_transfer(context, arguments, large)});
     }
   }
   auto answers = context.session->transfer(requests);
@@ -45,8 +62,9 @@ const Command kRead{
     .summary = "Read objects of a node",
     .details =
         "Without --drive only addresses are understood, and the value is shown as an unsigned number of its "
-        "length. Index and "
-        "sub-index are hexadecimal.",
+        "length. Index and sub-index are hexadecimal. With --to the bytes of one object of any size go into "
+        "a "
+        "file; block transfer is tried first where the drive may know it.",
     .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::reads,

@@ -61,6 +61,15 @@ struct Decoded {
   std::string type;
 };
 
+/// A long text ends where nobody reads on; JSON carries it whole.
+std::string shortened(std::string text, std::size_t bytes) {
+  constexpr std::size_t kMost = 200;
+  if (text.size() <= kMost) return text;
+  std::size_t end = kMost;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80) --end;
+  return text.substr(0, end) + fmt::format("… ({} bytes; --to FILE keeps them)", bytes);
+}
+
 Decoded decode(const Reading& reading, ByteSpan bytes) {
   Decoded out;
   auto meaning = drive::meaning(reading.target, reading.node);
@@ -68,14 +77,14 @@ Decoded decode(const Reading& reading, ByteSpan bytes) {
   out.type = std::string(od::name(type));
   const auto value = od::decode(type, bytes);
   if (!value) {
-    out.text = to_hex(bytes);
-    out.value = out.text;
+    out.value = to_hex(bytes);
+    out.text = shortened(to_hex(bytes), bytes.size());
     return out;
   }
   out.raw = od_value(*value);
   out.value = meaning.scale == 1 ? out.raw : Value(drive::scaled(meaning, *value));
   out.unit = std::string(meaning.unit);
-  out.text = od::to_string(*value);
+  out.text = shortened(od::to_string(*value), bytes.size());
   if (meaning.scale != 1)
     out.text += fmt::format(" = {:.12g} {}", drive::scaled(meaning, *value), meaning.unit);
   else if (!meaning.unit.empty())

@@ -1,4 +1,6 @@
 #include "commands/change.hpp"
+#include "commands/file_transfer.hpp"
+#include "commands/transfer_option.hpp"
 #include "commands/type_option.hpp"
 
 namespace servoctl::commands {
@@ -9,30 +11,44 @@ constexpr Parameter kParameters[] = {
      .help = "0x6060, 6099h.1, modes_of_operation, Pn0202",
      .kind = Kind::object,
      .required = true},
-    {.name = "value",
-     .help = "100, -5, 0x64, 60rpm, a label, \"text\", hex:00 64",
-     .kind = Kind::value,
-     .required = true},
+    {.name = "value", .help = "100, -5, 0x64, 60rpm, a label, \"text\", hex:00 64", .kind = Kind::value},
     {.name = "--type",
      .help = "data type, when the dictionary does not know it",
      .kind = Kind::type,
      .choices = kTypeNames},
+    {.name = "--from", .help = "write the bytes of this file instead of a value", .kind = Kind::file},
+    kTransferOption,
 };
+
+Result<Change> change_of(Context& context, const Arguments& arguments, std::uint8_t node,
+                         const drive::Target& target, std::optional<od::DataType> type) {
+  auto change = arguments.has("--from") ? change_from_file(node, target, arguments.text("--from"))
+                                        : make_change(context, node, target, arguments.text("value"), type);
+  if (!change) return change;
+  const auto transfer = write_transfer(context, arguments, change->data.size());
+  if (!transfer) return tl::unexpected<Error>(located(transfer.error(), node, target.address));
+  change->transfer = *transfer;
+  return change;
+}
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   const auto type = parse_type_option(arguments);
   if (!type) return tl::unexpected<Error>(type.error());
+  if (arguments.has("value") == arguments.has("--from"))
+    return fail(Errc::usage, "'write' needs a value, or a file with --from",
+                "write OBJECT VALUE, or write OBJECT --from FILE");
   const auto target = drive::resolve(context.profile, arguments.text("object"));
   if (!target) return tl::unexpected<Error>(target.error());
   std::vector<Change> changes;
   for (const auto node : context.nodes) {
-    auto change = make_change(context, node, *target, arguments.text("value"), *type);
+    auto change = change_of(context, arguments, node, *target, *type);
     if (!change) return tl::unexpected<Error>(change.error());
     changes.push_back(std::move(*change));
   }
   if (context.dry_run) return planned_frames(changes);
   if (const auto confirmed = confirm_changes(context, changes); !confirmed)
     return tl::unexpected<Error>(confirmed.error());
+  if (arguments.has("--from")) return write_from_file(context, changes, arguments.text("--from"));
   return write_changes(context, changes, false);
 }
 
@@ -46,7 +62,9 @@ const Command kWrite{
         "The value is checked against type and limits before a frame is sent. A plain number is the raw "
         "number the drive shows; a number with a unit is converted. A write is never repeated: when its "
         "answer is lost, the object is read and the outcome told. Asked before: what stores or restores, "
-        "changes node-ID or bitrate, and a controlword that enables the drive.",
+        "changes node-ID or bitrate, and a controlword that enables the drive. With --from the bytes of a "
+        "file "
+        "of any size are written, in blocks where the drive knows them.",
     .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::writes,

@@ -9,7 +9,7 @@ _servoctl_scan() {
       continue
     fi
     case $word in
-      --bus|-b|--node|-n|--drive|-d|--timeout|--retries|--output|-o|--lang|--trace|--type) skip=$word ;;
+      --bus|-b|--node|-n|--drive|-d|--timeout|--retries|--output|-o|--lang|--trace|--type|--to|--transfer|--from) skip=$word ;;
       -*) ;;
       *)
         case $command in
@@ -29,6 +29,9 @@ _servoctl_scan() {
       --lang) source='=en zh' ;;
       --trace) source='files' ;;
       --type) source='=bool i8 i16 i24 i32 i64 u8 u16 u24 u32 u64 f32 f64 string bytes domain' ;;
+      --to) source='files' ;;
+      --transfer) source='=auto expedited segmented block' ;;
+      --from) source='files' ;;
     esac
     return
   fi
@@ -53,8 +56,8 @@ _servoctl_scan() {
     'help') source='=scan info status read write objects param fault nmt drives eds sim completion help' ;;
   esac
   case $command in
-    'read') options+=' --type' ;;
-    'write') options+=' --type' ;;
+    'read') options+=' --type --to --transfer' ;;
+    'write') options+=' --type --from --transfer' ;;
     'nmt start') options+=' --wait' ;;
     'nmt stop') options+=' --wait' ;;
     'nmt preop') options+=' --wait' ;;

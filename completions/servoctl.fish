@@ -16,7 +16,7 @@ function __servoctl_path # the words that are neither options nor their values
     for word in (commandline -opc)[2..]
         if test $skip = 1
             set skip 0
-        else if contains -- $word --bus -b --node -n --drive -d --timeout --retries --output -o --lang --trace --type
+        else if contains -- $word --bus -b --node -n --drive -d --timeout --retries --output -o --lang --trace --type --to --transfer --from
             set skip 1
         else if not string match -q -- '-*' $word
             set path $path $word
@@ -69,9 +69,13 @@ complete -c servoctl -n __servoctl_at -a status -d 'Show the state of a drive: N
 complete -c servoctl -n __servoctl_at -a read -d 'Read objects of a node'
 complete -c servoctl -n '__servoctl_in read' -x -a '(__servoctl_names objects)'
 complete -c servoctl -n '__servoctl_in read' -l type -x -a 'bool i8 i16 i24 i32 i64 u8 u16 u24 u32 u64 f32 f64 string bytes domain' -d 'data type, when the dictionary does not know it'
+complete -c servoctl -n '__servoctl_in read' -l to -r -F -d 'put the bytes of one object into this file'
+complete -c servoctl -n '__servoctl_in read' -l transfer -x -a 'auto expedited segmented block' -d 'how the bytes travel: by size unless said'
 complete -c servoctl -n __servoctl_at -a write -d 'Write one object of a node'
 complete -c servoctl -n '__servoctl_in write' -x -a '(__servoctl_names objects)'
 complete -c servoctl -n '__servoctl_in write' -l type -x -a 'bool i8 i16 i24 i32 i64 u8 u16 u24 u32 u64 f32 f64 string bytes domain' -d 'data type, when the dictionary does not know it'
+complete -c servoctl -n '__servoctl_in write' -l from -r -F -d 'write the bytes of this file instead of a value'
+complete -c servoctl -n '__servoctl_in write' -l transfer -x -a 'auto expedited segmented block' -d 'how the bytes travel: by size unless said'
 complete -c servoctl -n __servoctl_at -a objects -d 'List the object dictionary of a drive family'
 complete -c servoctl -n '__servoctl_at param' -a list -d 'List the panel parameters of a drive family'
 complete -c servoctl -n '__servoctl_at param' -a get -d 'Read panel parameters of a drive'

@@ -88,6 +88,17 @@ std::string sdo_abort_hint(std::uint32_t code) {
   return row != nullptr ? std::string(row->hint) : "look the code up in the drive's manual";
 }
 
+bool refuses_block_transfer(std::uint32_t code) {
+  switch (code) {
+    case sdo_abort::kCommand:
+    case sdo_abort::kBlockSize:
+    case sdo_abort::kOutOfMemory:
+    case sdo_abort::kUnsupportedAccess:
+    case sdo_abort::kGeneral: return true;
+    default: return false;
+  }
+}
+
 bool is_standard_sdo_abort(std::uint32_t code) { return find(code) != nullptr; }
 
 }  // namespace servoctl::canopen

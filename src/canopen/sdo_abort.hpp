@@ -10,6 +10,9 @@ namespace sdo_abort {
 inline constexpr std::uint32_t kToggle = 0x0503'0000;
 inline constexpr std::uint32_t kTimeout = 0x0504'0000;
 inline constexpr std::uint32_t kCommand = 0x0504'0001;
+inline constexpr std::uint32_t kBlockSize = 0x0504'0002;
+inline constexpr std::uint32_t kSequence = 0x0504'0003;
+inline constexpr std::uint32_t kCrc = 0x0504'0004;
 inline constexpr std::uint32_t kOutOfMemory = 0x0504'0005;
 inline constexpr std::uint32_t kUnsupportedAccess = 0x0601'0000;
 inline constexpr std::uint32_t kWriteOnly = 0x0601'0001;
@@ -35,6 +38,10 @@ std::string sdo_abort_text(std::uint32_t code);
 
 /// What the user can do about it; empty when the code leaves nothing to say.
 std::string sdo_abort_hint(std::uint32_t code);
+
+/// Whether a server that answers a request for a block transfer with this code may take an ordinary one: it
+/// says something about the kind of transfer, nothing about the object.
+bool refuses_block_transfer(std::uint32_t code);
 
 /// Whether CiA 301 lists the code.
 bool is_standard_sdo_abort(std::uint32_t code);

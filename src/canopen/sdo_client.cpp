@@ -12,63 +12,106 @@ namespace servoctl::canopen {
 namespace {
 
 constexpr std::uint8_t kToggleBit = 0x10;
-/// More than any object of a drive holds; ends a server that never sends its last segment.
-constexpr std::size_t kMaxUpload = 64U << 20U;
 
 std::uint8_t specifier(const can::Frame& frame) { return frame.data[0] & 0xE0U; }
 
 }  // namespace
 
-void SdoClient::start_upload(ObjectAddress object, TimePoint now) {
+void SdoClient::start_upload(ObjectAddress object, TimePoint now, Transfer transfer) {
   object_ = object;
+  transfer_ = transfer;
+  foreign_request_ = false;
+  if (transfer == Transfer::block || transfer == Transfer::domain) return begin_block_upload(now);
+  begin_upload(now);
+}
+
+void SdoClient::begin_upload(TimePoint now) {
   data_.clear();
   announced_.reset();
   toggle_ = 0;
-  send(sdo_frame(kSdoRequest + node_, 0x40, object), State::upload_initiate, now);
+  send(sdo_frame(kSdoRequest + node_, 0x40, object_), State::upload_initiate, now);
 }
 
-void SdoClient::start_download(ObjectAddress object, Bytes data, TimePoint now) {
+void SdoClient::start_download(ObjectAddress object, Bytes data, TimePoint now, Transfer transfer) {
   object_ = object;
+  transfer_ = transfer;
+  foreign_request_ = false;
   data_ = std::move(data);
+  announced_ = data_.size();
+  const bool by_size = transfer == Transfer::automatic || transfer == Transfer::domain;
+  if (transfer == Transfer::block || (by_size && data_.size() > kBlockWorthwhile))
+    return begin_block_download(now);
+  begin_download(transfer == Transfer::expedited || (by_size && !data_.empty() && data_.size() <= 4), now);
+}
+
+void SdoClient::begin_download(bool expedited, TimePoint now) {
   offset_ = 0;
   toggle_ = 0;
   const auto size = static_cast<std::uint32_t>(data_.size());
-  if (size >= 1 && size <= 4) {
+  if (expedited) {
     const auto command = static_cast<std::uint8_t>(0x23U | (4U - size) << 2U);
     offset_ = size;
-    send(sdo_frame(kSdoRequest + node_, command, object, static_cast<std::uint32_t>(load_le(data_))),
+    send(sdo_frame(kSdoRequest + node_, command, object_, static_cast<std::uint32_t>(load_le(data_))),
          State::download_initiate, now);
     return;
   }
-  send(sdo_frame(kSdoRequest + node_, 0x21, object, size), State::download_initiate, now);
+  send(sdo_frame(kSdoRequest + node_, 0x21, object_, size), State::download_initiate, now);
 }
 
 void SdoClient::on_frame(const can::Frame& frame, TimePoint now) {
-  if (state_ == State::idle || frame.id != kSdoAnswer + node_ || frame.extended || frame.remote ||
-      frame.error)
-    return;
+  if (state_ == State::idle || frame.extended || frame.remote || frame.error) return;
+  if (frame.id == kSdoRequest + node_) return on_foreign_request();
+  if (frame.id == kErrorControl + node_ && frame.size == 1 && frame.data[0] == 0) return on_boot_up();
+  if (frame.id != kSdoAnswer + node_) return;
   if (frame.size != 8) {
     abort(sdo_abort::kCommand, Errc::protocol,
           fmt::format("its answer has {} bytes instead of 8", frame.size));
     return;
   }
-  if (frame.data[0] == kSdoAbortCommand) {
-    if (sdo_object(frame) != object_) return;
-    const auto code = sdo_data(frame);
-    auto refused =
-        error(Errc::sdo_abort, fmt::format("refused: {} (abort 0x{:08X})", sdo_abort_text(code), code),
-              sdo_abort_hint(code));
-    refused.abort_code = code;
-    finish(tl::unexpected<Error>(std::move(refused)));
-    return;
-  }
+  if (frame.data[0] == kSdoAbortCommand) return on_abort(frame, now);
   switch (state_) {
     case State::idle: break;
-    case State::upload_initiate: on_upload_initiate(frame, now); break;
-    case State::upload_segment: on_upload_segment(frame, now); break;
-    case State::download_initiate: on_download_initiate(frame, now); break;
-    case State::download_segment: on_download_segment(frame, now); break;
+    case State::upload_initiate: return on_upload_initiate(frame, now);
+    case State::upload_segment: return on_upload_segment(frame, now);
+    case State::download_initiate: return on_download_initiate(frame, now);
+    case State::download_segment: return on_download_segment(frame, now);
+    case State::block_upload_initiate: return on_block_upload_initiate(frame, now);
+    case State::block_upload_data: return on_block_upload_data(frame, now);
+    case State::block_upload_end: return on_block_upload_end(frame, now);
+    case State::block_download_initiate: return on_block_download_initiate(frame, now);
+    case State::block_download_data: return on_block_download_data(frame, now);
+    case State::block_download_end: return on_block_download_end(frame, now);
   }
+}
+
+void SdoClient::on_abort(const can::Frame& frame, TimePoint now) {
+  if (sdo_object(frame) != object_) return;
+  const auto code = sdo_data(frame);
+  const bool may_fall_back = transfer_ != Transfer::block && refuses_block_transfer(code);
+  if (state_ == State::block_upload_initiate && may_fall_back) return begin_upload(now);
+  if (state_ == State::block_download_initiate && may_fall_back) return begin_download(false, now);
+  auto refused =
+      error(Errc::sdo_abort, fmt::format("refused: {} (abort 0x{:08X})", sdo_abort_text(code), code),
+            sdo_abort_hint(code));
+  refused.abort_code = code;
+  finish(tl::unexpected<Error>(std::move(refused)));
+}
+
+/// Segments carry no object: what another master asks for would be taken as ours. Before them, answers tell
+/// by their object whose they are.
+void SdoClient::on_foreign_request() {
+  foreign_request_ = true;
+  const bool anonymous = state_ != State::upload_initiate && state_ != State::download_initiate &&
+                         state_ != State::block_upload_initiate && state_ != State::block_download_initiate;
+  if (anonymous)
+    finish(tl::unexpected<Error>(error(Errc::protocol, "another master uses its SDO channel at the same time",
+                                       "stop the other master, a PLC or a second tool, and try again")));
+}
+
+void SdoClient::on_boot_up() {
+  finish(tl::unexpected<Error>(
+      error(Errc::timeout, "the node restarted (boot-up) in the middle of the transfer",
+            "did it lose its supply, or did somebody reset it? Try again when it has started")));
 }
 
 void SdoClient::on_upload_initiate(const can::Frame& frame, TimePoint now) {
@@ -85,8 +128,13 @@ void SdoClient::on_upload_initiate(const can::Frame& frame, TimePoint now) {
     finish(Bytes(frame.data.begin() + 4, frame.data.begin() + 4 + size));
     return;
   }
+  if (transfer_ == Transfer::expedited) {
+    abort(sdo_abort::kUnsupportedAccess, Errc::protocol, "it does not answer this read in one frame",
+          "leave --transfer expedited out");
+    return;
+  }
   if (size_indicated) announced_ = sdo_data(frame);
-  if (announced_.value_or(0) > kMaxUpload) {
+  if (announced_.value_or(0) > kMaxSdoUpload) {
     abort(sdo_abort::kOutOfMemory, Errc::protocol,
           fmt::format("it announces {} bytes for this object", *announced_));
     return;
@@ -110,9 +158,10 @@ void SdoClient::on_upload_segment(const can::Frame& frame, TimePoint now) {
   const auto size = 7 - (frame.data[0] >> 1U & 0x07);
   data_.insert(data_.end(), frame.data.begin() + 1, frame.data.begin() + 1 + size);
   const bool last = (frame.data[0] & 0x01U) != 0;
-  if (data_.size() > announced_.value_or(kMaxUpload) || (last && announced_ && data_.size() < *announced_)) {
+  if (data_.size() > announced_.value_or(kMaxSdoUpload) ||
+      (last && announced_ && data_.size() < *announced_)) {
     abort(sdo_abort::kLength, Errc::protocol,
-          fmt::format("it announced {} bytes and sent {}", announced_.value_or(kMaxUpload), data_.size()));
+          fmt::format("it announced {} bytes and sent {}", announced_.value_or(kMaxSdoUpload), data_.size()));
     return;
   }
   if (last) return finish(std::exchange(data_, {}));
@@ -165,8 +214,24 @@ void SdoClient::send_segment(TimePoint now) {
 
 void SdoClient::on_time(TimePoint now) {
   if (state_ == State::idle || now < deadline_) return;
+  // The last segment of a block has just been handed over: the other side's time begins now.
+  if (deadline_ == TimePoint::min()) {
+    deadline_ = now + timeout_;
+    return;
+  }
+  // The end of a block was lost: an early acknowledge asks for it again.
+  if (state_ == State::block_upload_data && receiver_.has_some() && !nudged_) {
+    acknowledge_block(State::block_upload_data, now);
+    nudged_ = true;
+    return;
+  }
   const auto waited = std::chrono::duration_cast<std::chrono::milliseconds>(timeout_).count();
-  abort(sdo_abort::kTimeout, Errc::timeout, fmt::format("no answer within {} ms", waited));
+  const bool asked_for_block =
+      state_ == State::block_upload_initiate || state_ == State::block_download_initiate;
+  abort(sdo_abort::kTimeout, Errc::timeout,
+        fmt::format("no answer{} within {} ms", asked_for_block ? " to the request of a block transfer" : "",
+                    waited),
+        asked_for_block ? "when the node answers `read 0x1000`, try --transfer segmented" : "");
 }
 
 void SdoClient::send(const can::Frame& frame, State next, TimePoint now) {
@@ -193,10 +258,24 @@ Error SdoClient::error(Errc code, std::string message, std::string hint) const {
   out.hint = std::move(hint);
   out.node = node_;
   out.object = object_;
+  if (foreign_request_ && out.hint.empty()) out.hint = "another master talks to this node by SDO as well";
   return out;
 }
 
-std::optional<can::Frame> SdoClient::take_frame() { return std::exchange(tx_, std::nullopt); }
+std::size_t SdoClient::transferred() const {
+  if (state_ == State::block_upload_data || state_ == State::block_upload_end) return receiver_.received();
+  if (state_ == State::block_download_data || state_ == State::block_download_end)
+    return sender_.acknowledged();
+  return state_ == State::download_segment ? offset_ : data_.size();
+}
+
+std::optional<can::Frame> SdoClient::take_frame() {
+  if (tx_ || state_ != State::block_download_data) return std::exchange(tx_, std::nullopt);
+  const auto segment = sender_.next_segment();
+  if (!segment) return std::nullopt;
+  if (sender_.is_waiting()) deadline_ = TimePoint::min();
+  return can::make_frame(kSdoRequest + node_, *segment);
+}
 std::optional<Result<Bytes>> SdoClient::take_result() { return std::exchange(result_, std::nullopt); }
 
 }  // namespace servoctl::canopen

@@ -9,24 +9,41 @@
 #include "base/result.hpp"
 #include "base/time.hpp"
 #include "can/frame.hpp"
+#include "canopen/sdo_block.hpp"
 
 namespace servoctl::canopen {
 
-/// The client side of one SDO channel (CiA 301, 7.2.4): expedited and segmented transfers, one at a time.
-/// Performs no I/O and reads no clock: give it frames and time, take frames and the result from it.
+/// How an SDO transfer is made (CiA 301, 7.2.4.1).
+enum class Transfer : std::uint8_t {
+  automatic,  ///< Writes by their size; reads as the server answers them.
+  domain,     ///< As automatic, and a read is expected to be long: block transfer is asked for first.
+  expedited,  ///< Up to 4 bytes in one frame; anything longer is refused.
+  segmented,  ///< 7 bytes a frame, each acknowledged.
+  block,      ///< Up to 127 segments for one acknowledge; never anything else.
+};
+
+/// A write of more bytes than these is tried as a block transfer first.
+inline constexpr std::size_t kBlockWorthwhile = 64;
+
+/// The client side of one SDO channel (CiA 301, 7.2.4): one transfer at a time. Performs no I/O and reads no
+/// clock: give it frames and time, take frames and the result from it.
 ///
 /// Frames of other nodes, answers for other objects (late ones of an earlier request) and remote frames are
 /// ignored. Every transfer ends with exactly one result: the data, or Errc::sdo_abort, timeout or protocol
-/// with node and object set. When the client gives up it tells the server with an abort.
+/// with node and object set. When the client gives up it tells the server with an abort. A boot-up message of
+/// the node ends the transfer at once, as a timeout would. Where block transfer is tried and refused as such,
+/// the transfer is made in segments.
 class SdoClient {
  public:
   /// `node` 1..127; `timeout` is the longest silence of the server between two frames.
   SdoClient(std::uint8_t node, Duration timeout) : node_(node), timeout_(timeout) {}
 
   /// Reads an object. Must not be called while a transfer is under way.
-  void start_upload(ObjectAddress object, TimePoint now);
-  /// Writes an object: expedited up to 4 bytes, segmented above and for none.
-  void start_download(ObjectAddress object, Bytes data, TimePoint now);
+  void start_upload(ObjectAddress object, TimePoint now, Transfer transfer = Transfer::automatic);
+  /// Writes an object. With Transfer::automatic: expedited up to 4 bytes, in segments or blocks above and for
+  /// none. With Transfer::expedited, 1 to 4 bytes only.
+  void start_download(ObjectAddress object, Bytes data, TimePoint now,
+                      Transfer transfer = Transfer::automatic);
 
   void on_frame(const can::Frame& frame, TimePoint now);
   void on_time(TimePoint now);
@@ -39,6 +56,9 @@ class SdoClient {
   }  ///< When on_time() has something to do; kNever while idle.
   bool busy() const { return state_ != State::idle; }
   std::uint8_t node() const { return node_; }
+  std::size_t transferred() const;  ///< Bytes of this transfer that the other side has, or that came.
+  /// Bytes of the whole transfer, when known.
+  std::optional<std::size_t> total() const { return announced_; }
 
  private:
   enum class State : std::uint8_t {
@@ -46,13 +66,34 @@ class SdoClient {
     upload_initiate,
     upload_segment,
     download_initiate,
-    download_segment
+    download_segment,
+    block_upload_initiate,
+    block_upload_data,
+    block_upload_end,
+    block_download_initiate,
+    block_download_data,
+    block_download_end,
   };
+
+  void on_abort(const can::Frame& frame, TimePoint now);
+  void begin_upload(TimePoint now);
+  void begin_download(bool expedited, TimePoint now);
 
   void on_upload_initiate(const can::Frame& frame, TimePoint now);
   void on_upload_segment(const can::Frame& frame, TimePoint now);
   void on_download_initiate(const can::Frame& frame, TimePoint now);
   void on_download_segment(const can::Frame& frame, TimePoint now);
+  void begin_block_upload(TimePoint now);
+  void begin_block_download(TimePoint now);
+  void on_block_upload_initiate(const can::Frame& frame, TimePoint now);
+  void on_block_upload_data(const can::Frame& frame, TimePoint now);
+  void on_block_upload_end(const can::Frame& frame, TimePoint now);
+  void on_block_download_initiate(const can::Frame& frame, TimePoint now);
+  void on_block_download_data(const can::Frame& frame, TimePoint now);
+  void on_block_download_end(const can::Frame& frame, TimePoint now);
+  void acknowledge_block(State next, TimePoint now);
+  void on_foreign_request();
+  void on_boot_up();
   void request_segment(TimePoint now);
   void send_segment(TimePoint now);
   void send(const can::Frame& frame, State next, TimePoint now);
@@ -66,9 +107,16 @@ class SdoClient {
   ObjectAddress object_;
   Bytes data_;
   std::size_t offset_ = 0;
-  std::optional<std::size_t> announced_;  ///< Size the server announced for a segmented upload.
+  std::optional<std::size_t> announced_;  ///< Size of the whole transfer.
+  Transfer transfer_ = Transfer::automatic;
+  bool foreign_request_ = false;  ///< Another master has asked this node since the transfer began.
   std::uint8_t toggle_ = 0;
   TimePoint deadline_ = kNever;
+  BlockSender sender_;
+  BlockReceiver receiver_;
+  bool crc_ = false;                        ///< Both sides make one.
+  bool nudged_ = false;                     ///< The present block was acknowledged before its end.
+  std::optional<can::Frame> acknowledged_;  ///< The acknowledge received last.
   std::optional<can::Frame> tx_;
   std::optional<Result<Bytes>> result_;
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "base/object_address.hpp"
@@ -17,6 +18,12 @@ can::Frame sdo_segment(std::uint32_t cob_id, std::uint8_t command);
 
 ObjectAddress sdo_object(const can::Frame& frame);
 std::uint32_t sdo_data(const can::Frame& frame);
+
+/// More than any object of a drive holds; ends a server that never sends its last segment.
+inline constexpr std::size_t kMaxSdoUpload = std::size_t{64} << 20U;
+
+/// A domain larger than this is refused: the server keeps a download in memory until its last segment.
+inline constexpr std::size_t kMaxSdoDownload = std::size_t{16} << 20U;
 
 /// Byte 0 of an abort, from either side.
 inline constexpr std::uint8_t kSdoAbortCommand = 0x80;

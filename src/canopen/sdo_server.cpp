@@ -11,8 +11,6 @@ namespace servoctl::canopen {
 namespace {
 
 constexpr std::uint8_t kToggleBit = 0x10;
-/// A domain this large is refused: the server keeps a download in memory until its last segment.
-constexpr std::size_t kMaxDownload = 16U << 20U;
 
 }  // namespace
 
@@ -21,11 +19,17 @@ void SdoServer::on_frame(const can::Frame& frame, TimePoint now) {
     return;
   const std::uint8_t command = frame.data[0];
   if (command == kSdoAbortCommand) return reset();
+  if (state_ == State::block_download_data) return on_block_download_data(frame, now);
+  if (state_ == State::block_download_end && receiver_.repeats(frame.data)) return;
   switch (command & 0xE0U) {
     case 0x40: return on_upload_initiate(sdo_object(frame), now);
     case 0x20: return on_download_initiate(frame, now);
     case 0x60: return on_upload_segment(frame, now);
     case 0x00: return on_download_segment(frame, now);
+    case 0xA0:
+      return (command & 0x03U) == 0 ? on_block_upload_initiate(frame, now) : on_block_upload(frame, now);
+    case 0xC0:
+      return (command & 0x01U) == 0 ? on_block_download_initiate(frame, now) : on_block_download_end(frame);
     default: return abort(sdo_object(frame), sdo_abort::kCommand);
   }
 }
@@ -35,6 +39,10 @@ void SdoServer::on_upload_initiate(ObjectAddress object, TimePoint now) {
   object_ = object;
   Bytes data;
   if (const auto code = store_->read(object, data); code != 0) return abort(object, code);
+  answer_upload(object, std::move(data), now);
+}
+
+void SdoServer::answer_upload(ObjectAddress object, Bytes data, TimePoint now) {
   const auto size = static_cast<std::uint32_t>(data.size());
   if (size >= 1 && size <= 4) {
     const auto command = static_cast<std::uint8_t>(0x43U | (4U - size) << 2U);
@@ -63,7 +71,7 @@ void SdoServer::on_download_initiate(const can::Frame& frame, TimePoint now) {
   }
   if (!options_.segmented) return abort(object, sdo_abort::kCommand);
   if (size_indicated) announced_ = sdo_data(frame);
-  if (announced_.value_or(0) > kMaxDownload) return abort(object, sdo_abort::kOutOfMemory);
+  if (announced_.value_or(0) > kMaxSdoDownload) return abort(object, sdo_abort::kOutOfMemory);
   state_ = State::download;
   deadline_ = now + options_.timeout;
   tx_ = sdo_frame(kSdoAnswer + node_, 0x60, object);
@@ -91,7 +99,7 @@ void SdoServer::on_download_segment(const can::Frame& frame, TimePoint now) {
   const auto size = 7 - (command >> 1U & 0x07);
   data_.insert(data_.end(), frame.data.begin() + 1, frame.data.begin() + 1 + size);
   const bool last = (command & 0x01U) != 0;
-  if (data_.size() > announced_.value_or(kMaxDownload)) return abort(object_, sdo_abort::kTooLong);
+  if (data_.size() > announced_.value_or(kMaxSdoDownload)) return abort(object_, sdo_abort::kTooLong);
   if (last) {
     if (announced_ && data_.size() < *announced_) return abort(object_, sdo_abort::kTooShort);
     if (const auto code = store_->write(object_, data_); code != 0) return abort(object_, code);
@@ -104,10 +112,28 @@ void SdoServer::on_download_segment(const can::Frame& frame, TimePoint now) {
 }
 
 void SdoServer::on_time(TimePoint now) {
-  if (state_ != State::idle && now >= deadline_) abort(object_, sdo_abort::kTimeout);
+  if (state_ == State::idle || now < deadline_) return;
+  // The last segment of a block has just been handed over: the client's time begins now.
+  if (deadline_ == TimePoint::min()) {
+    deadline_ = now + options_.timeout;
+    return;
+  }
+  // The end of a block was lost: an early acknowledge asks for it again.
+  if (state_ == State::block_download_data && receiver_.has_some() && !nudged_) {
+    acknowledge_block(now);
+    nudged_ = true;
+    return;
+  }
+  abort(object_, sdo_abort::kTimeout);
 }
 
-std::optional<can::Frame> SdoServer::take_frame() { return std::exchange(tx_, std::nullopt); }
+std::optional<can::Frame> SdoServer::take_frame() {
+  if (tx_ || state_ != State::block_upload_data) return std::exchange(tx_, std::nullopt);
+  const auto segment = sender_.next_segment();
+  if (!segment) return std::nullopt;
+  if (sender_.is_waiting()) deadline_ = TimePoint::min();
+  return can::make_frame(kSdoAnswer + node_, *segment);
+}
 
 void SdoServer::reset() {
   state_ = State::idle;

@@ -7,6 +7,7 @@
 #include "base/object_address.hpp"
 #include "base/time.hpp"
 #include "can/frame.hpp"
+#include "canopen/sdo_block.hpp"
 
 namespace servoctl::canopen {
 
@@ -26,6 +27,9 @@ class SdoServer {
  public:
   struct Options {
     bool segmented = true;                       ///< False: segmented requests are aborted with 0504 0001h.
+    bool block = true;                           ///< False: block requests are aborted with 0504 0001h.
+    std::uint8_t block_size = kMaxBlockSize;     ///< Segments of a block the client may send, 1..127.
+    bool crc = true;                             ///< Makes and checks the CRC of block transfers.
     Duration timeout = std::chrono::seconds(1);  ///< Silence of the client that ends a segmented transfer.
   };
 
@@ -40,12 +44,29 @@ class SdoServer {
   void reset();
 
  private:
-  enum class State : std::uint8_t { idle, upload, download };
+  enum class State : std::uint8_t {
+    idle,
+    upload,
+    download,
+    block_upload_start,
+    block_upload_data,
+    block_upload_end,
+    block_download_data,
+    block_download_end,
+  };
 
   void on_upload_initiate(ObjectAddress object, TimePoint now);
   void on_download_initiate(const can::Frame& frame, TimePoint now);
   void on_upload_segment(const can::Frame& frame, TimePoint now);
   void on_download_segment(const can::Frame& frame, TimePoint now);
+  void on_block_upload_initiate(const can::Frame& frame, TimePoint now);
+  void on_block_upload(const can::Frame& frame, TimePoint now);
+  void on_block_upload_acknowledge(const can::Frame& frame, TimePoint now);
+  void on_block_download_initiate(const can::Frame& frame, TimePoint now);
+  void on_block_download_data(const can::Frame& frame, TimePoint now);
+  void on_block_download_end(const can::Frame& frame);
+  void answer_upload(ObjectAddress object, Bytes data, TimePoint now);
+  void acknowledge_block(TimePoint now);
   void abort(ObjectAddress object, std::uint32_t code);
 
   std::uint8_t node_;
@@ -58,6 +79,10 @@ class SdoServer {
   std::optional<std::size_t> announced_;
   std::uint8_t toggle_ = 0;
   TimePoint deadline_ = kNever;
+  BlockSender sender_;
+  BlockReceiver receiver_;
+  bool crc_ = false;     ///< Both sides make one.
+  bool nudged_ = false;  ///< The present block was acknowledged before its end.
   std::optional<can::Frame> tx_;
 };
 

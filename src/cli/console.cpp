@@ -17,6 +17,10 @@ void StandardConsole::out(std::string_view text) {
 
 void StandardConsole::err(std::string_view text) { std::fwrite(text.data(), 1, text.size(), stderr); }
 
+void StandardConsole::show_progress(std::string_view line) {
+  if (::isatty(STDERR_FILENO) == 1) err("\r\033[K" + std::string(line));
+}
+
 bool StandardConsole::ask(std::string_view question) {
   if (!can_ask()) return false;
   err(std::string(question) + " [y/N] ");

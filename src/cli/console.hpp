@@ -15,6 +15,8 @@ class Console {
 
   virtual void out(std::string_view text) = 0;  ///< Data.
   virtual void err(std::string_view text) = 0;  ///< Errors, notices, progress.
+  /// Shows this line in place of the one shown before; an empty one wipes it. Only where somebody looks.
+  virtual void show_progress(std::string_view line) = 0;
   /// Asks a yes-or-no question; false when there is nobody to ask or the answer is no.
   virtual bool ask(std::string_view question) = 0;
   virtual bool can_ask() const = 0;       ///< Whether there is a person at a terminal.
@@ -26,6 +28,7 @@ class StandardConsole final : public Console {
  public:
   void out(std::string_view text) override;
   void err(std::string_view text) override;
+  void show_progress(std::string_view line) override;
   bool ask(std::string_view question) override;
   bool can_ask() const override;
   std::size_t width() const override;

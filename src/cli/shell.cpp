@@ -80,6 +80,7 @@ int Shell::run(const std::vector<std::string>& words) {
   if (!settings) return report_error(settings.error(), wants_json(words), parsed->command->path);
   Run run{parsed->command, std::move(*settings), {}};
   const auto result = execute(run, parsed->arguments);
+  progress_.end();
   return finish(run, result);
 }
 
@@ -196,6 +197,9 @@ Result<session::Session*> Shell::open(const Settings& settings) {
     trace_ = settings.trace;
     session_ = std::make_unique<session::Session>(std::move(*bus), settings.bus, session::Options{});
     session_->options().cancelled = options_.cancelled;
+    session_->options().progress = [this](std::size_t done, std::optional<std::size_t> total) {
+      progress_.update(done, total, steady_now());
+    };
     // Boot-ups of drives that are simulated in this process are no news.
     if (const auto heard = session_->listen(); !heard) return tl::unexpected<Error>(heard.error());
     (void)session_->take_events();

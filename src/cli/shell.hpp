@@ -9,6 +9,7 @@
 
 #include "cli/console.hpp"
 #include "cli/parse.hpp"
+#include "cli/progress.hpp"
 #include "cli/settings.hpp"
 #include "session/session.hpp"
 #include "sim/sim_bus.hpp"
@@ -26,7 +27,8 @@ class Shell {
     std::function<bool()> cancelled;
   };
 
-  Shell(Console& console, Options options) : console_(&console), options_(std::move(options)) {}
+  Shell(Console& console, Options options)
+      : console_(&console), options_(std::move(options)), progress_(console) {}
 
   /// Runs one command line; the answer is the exit code.
   int run(const std::vector<std::string>& words);
@@ -67,6 +69,7 @@ class Shell {
   Options options_;
   std::unique_ptr<session::Session> session_;
   std::filesystem::path trace_;
+  Progress progress_;
   std::map<std::string, std::unique_ptr<drive::Profile>> profiles_;
 };
 

@@ -160,6 +160,7 @@ class RulesReader {
 
   Result<void> sdo(const Reader& reader) {
     return reader.read({{"segmented", [&](const auto& n) { return get(n, rules_.sdo_segmented); }},
+                        {"block", [&](const auto& n) { return get(n, rules_.sdo_block); }},
                         {"exact_length", [&](const auto& n) { return get(n, rules_.sdo_exact_length); }}});
   }
 

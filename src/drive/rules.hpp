@@ -50,6 +50,7 @@ struct Rules {
   std::optional<Numbering> numbering;
 
   bool sdo_segmented = true;
+  bool sdo_block = true;  ///< Needs sdo_segmented.
   bool sdo_exact_length = true;
 
   std::string node_id_parameter;

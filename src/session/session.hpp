@@ -23,12 +23,15 @@ struct SdoRequest {
   std::uint8_t node = 0;
   ObjectAddress object;
   std::optional<Bytes> data;
+  canopen::Transfer transfer = canopen::Transfer::automatic;
 };
 
 struct Options {
   Duration timeout = std::chrono::milliseconds(500);  ///< Longest wait for one SDO answer.
   std::uint32_t retries = 1;        ///< Further tries of a read that was not answered; never of a write.
   std::function<bool()> cancelled;  ///< Asked in every wait; may be empty.
+  /// Told how many bytes of a long transfer have gone, of how many in all where that is known; may be empty.
+  std::function<void(std::size_t done, std::optional<std::size_t> total)> progress;
 };
 
 /// A bus with its nodes. One pump drives any number of protocol machines; listeners see every frame in every

@@ -9,6 +9,8 @@ namespace servoctl::session {
 namespace {
 
 constexpr int kNone = -1;
+/// Bytes from which on a transfer is worth a word while it goes on.
+constexpr std::size_t kLongTransfer = 1000;
 
 std::string silence_hint(std::uint8_t node) {
   return fmt::format(
@@ -58,10 +60,16 @@ std::vector<Result<Bytes>> TransferRun::run() {
   }
 }
 
+/// To the channel of the node that the frame belongs to by the pre-defined connection set: answers, what
+/// other masters ask, boot-up.
 void TransferRun::dispatch(const can::Frame& frame) {
-  if (frame.id < canopen::kSdoAnswer || frame.id > canopen::kSdoAnswer + canopen::kLastNode) return;
-  const int channel = channel_of_node_[frame.id - canopen::kSdoAnswer];
-  if (channel != kNone) channels_[static_cast<std::size_t>(channel)].client.on_frame(frame, session_->now());
+  if (frame.id < canopen::kSdoAnswer || frame.id > canopen::kErrorControl + canopen::kLastNode) return;
+  const int channel = channel_of_node_[frame.id & 0x7FU];
+  if (channel == kNone) return;
+  auto& client = channels_[static_cast<std::size_t>(channel)].client;
+  client.on_frame(frame, session_->now());
+  if (session_->options().progress && client.total().value_or(client.transferred()) > kLongTransfer)
+    session_->options().progress(client.transferred(), client.total());
 }
 
 bool TransferRun::advance(Channel& channel) {
@@ -83,9 +91,9 @@ void TransferRun::start(Channel& channel) {
   channel.tries = 0;
   const auto& request = requests_[channel.current];
   if (request.data)
-    channel.client.start_download(request.object, *request.data, session_->now());
+    channel.client.start_download(request.object, *request.data, session_->now(), request.transfer);
   else
-    channel.client.start_upload(request.object, session_->now());
+    channel.client.start_upload(request.object, session_->now(), request.transfer);
 }
 
 void TransferRun::finish(Channel& channel, Result<Bytes> result) {
@@ -93,7 +101,10 @@ void TransferRun::finish(Channel& channel, Result<Bytes> result) {
   const bool silent = !result && result.error().code == Errc::timeout;
   if (silent && !request.data && channel.tries < session_->options().retries) {
     ++channel.tries;
-    channel.client.start_upload(request.object, session_->now());
+    // A server that knows no block transfer may meet its request with silence.
+    const auto transfer =
+        request.transfer == canopen::Transfer::domain ? canopen::Transfer::automatic : request.transfer;
+    channel.client.start_upload(request.object, session_->now(), transfer);
     return;
   }
   if (silent && result.error().hint.empty()) result.error().hint = silence_hint(request.node);

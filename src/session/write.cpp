@@ -15,6 +15,13 @@ Error about(const SdoRequest& request, Errc code, std::string what, std::string 
   return error;
 }
 
+/// Bytes in a message: all of a short value, the beginning of a long one.
+std::string shown(ByteSpan data) {
+  constexpr std::size_t kMost = 32;
+  if (data.size() <= kMost) return to_hex(data);
+  return fmt::format("{} … ({} bytes)", to_hex(data.first(kMost)), data.size());
+}
+
 /// A request that was not tried carries the object that failed before it.
 bool answer_lost(const Error& error, const SdoRequest& request) {
   return error.code == Errc::timeout && error.object == request.object;
@@ -26,10 +33,10 @@ Result<Written> after_lost_answer(const SdoRequest& request, const Result<Bytes>
                       "the write was sent, the answer never came, and the value cannot be read back",
                       "it is unknown whether the value was written: read it when the node answers again"));
   if (*found != *request.data)
-    return fail(about(request, Errc::timeout,
-                      fmt::format("the write was not answered and had no effect: the object still holds {}",
-                                  to_hex(*found)),
-                      "write it again"));
+    return fail(about(
+        request, Errc::timeout,
+        fmt::format("the write was not answered and had no effect: the object still holds {}", shown(*found)),
+        "write it again"));
   Written done;
   done.answer_lost = true;
   done.read_back = *found;
@@ -45,7 +52,7 @@ Result<Written> after_answer(const SdoRequest& request, const Result<Bytes>& fou
   if (*found != *request.data)
     return fail(
         about(request, Errc::negative,
-              fmt::format("the drive acknowledged {} and holds {}", to_hex(*request.data), to_hex(*found)),
+              fmt::format("the drive acknowledged {} and holds {}", shown(*request.data), shown(*found)),
               "the drive limits or rounds the value, or another setting overrides it"));
   Written done;
   done.read_back = *found;

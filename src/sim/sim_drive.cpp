@@ -22,6 +22,7 @@ constexpr std::size_t kHistorySize = 8;
 canopen::SdoServer::Options server_options(const drive::Rules& rules) {
   canopen::SdoServer::Options options;
   options.segmented = rules.sdo_segmented;
+  options.block = rules.sdo_segmented && rules.sdo_block;
   return options;
 }
 

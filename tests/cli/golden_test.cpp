@@ -47,7 +47,7 @@ std::vector<Case> read_cases() {
 std::string play(const Case& c, bool json) {
   RecordingConsole console;
   Shell::Options options;
-  options.drive_folders = {kSource / "eds"};
+  options.drive_folders = {kSource / "eds", kSource / "tests/cli/data/drives"};
   options.clock = sim::SimBus::Clock::virtual_time;
   options.defaults.bus = "sim:gsd600@1";
   Shell shell(console, std::move(options));

@@ -34,6 +34,19 @@ check "the environment names bus, node and drive" 600 "$(SERVOCTL_NODE=1 SERVOCT
 check "--version" "servoctl" "$("$servoctl" --version | cut -d' ' -f1)"
 check "one document a command" 1 "$("$servoctl" scan --json | wc -l)"
 
+# Objects of any size go through files.
+lab=$(cd "$(dirname "$0")" && pwd)/data/drives
+work=$(mktemp -d)
+head -c 100000 /dev/urandom >"$work/blob"
+for transfer in auto segmented block; do
+  printf '%s\n' "write 1F50:1 --from $work/blob --transfer $transfer" "read 1F50:1 --to $work/back --transfer $transfer" |
+    SERVOCTL_DRIVES=$lab "$servoctl" -b sim:lab@3 -n 3 -d lab >/dev/null 2>"$work/errors"
+  check "write and read 100 kB, $transfer" 0 $?
+  check "no byte of it differs" "" "$(cmp "$work/blob" "$work/back" 2>&1)"
+done
+check "no progress where nobody looks" "" "$(cat "$work/errors")"
+rm -rf "$work"
+
 # Two processes on a virtual bus of this machine.
 name="pipetest$$"
 "$servoctl" sim gsd600@4 --bus "local:$name" >/tmp/servoctl-$name 2>&1 &

@@ -12,6 +12,7 @@ class RecordingConsole final : public Console {
  public:
   void out(std::string_view text) override { out_text += text; }
   void err(std::string_view text) override { err_text += text; }
+  void show_progress(std::string_view line) override { progress.emplace_back(line); }
   bool ask(std::string_view question) override {
     questions.emplace_back(question);
     return answer;
@@ -22,6 +23,7 @@ class RecordingConsole final : public Console {
   std::string out_text;
   std::string err_text;
   std::vector<std::string> questions;
+  std::vector<std::string> progress;
   bool answer = false;
   bool person = false;
   std::size_t columns = 0;

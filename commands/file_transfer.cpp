@@ -1,0 +1,92 @@
+#include "commands/file_transfer.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <string>
+
+#include "base/file.hpp"
+#include "canopen/sdo_frame.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using report::Show;
+using report::Value;
+
+report::Table new_table() {
+  report::Table table;
+  table.columns = {{"node"},
+                   {"object", "", Show::text},
+                   {"index", "", Show::json},
+                   {"sub", "", Show::json},
+                   {"name"},
+                   {"bytes"},
+                   {"file"},
+                   {"state", "result", Show::text},
+                   {"error", "", Show::json}};
+  return table;
+}
+
+report::List row(std::uint8_t node, const drive::Target& target, std::size_t bytes,
+                 const std::filesystem::path& file, std::string state, Value error) {
+  return {node,
+          to_string(target.address),
+          target.address.index,
+          target.address.sub,
+          report::text_or_null(target.label()),
+          bytes,
+          file.string(),
+          std::move(state),
+          std::move(error)};
+}
+
+}  // namespace
+
+Result<Value> read_to_file(Context& context, std::uint8_t node, const drive::Target& target,
+                           canopen::Transfer transfer, const std::filesystem::path& file) {
+  const session::SdoRequest request{node, target.address, {}, transfer};
+  const auto answers = context.session->transfer(std::span(&request, 1));
+  const auto& data = answers.front();
+  if (!data) return tl::unexpected<Error>(data.error());
+  const auto written = write_file_atomically(file, std::string(data->begin(), data->end()));
+  if (!written) return tl::unexpected<Error>(written.error());
+  auto table = new_table();
+  table.rows.push_back(row(node, target, data->size(), file, "read", {}));
+  return Value(std::move(table));
+}
+
+Result<Change> change_from_file(std::uint8_t node, const drive::Target& target,
+                                const std::filesystem::path& file) {
+  const auto meaning = drive::meaning(target, node);
+  if (!od::writable(meaning.access))
+    return fail(Errc::usage, fmt::format("{} is read-only", name_of(target)), "it can be read, not written");
+  const auto content = read_file(file, canopen::kMaxSdoDownload);
+  if (!content) return tl::unexpected<Error>(content.error());
+  const auto size = meaning.type_known ? od::size_of(meaning.type) : std::nullopt;
+  if (size && content->size() != *size)
+    return fail(Errc::usage, fmt::format("{} holds {} bytes, and {} has {}", name_of(target), *size,
+                                         file.string(), content->size()));
+  return Change{node, target, size ? meaning.type : od::DataType::domain,
+                Bytes(content->begin(), content->end())};
+}
+
+Value write_from_file(Context& context, std::span<const Change> changes, const std::filesystem::path& file) {
+  std::vector<session::SdoRequest> requests;
+  for (const auto& change : changes)
+    requests.push_back({change.node, change.target.address, change.data, change.transfer});
+  const auto written = session::write_all(*context.session, requests, false);
+  auto table = new_table();
+  table.json_only = std::none_of(written.begin(), written.end(), [](const auto& w) { return w.has_value(); });
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    const bool lost = written[i] && written[i]->answer_lost;
+    const auto* state = !written[i] ? "not written"
+                        : lost      ? "written (the answer was lost, the content was read back)"
+                                    : "written";
+    table.rows.push_back(row(changes[i].node, changes[i].target, changes[i].data.size(), file, state,
+                             written[i] ? Value() : error_record(written[i].error())));
+    if (!written[i]) context.errors.push_back(written[i].error());
+  }
+  return table;
+}
+
+}  // namespace servoctl::commands

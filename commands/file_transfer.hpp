@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+
+#include "commands/change.hpp"
+#include "commands/command.hpp"
+
+/// Objects of any size that go into a file or come from one, byte for byte.
+namespace servoctl::commands {
+
+/// Reads the object and puts its bytes into the file, in one step.
+Result<report::Value> read_to_file(Context& context, std::uint8_t node, const drive::Target& target,
+                                   canopen::Transfer transfer, const std::filesystem::path& file);
+
+/// The change that puts the content of the file into the object. Errc::file when it cannot be read,
+/// Errc::usage for a read-only object or one of another fixed size.
+Result<Change> change_from_file(std::uint8_t node, const drive::Target& target,
+                                const std::filesystem::path& file);
+
+/// Makes the changes and tells how many bytes went where. Failures go to `context.errors`.
+report::Value write_from_file(Context& context, std::span<const Change> changes,
+                              const std::filesystem::path& file);
+
+}  // namespace servoctl::commands

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "base/time.hpp"
+#include "cli/console.hpp"
+
+namespace servoctl::cli {
+
+/// Tells on a terminal how far a long transfer has come: not in its first 300 ms, then ten times a second.
+class Progress {
+ public:
+  explicit Progress(Console& console) : console_(&console) {}
+
+  /// `done` bytes of `total`, when that is known. `now` is on the wall's steady clock.
+  void update(std::size_t done, std::optional<std::size_t> total, TimePoint now);
+  /// Wipes the line.
+  void end();
+
+ private:
+  Console* console_;
+  std::optional<TimePoint> begin_;
+  TimePoint next_{};
+  bool shown_ = false;
+};
+
+}  // namespace servoctl::cli
