@@ -75,8 +75,9 @@ Result<report::Value> run(Context& context, const Arguments&) {
   if (!found) return tl::unexpected<Error>(found.error());
   std::vector<session::SdoRequest> requests;
   for (const auto& node : *found)
-    for (const auto object : {kErrorRegister, kHeartbeat, kModes})
-      requests.push_back({node.node, object, {}});
+    for (const auto& [object, size] :
+         {std::pair{kErrorRegister, 1U}, std::pair{kHeartbeat, 2U}, std::pair{kModes, 4U}})
+      requests.push_back({.node = node.node, .object = object, .size = size});
   const auto answers = context.session->transfer(requests);
   const auto families = drive::find_families(context.drive_folders);
   report::List out;

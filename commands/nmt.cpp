@@ -41,11 +41,11 @@ bool confirmed(session::Session& session, const Before& before, NmtCommand comma
 /// Longest heartbeat period of the nodes, read before the command: a stopped node answers no SDO.
 Duration longest_period(Context& context) {
   std::vector<session::SdoRequest> requests;
-  for (const auto node : context.nodes) requests.push_back({node, kHeartbeat, {}});
+  for (const auto node : context.nodes) requests.push_back({.node = node, .object = kHeartbeat, .size = 2});
   Duration longest{};
   for (const auto& answer : context.session->transfer(requests))
     if (answer && answer->size() <= 8)
-      longest = std::max<Duration>(longest, std::chrono::milliseconds(load_le(*answer)));
+      longest = std::max<Duration>(longest, std::chrono::milliseconds(load_le(*answer) & 0xFFFFU));
   return longest;
 }
 

@@ -48,7 +48,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
         return fail(Errc::usage, fmt::format("{} ({}) is write-only", parameter->id, parameter->name),
                     "`param set` writes it");
       readings.push_back({node, *target, {}, Bytes{}});
-      requests.push_back({node, target->address, {}});
+      requests.push_back({.node = node, .object = target->address, .size = size_of(readings.back())});
     }
   }
   auto answers = context.session->transfer(requests);

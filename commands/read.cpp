@@ -45,8 +45,9 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
       if (!od::readable(drive::meaning(*target, node).access))
         return fail(Errc::usage, "'" + word + "' is write-only", "it can be written, not read");
       readings.push_back({node, *target, *type, Bytes{}});
+      const auto fixed_size = size_of(readings.back());
       const bool large = drive::meaning(*target, node).type == od::DataType::domain;
-      requests.push_back({node, target->address, {}, read_transfer(context, arguments, large)});
+      requests.push_back({node, target->address, {}, read_transfer(context, arguments, large), fixed_size});
     }
   }
   auto answers = context.session->transfer(requests);

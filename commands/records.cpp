@@ -214,6 +214,14 @@ Table parameter_table(std::span<const od::Parameter* const> parameters, bool chi
   return table;
 }
 
+std::size_t size_of(const Reading& reading) {
+  const auto meaning = drive::meaning(reading.target, reading.node);
+  const auto type = reading.type         ? reading.type
+                    : meaning.type_known ? std::optional(meaning.type)
+                                         : std::nullopt;
+  return type ? od::size_of(*type).value_or(0) : 0;
+}
+
 od::DataType type_of(const Reading& reading, ByteSpan bytes) {
   if (reading.type) return *reading.type;
   const auto meaning = drive::meaning(reading.target, reading.node);

@@ -40,6 +40,9 @@ struct Reading {
 /// Readings as a table, an `error` in the rows that failed. Errors are added to `context.errors`.
 report::Table reading_table(Context& context, std::span<const Reading> readings);
 
+/// Bytes of the object by its type; 0 when the type is not known or of no fixed size.
+std::size_t size_of(const Reading& reading);
+
 /// The type used to decode `bytes`: the given one, else the dictionary's, else one that fits the length.
 od::DataType type_of(const Reading& reading, ByteSpan bytes);
 

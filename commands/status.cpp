@@ -19,6 +19,7 @@ constexpr ObjectAddress kErrorCode{0x603F, 0};
 constexpr ObjectAddress kErrorRegister{0x1001, 0};
 constexpr ObjectAddress kHeartbeat{0x1017, 0};
 constexpr ObjectAddress kObjects[] = {kStatusword, kModeDisplay, kErrorCode, kErrorRegister, kHeartbeat};
+constexpr std::size_t kSizes[] = {2, 1, 2, 1, 2};  ///< CiA 301 and 402-2.
 constexpr std::size_t kCount = std::size(kObjects);
 
 /// Longest wait for a heartbeat that tells the NMT state.
@@ -37,7 +38,7 @@ Result<void> hear_heartbeats(Context& context, std::span<const Result<Bytes>> an
     const auto period = number(answers[i * kCount + 4]);
     if (!period || *period == 0 || context.session->watch().state(context.nodes[i])) continue;
     expected.push_back(context.nodes[i]);
-    longest = std::max<Duration>(longest, std::chrono::milliseconds(*period) * 3 / 2);
+    longest = std::max<Duration>(longest, std::chrono::milliseconds(*period & 0xFFFFU) * 3 / 2);
   }
   if (expected.empty()) return {};
   const auto all_heard = [&] {
@@ -122,7 +123,8 @@ Record one(Context& context, std::uint8_t node, std::span<const Result<Bytes>> a
 Result<report::Value> run(Context& context, const Arguments&) {
   std::vector<session::SdoRequest> requests;
   for (const auto node : context.nodes)
-    for (const auto object : kObjects) requests.push_back({node, object, {}});
+    for (std::size_t i = 0; i < kCount; ++i)
+      requests.push_back({.node = node, .object = kObjects[i], .size = kSizes[i]});
   const auto answers = context.session->transfer(requests);
   if (const auto heard = hear_heartbeats(context, answers); !heard)
     return tl::unexpected<Error>(heard.error());

@@ -17,6 +17,7 @@ struct Emergency {
   std::array<std::uint8_t, 5> vendor{};  ///< Manufacturer-specific bytes 3 to 7.
   std::uint8_t size = 8;                 ///< Bytes the drive really sent; some send fewer than 8.
 
+  bool operator==(const Emergency&) const = default;
   bool is_reset() const { return (code & 0xFF00U) == 0; }
 };
 

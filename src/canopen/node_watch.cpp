@@ -10,11 +10,19 @@ TimePoint NodeWatch::Node::deadline() const {
 }
 
 void NodeWatch::on_frame(const can::Frame& frame, TimePoint now) {
-  if (const auto emergency = parse_emergency(frame)) {
-    events_.push_back({now, emergency->node, *emergency});
-    return;
-  }
+  if (const auto emergency = parse_emergency(frame)) return on_emergency(*emergency, now);
   if (const auto message = parse_error_control(frame)) on_error_control(*message, now);
+}
+
+/// A node that repeats itself while nobody takes its events is counted, not listed.
+void NodeWatch::on_emergency(const Emergency& emergency, TimePoint now) {
+  const auto last = std::find_if(events_.rbegin(), events_.rend(),
+                                 [&](const NodeEvent& event) { return event.node == emergency.node; });
+  const auto* same = last == events_.rend() ? nullptr : std::get_if<Emergency>(&last->what);
+  if (same != nullptr && *same == emergency)
+    ++last->times;
+  else
+    events_.push_back({now, emergency.node, emergency});
 }
 
 void NodeWatch::on_error_control(const ErrorControl& message, TimePoint now) {

@@ -25,6 +25,7 @@ struct NodeEvent {
   TimePoint time;
   std::uint8_t node = 0;
   std::variant<BootUp, StateChange, HeartbeatLost, Emergency> what;
+  std::uint32_t times = 1;  ///< How often in succession the node told the same emergency.
 };
 
 /// Listens to boot-up, heartbeat and emergency messages of all nodes. Sees every frame, whatever a command
@@ -61,6 +62,7 @@ class NodeWatch {
     bool lost = false;
     TimePoint deadline() const;
   };
+  void on_emergency(const Emergency& emergency, TimePoint now);
   void on_error_control(const ErrorControl& message, TimePoint now);
 
   std::array<Node, 128> nodes_{};

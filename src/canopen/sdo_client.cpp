@@ -17,8 +17,9 @@ std::uint8_t specifier(const can::Frame& frame) { return frame.data[0] & 0xE0U; 
 
 }  // namespace
 
-void SdoClient::start_upload(ObjectAddress object, TimePoint now, Transfer transfer) {
+void SdoClient::start_upload(ObjectAddress object, TimePoint now, Transfer transfer, std::size_t size) {
   object_ = object;
+  size_ = size;
   transfer_ = transfer;
   foreign_request_ = false;
   if (transfer == Transfer::block || transfer == Transfer::domain) return begin_block_upload(now);
@@ -124,8 +125,10 @@ void SdoClient::on_upload_initiate(const can::Frame& frame, TimePoint now) {
   const bool expedited = (frame.data[0] & 0x02U) != 0;
   const bool size_indicated = (frame.data[0] & 0x01U) != 0;
   if (expedited) {
-    const auto size = size_indicated ? 4 - (frame.data[0] >> 2U & 0x03) : 4;
-    finish(Bytes(frame.data.begin() + 4, frame.data.begin() + 4 + size));
+    const std::size_t size = size_indicated           ? 4U - (frame.data[0] >> 2U & 0x03U)
+                             : size_ > 0 && size_ < 4 ? size_
+                                                      : 4U;
+    finish(Bytes(frame.data.begin() + 4, frame.data.begin() + 4 + static_cast<std::ptrdiff_t>(size)));
     return;
   }
   if (transfer_ == Transfer::expedited) {

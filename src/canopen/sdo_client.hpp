@@ -38,8 +38,10 @@ class SdoClient {
   /// `node` 1..127; `timeout` is the longest silence of the server between two frames.
   SdoClient(std::uint8_t node, Duration timeout) : node_(node), timeout_(timeout) {}
 
-  /// Reads an object. Must not be called while a transfer is under way.
-  void start_upload(ObjectAddress object, TimePoint now, Transfer transfer = Transfer::automatic);
+  /// Reads an object. Must not be called while a transfer is under way. `size` is how many bytes the object
+  /// has, 1..4, if that is known: servers may answer in one frame without saying it.
+  void start_upload(ObjectAddress object, TimePoint now, Transfer transfer = Transfer::automatic,
+                    std::size_t size = 0);
   /// Writes an object. With Transfer::automatic: expedited up to 4 bytes, in segments or blocks above and for
   /// none. With Transfer::expedited, 1 to 4 bytes only.
   void start_download(ObjectAddress object, Bytes data, TimePoint now,
@@ -109,6 +111,7 @@ class SdoClient {
   std::size_t offset_ = 0;
   std::optional<std::size_t> announced_;  ///< Size of the whole transfer.
   Transfer transfer_ = Transfer::automatic;
+  std::size_t size_ = 0;          ///< Of the object that is read; 0: not known.
   bool foreign_request_ = false;  ///< Another master has asked this node since the transfer began.
   std::uint8_t toggle_ = 0;
   TimePoint deadline_ = kNever;

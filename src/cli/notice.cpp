@@ -39,7 +39,9 @@ struct Words {
 }  // namespace
 
 std::string notice_text(const canopen::NodeEvent& event, const drive::Profile* profile, bool chinese) {
-  return fmt::format("node {}: {}", event.node, std::visit(Words{event, profile, chinese}, event.what));
+  auto out = fmt::format("node {}: {}", event.node, std::visit(Words{event, profile, chinese}, event.what));
+  if (event.times > 1) out += fmt::format("; {} times in succession", event.times);
+  return out;
 }
 
 }  // namespace servoctl::cli

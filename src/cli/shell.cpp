@@ -222,6 +222,8 @@ Result<const drive::Profile*> Shell::profile(const std::string& family) {
 std::vector<std::string> Shell::take_notices(const drive::Profile* profile, bool chinese) {
   std::vector<std::string> out;
   if (session_ == nullptr) return out;
+  for (const auto report : session_->take_reports())
+    out.push_back(session_->url() + ": " + std::string(can::text(report)));
   for (const auto& event : session_->take_events()) out.push_back(notice_text(event, profile, chinese));
   return out;
 }

@@ -42,7 +42,21 @@ Result<std::optional<can::Frame>> Session::receive(TimePoint deadline) {
   if (!frame) return frame;
   if (*frame) watch_.on_frame(**frame, now());
   watch_.on_time(now());
+  if (const auto report = *frame ? can::parse_report(**frame) : std::nullopt)
+    if (const auto alive = on_report(*report); !alive) return tl::unexpected<Error>(alive.error());
   return frame;
+}
+
+Result<void> Session::on_report(can::ControllerReport report) {
+  if (report == can::ControllerReport::bus_off) {
+    last_report_.reset();
+    return fail(Errc::bus, url_ + ": " + std::string(can::text(report)),
+                "check bitrate, wiring and termination; then take the interface down and up again "
+                "(`ip link set … restart-ms 100` lets it come back by itself)");
+  }
+  if (report != last_report_) reports_.push_back(report);
+  last_report_ = report;
+  return {};
 }
 
 Result<bool> Session::wait(const std::function<bool()>& done, TimePoint deadline) {

@@ -7,12 +7,14 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/bytes.hpp"
 #include "base/object_address.hpp"
 #include "base/result.hpp"
 #include "can/bus.hpp"
+#include "can/controller_report.hpp"
 #include "canopen/node_watch.hpp"
 #include "canopen/sdo_client.hpp"
 
@@ -22,8 +24,9 @@ namespace servoctl::session {
 struct SdoRequest {
   std::uint8_t node = 0;
   ObjectAddress object;
-  std::optional<Bytes> data;
+  std::optional<Bytes> data = {};
   canopen::Transfer transfer = canopen::Transfer::automatic;
+  std::size_t size = 0;  ///< Bytes the object has, when known; for answers that do not say it.
 };
 
 struct Options {
@@ -58,6 +61,8 @@ class Session {
 
   /// What nodes told since the last call.
   std::vector<canopen::NodeEvent> take_events();
+  /// What the controller reported since the last call; the same report in succession is told once.
+  std::vector<can::ControllerReport> take_reports() { return std::exchange(reports_, {}); }
   canopen::NodeWatch& watch() { return watch_; }
 
   TimePoint now() const { return bus_->now(); }
@@ -72,13 +77,16 @@ class Session {
   friend class TransferRun;
 
   /// Receives one frame or lets the deadline pass; the listeners see it first. Errc::interrupted when
-  /// cancelled.
+  /// cancelled, Errc::bus when the controller reports bus-off: nothing will be answered then.
   Result<std::optional<can::Frame>> receive(TimePoint deadline);
+  Result<void> on_report(can::ControllerReport report);
 
   std::unique_ptr<can::Bus> bus_;
   std::string url_;
   Options options_;
   canopen::NodeWatch watch_;
+  std::vector<can::ControllerReport> reports_;
+  std::optional<can::ControllerReport> last_report_;
 };
 
 }  // namespace servoctl::session

@@ -93,7 +93,7 @@ void TransferRun::start(Channel& channel) {
   if (request.data)
     channel.client.start_download(request.object, *request.data, session_->now(), request.transfer);
   else
-    channel.client.start_upload(request.object, session_->now(), request.transfer);
+    channel.client.start_upload(request.object, session_->now(), request.transfer, request.size);
 }
 
 void TransferRun::finish(Channel& channel, Result<Bytes> result) {
@@ -104,7 +104,7 @@ void TransferRun::finish(Channel& channel, Result<Bytes> result) {
     // A server that knows no block transfer may meet its request with silence.
     const auto transfer =
         request.transfer == canopen::Transfer::domain ? canopen::Transfer::automatic : request.transfer;
-    channel.client.start_upload(request.object, session_->now(), transfer);
+    channel.client.start_upload(request.object, session_->now(), transfer, request.size);
     return;
   }
   if (silent && result.error().hint.empty()) result.error().hint = silence_hint(request.node);

@@ -22,21 +22,22 @@ std::string shown(ByteSpan data) {
   return fmt::format("{} … ({} bytes)", to_hex(data.first(kMost)), data.size());
 }
 
-/// A request that was not tried carries the object that failed before it.
+/// Whether it is unknown what became of the write: no answer, or one that is none. A request that was not
+/// tried carries the object that failed before it.
 bool answer_lost(const Error& error, const SdoRequest& request) {
-  return error.code == Errc::timeout && error.object == request.object;
+  return (error.code == Errc::timeout || error.code == Errc::protocol) && error.object == request.object;
 }
 
-Result<Written> after_lost_answer(const SdoRequest& request, const Result<Bytes>& found) {
+Result<Written> after_lost_answer(const SdoRequest& request, const Error& lost, const Result<Bytes>& found) {
+  const std::string_view what = lost.code == Errc::timeout ? "the write was sent, the answer never came"
+                                                           : "the write was sent, the answer was none";
   if (!found)
-    return fail(about(request, Errc::timeout,
-                      "the write was sent, the answer never came, and the value cannot be read back",
+    return fail(about(request, lost.code, fmt::format("{}, and the value cannot be read back", what),
                       "it is unknown whether the value was written: read it when the node answers again"));
   if (*found != *request.data)
-    return fail(about(
-        request, Errc::timeout,
-        fmt::format("the write was not answered and had no effect: the object still holds {}", shown(*found)),
-        "write it again"));
+    return fail(about(request, lost.code,
+                      fmt::format("{}, and it had no effect: the object still holds {}", what, shown(*found)),
+                      "write it again"));
   Written done;
   done.answer_lost = true;
   done.read_back = *found;
@@ -74,13 +75,15 @@ std::vector<Result<Written>> write_all(Session& session, std::span<const SdoRequ
       out.emplace_back(tl::unexpected<Error>(answers[i].error()));
     const bool lost = !answers[i] && answer_lost(answers[i].error(), requests[i]);
     if (!lost && !(answers[i] && read_back)) continue;
-    questions.push_back({requests[i].node, requests[i].object, {}});
+    questions.push_back(
+        {requests[i].node, requests[i].object, {}, requests[i].transfer, requests[i].data->size()});
     asked.push_back(i);
   }
   const auto found = session.transfer(questions);
   for (std::size_t k = 0; k < asked.size(); ++k) {
     const auto i = asked[k];
-    out[i] = answers[i] ? after_answer(requests[i], found[k]) : after_lost_answer(requests[i], found[k]);
+    out[i] = answers[i] ? after_answer(requests[i], found[k])
+                        : after_lost_answer(requests[i], answers[i].error(), found[k]);
   }
   return out;
 }

@@ -96,7 +96,38 @@ wait $client
 check "exit code when the interface goes down in mid-transfer" 3 $?
 contains "it says so" "vcan1" "$(cat "$work/down")"
 
-# 6. Ctrl-C ends a wait at once.
+# 6. Two controllers on one bus; one of them goes bus-off in mid-transfer and comes back.
+if [ "${VCAN_GUEST:-}" = uml ]; then
+  "$servoctl" sim gsd600@1 --bus can1 >"$work/sim3.out" 2>&1 &
+  wait_for "$work/sim3.out" can1
+  check "a drive behind another controller" 624 "$("$servoctl" read 0x6041 -n 1 --bus can0 --json | jq '.result[0].value')"
+  "$servoctl" read 0x6041 -n 9 --bus can0 --timeout 20s >"$work/busoff" 2>&1 &
+  client=$!
+  sleep 0.5
+  printf 'sb000256\r' >/dev/can0.inject
+  wait $client
+  check "exit code of a bus-off" 3 $?
+  contains "it says so" "bus-off" "$(cat "$work/busoff")"
+  ip link set can0 down
+  ip link set can0 up
+  check "the interface is back, and so is the drive" 624 "$("$servoctl" read 0x6041 -n 1 --bus can0 --json | jq '.result[0].value')"
+fi
+
+# 7. Objects of any size over the kernel's queue of ten frames, with frames of others in between.
+kill $(jobs -p) 2>/dev/null
+wait 2>/dev/null
+ip link set vcan0 txqueuelen 10
+head -c 20000 /dev/urandom >"$work/blob"
+SERVOCTL_DRIVES=$(dirname "$0")/../cli/data/drives "$servoctl" sim lab@3 >"$work/sim4.out" 2>&1 &
+wait_for "$work/sim4.out" vcan0
+cangen vcan0 -g 1 -I 083 -L 8 -n 3000 &
+"$servoctl" write 1F50:1 --from "$work/blob" -n 3 >/dev/null 2>&1
+check "a block write" 0 $?
+"$servoctl" read 1F50:1 --to "$work/back" -n 3 >/dev/null 2>&1
+check "a block read" 0 $?
+check "no byte of it differs" "" "$(cmp "$work/blob" "$work/back" 2>&1)"
+
+# 8. Ctrl-C ends a wait at once.
 ip link set vcan1 up
 "$servoctl" read 0x6041 -n 9 --bus vcan1 --timeout 20s >/dev/null 2>&1 &
 client=$!

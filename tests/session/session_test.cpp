@@ -155,7 +155,8 @@ TEST_F(SessionTest, SaysSoWhenAWriteWithoutAnswerHadNoEffect) {
   EXPECT_EQ(written.front().error().code, Errc::timeout);
   EXPECT_EQ(
       written.front().error().message,
-      "node 1, object 0x6060:0: the write was not answered and had no effect: the object still holds 01");
+      "node 1, object 0x6060:0: the write was sent, the answer never came, and it had no effect: the object "
+      "still holds 01");
 }
 
 TEST_F(SessionTest, SendsNoFurtherWriteAfterARefusedOne) {

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <initializer_list>
+#include <iterator>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "can/bus.hpp"
+
+namespace servoctl::session {
+
+/// A bus in virtual time on which a test says, frame by frame, what comes after what was sent. Frames are in
+/// candump notation.
+class ScriptedBus final : public can::Bus {
+ public:
+  /// Called for each frame sent; answers with arrive().
+  std::function<void(ScriptedBus&, const std::string& sent)> on_send;
+  std::vector<std::string> sent;
+
+  /// The frame is received after `delay`.
+  void arrive(std::string_view frame, Duration delay = std::chrono::milliseconds(1)) {
+    arrive(can::parse_frame(frame).value(), delay);
+  }
+  void arrive(const can::Frame& frame, Duration delay) {
+    const Coming coming{now_ + delay, frame};
+    auto at = coming_.end();
+    while (at != coming_.begin() && std::prev(at)->time > coming.time) --at;
+    coming_.insert(at, coming);
+  }
+
+  TimePoint now() const override { return now_; }
+  Result<void> send(const can::Frame& frame) override {
+    sent.push_back(can::to_string(frame));
+    if (on_send) on_send(*this, sent.back());
+    return {};
+  }
+  Result<std::optional<can::Frame>> receive(TimePoint deadline) override {
+    if (coming_.empty() || coming_.front().time > deadline) {
+      now_ = std::max(now_, std::min(deadline, now_ + std::chrono::hours(1)));
+      return std::optional<can::Frame>();
+    }
+    const auto next = coming_.front();
+    coming_.pop_front();
+    now_ = std::max(now_, next.time);
+    return std::optional(next.frame);
+  }
+
+ private:
+  struct Coming {
+    TimePoint time;
+    can::Frame frame;
+  };
+  TimePoint now_{std::chrono::seconds(1)};
+  std::deque<Coming> coming_;
+};
+
+}  // namespace servoctl::session
