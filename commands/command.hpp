@@ -87,8 +87,9 @@ struct Context {
   bool dry_run = false;             ///< Show what would be sent, send nothing.
   /// Asks before something that stores, resets, re-addresses or moves; Errc::refused when the answer is no.
   std::function<Result<void>(std::string_view question)> confirm;
-  /// Shows one sample of a command that goes on.
-  std::function<void(const report::Value&)> emit;
+  /// Shows one sample of a command that goes on: the line in text, the record with `-o jsonl`. With `--json`
+  /// nothing: the result has to carry the samples.
+  std::function<void(const report::Record& sample, std::string_view line)> emit;
 
   std::vector<Error>
       errors;  ///< Parts that failed while others succeeded; the first one makes the exit code.

@@ -21,6 +21,7 @@ extern const Command kNmtStop;
 extern const Command kNmtPreop;
 extern const Command kNmtReset;
 extern const Command kNmtResetComm;
+extern const Command kNmtWatch;
 extern const Command kDrives;
 extern const Command kEdsCheck;
 extern const Command kSim;
@@ -70,10 +71,10 @@ constexpr Parameter kGlobal[] = {
 
 std::span<const Command* const> registry() {
   static constexpr const Command* kAll[] = {
-      &kScan,      &kInfo,     &kStatus,     &kRead,        &kWrite,        &kObjects,
-      &kParamList, &kParamGet, &kParamSet,   &kParamSearch, &kParamExplain, &kFaultList,
-      &kNmtStart,  &kNmtStop,  &kNmtPreop,   &kNmtReset,    &kNmtResetComm, &kDrives,
-      &kEdsCheck,  &kSim,      &kCompletion, &kHelp,
+      &kScan,      &kInfo,     &kStatus,   &kRead,        &kWrite,        &kObjects,
+      &kParamList, &kParamGet, &kParamSet, &kParamSearch, &kParamExplain, &kFaultList,
+      &kNmtStart,  &kNmtStop,  &kNmtPreop, &kNmtReset,    &kNmtResetComm, &kNmtWatch,
+      &kDrives,    &kEdsCheck, &kSim,      &kCompletion,  &kHelp,
   };
   return kAll;
 }

@@ -18,8 +18,10 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   if (!cell) return tl::unexpected<Error>(cell.error());
   report::List nodes;
   for (const auto& drive : cell->drives) nodes.emplace_back(drive->node());
-  context.emit(report::Record{
-      {"bus", context.session->url()}, {"nodes", nodes}, {"stop", "Ctrl-C", report::Show::text}});
+  const auto count = nodes.size();
+  context.emit(
+      {{"bus", context.session->url()}, {"nodes", std::move(nodes)}},
+      fmt::format("{} drive{} on {}; Ctrl-C ends it", count, count == 1 ? "" : "s", context.session->url()));
   if (const auto served = session::serve(*context.session, *cell); !served)
     return tl::unexpected<Error>(served.error());
   return report::Value();

@@ -9,7 +9,7 @@ _servoctl_scan() {
       continue
     fi
     case $word in
-      --bus|-b|--node|-n|--drive|-d|--timeout|--retries|--output|-o|--lang|--trace|--type|--to|--transfer|--from) skip=$word ;;
+      --bus|-b|--node|-n|--drive|-d|--timeout|--retries|--output|-o|--lang|--trace|--type|--to|--transfer|--from|--for|--guard|--life) skip=$word ;;
       -*) ;;
       *)
         case $command in
@@ -32,6 +32,9 @@ _servoctl_scan() {
       --to) source='files' ;;
       --transfer) source='=auto expedited segmented block' ;;
       --from) source='files' ;;
+      --for) source='none' ;;
+      --guard) source='none' ;;
+      --life) source='none' ;;
     esac
     return
   fi
@@ -39,7 +42,7 @@ _servoctl_scan() {
     '') source='=scan info status read write objects param fault nmt drives eds sim completion help' ;;
     param) source='=list get set search explain' ;;
     fault) source='=list' ;;
-    nmt) source='=start stop preop reset reset-comm' ;;
+    nmt) source='=start stop preop reset reset-comm watch' ;;
     eds) source='=check' ;;
     'read') source='objects' ;;
     'write') source='objects' ;;
@@ -63,6 +66,7 @@ _servoctl_scan() {
     'nmt preop') options+=' --wait' ;;
     'nmt reset') options+=' --wait' ;;
     'nmt reset-comm') options+=' --wait' ;;
+    'nmt watch') options+=' --for --guard --life' ;;
   esac
 }
 

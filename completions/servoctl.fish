@@ -16,7 +16,7 @@ function __servoctl_path # the words that are neither options nor their values
     for word in (commandline -opc)[2..]
         if test $skip = 1
             set skip 0
-        else if contains -- $word --bus -b --node -n --drive -d --timeout --retries --output -o --lang --trace --type --to --transfer --from
+        else if contains -- $word --bus -b --node -n --drive -d --timeout --retries --output -o --lang --trace --type --to --transfer --from --for --guard --life
             set skip 1
         else if not string match -q -- '-*' $word
             set path $path $word
@@ -96,6 +96,10 @@ complete -c servoctl -n '__servoctl_at nmt' -a reset -d 'Restart nodes (reset no
 complete -c servoctl -n '__servoctl_in nmt reset' -l wait -d 'wait until a heartbeat or the boot-up message confirms it'
 complete -c servoctl -n '__servoctl_at nmt' -a reset-comm -d 'Restart the communication of nodes; asks first'
 complete -c servoctl -n '__servoctl_in nmt reset-comm' -l wait -d 'wait until a heartbeat or the boot-up message confirms it'
+complete -c servoctl -n '__servoctl_at nmt' -a watch -d 'Watch whether nodes are alive: heartbeat or node guarding'
+complete -c servoctl -n '__servoctl_in nmt watch' -l for -x -d 'how long; until Ctrl-C unless said'
+complete -c servoctl -n '__servoctl_in nmt watch' -l guard -x -d 'ask by node guarding, once in this time'
+complete -c servoctl -n '__servoctl_in nmt watch' -l life -x -d 'lost after so many guard times without answer (default 3)'
 complete -c servoctl -n __servoctl_at -a drives -d 'List the drive families servoctl knows'
 complete -c servoctl -n '__servoctl_at eds' -a check -d 'Check EDS and DCF files against CiA 306'
 complete -c servoctl -n '__servoctl_in eds check' -r -F

@@ -74,6 +74,14 @@ std::optional<ErrorControl> parse_error_control(const can::Frame& frame) {
   return out;
 }
 
+can::Frame guarding_request(std::uint8_t node) {
+  can::Frame frame;
+  frame.id = kErrorControl + node;
+  frame.size = 1;
+  frame.remote = true;
+  return frame;
+}
+
 can::Frame heartbeat_frame(std::uint8_t node, NmtState state) {
   return can::make_frame(kErrorControl + node, std::array{static_cast<std::uint8_t>(state)});
 }

@@ -52,5 +52,7 @@ struct ErrorControl {
 };
 std::optional<ErrorControl> parse_error_control(const can::Frame& frame);
 can::Frame heartbeat_frame(std::uint8_t node, NmtState state);
+/// The remote frame by which a master asks a guarded node for its state (CiA 301, 7.2.8.3.2.1).
+can::Frame guarding_request(std::uint8_t node);
 
 }  // namespace servoctl::canopen

@@ -5,7 +5,7 @@
 namespace servoctl::canopen {
 
 TimePoint NodeWatch::Node::deadline() const {
-  if (lost || intervals < 2) return kNever;
+  if (lost || guarded || intervals < 2) return kNever;
   return *last + std::max<Duration>(3 * period, period + std::chrono::milliseconds(100));
 }
 
@@ -71,9 +71,10 @@ std::optional<NodeEvent> NodeWatch::take_event() {
 }
 
 void NodeWatch::forget(std::uint8_t node) {
-  const auto boots = nodes_[node].boots;
+  const auto before = nodes_[node];
   nodes_[node] = {};
-  nodes_[node].boots = boots;
+  nodes_[node].boots = before.boots;
+  nodes_[node].guarded = before.guarded;
 }
 
 }  // namespace servoctl::canopen

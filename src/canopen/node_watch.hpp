@@ -22,9 +22,17 @@ struct NodeEvent {
   struct HeartbeatLost {
     Duration silence;
   };
+  /// A guarded node has not answered in its life time; or its answers did not change their toggle bit.
+  struct GuardingLost {
+    Duration silence;
+    bool wrong_toggle;
+  };
+  struct GuardingBack {
+    NmtState state;
+  };
   TimePoint time;
   std::uint8_t node = 0;
-  std::variant<BootUp, StateChange, HeartbeatLost, Emergency> what;
+  std::variant<BootUp, StateChange, HeartbeatLost, Emergency, GuardingLost, GuardingBack> what;
   std::uint32_t times = 1;  ///< How often in succession the node told the same emergency.
 };
 
@@ -48,6 +56,10 @@ class NodeWatch {
   std::uint32_t boots(std::uint8_t node) const { return nodes_[node].boots; }
   /// Heartbeats heard from the node so far, boot-up not counted.
   std::uint32_t heartbeats(std::uint8_t node) const { return nodes_[node].heartbeats; }
+  /// The longest interval seen between two heartbeats; zero until two were.
+  Duration period(std::uint8_t node) const { return nodes_[node].period; }
+  /// The node answers a master's questions and sends nothing by itself: its silence means nothing.
+  void set_guarded(std::uint8_t node, bool guarded) { nodes_[node].guarded = guarded; }
   /// Forgets the state and the period of the node, before it is told to reset.
   void forget(std::uint8_t node);
 
@@ -60,6 +72,7 @@ class NodeWatch {
     Duration period{};              ///< Longest interval between two heartbeats.
     std::uint32_t intervals = 0;    ///< Intervals measured.
     bool lost = false;
+    bool guarded = false;
     TimePoint deadline() const;
   };
   void on_emergency(const Emergency& emergency, TimePoint now);

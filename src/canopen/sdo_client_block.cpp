@@ -138,7 +138,8 @@ void SdoClient::on_block_download_data(const can::Frame& frame, TimePoint now) {
     return;
   }
   auto end =
-      sdo_segment(kSdoRequest + node_, static_cast<std::uint8_t>(0xC1U | sender_.unused_bytes() << 2U));
+      sdo_segment(kSdoRequest + node_,
+                  static_cast<std::uint8_t>(0xC1U | static_cast<unsigned>(sender_.unused_bytes()) << 2U));
   const auto crc = crc_ ? sender_.crc() : std::uint16_t{0};
   end.data[1] = static_cast<std::uint8_t>(crc & 0xFFU);
   end.data[2] = static_cast<std::uint8_t>(crc >> 8);

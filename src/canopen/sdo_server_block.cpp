@@ -52,7 +52,9 @@ void SdoServer::on_block_upload_acknowledge(const can::Frame& frame, TimePoint n
     return abort(object_, code);
   deadline_ = kNever;
   if (!sender_.is_done()) return;
-  auto end = sdo_segment(kSdoAnswer + node_, static_cast<std::uint8_t>(0xC1U | sender_.unused_bytes() << 2U));
+  auto end =
+      sdo_segment(kSdoAnswer + node_,
+                  static_cast<std::uint8_t>(0xC1U | static_cast<unsigned>(sender_.unused_bytes()) << 2U));
   const auto crc = crc_ ? sender_.crc() : std::uint16_t{0};
   end.data[1] = static_cast<std::uint8_t>(crc & 0xFFU);
   end.data[2] = static_cast<std::uint8_t>(crc >> 8);

@@ -55,7 +55,10 @@ Result<Settings> apply_options(Settings base, const commands::Arguments& argumen
                   fmt::format("--retries: '{}' is no number of 0 to 100", arguments.text("--retries")));
     base.retries = static_cast<std::uint32_t>(*retries);
   }
-  if (arguments.has("--output")) base.json = arguments.text("--output") != "text";
+  if (arguments.has("--output")) {
+    base.json = arguments.text("--output") != "text";
+    base.samples = arguments.text("--output") == "jsonl";
+  }
   if (arguments.has("--json")) base.json = true;
   if (arguments.has("--lang")) base.chinese = arguments.text("--lang") == "zh";
   base.yes = base.yes || arguments.has("--yes");

@@ -20,6 +20,7 @@ struct Settings {
   Duration timeout = std::chrono::milliseconds(500);
   std::uint32_t retries = 1;
   bool json = false;
+  bool samples = false;  ///< One JSON document a sample.
   bool chinese = false;
   bool yes = false;
   bool read_only = false;

@@ -8,8 +8,8 @@
 #include "base/text.hpp"
 #include "can/socketcan.hpp"
 #include "canopen/cob_id.hpp"
-#include "cli/notice.hpp"
 #include "commands/help.hpp"
+#include "commands/notice.hpp"
 #include "commands/records.hpp"
 #include "session/open_bus.hpp"
 #include "session/scan.hpp"
@@ -98,9 +98,11 @@ Result<Value> Shell::execute(Run& run, const commands::Arguments& arguments) {
     if (console_->ask(question)) return {};
     return fail(Errc::refused, "not confirmed; nothing was sent");
   };
-  context.emit = [this, &run](const Value& value) {
-    console_->out(run.settings.json ? report::to_json(value) + "\n"
-                                    : report::to_text(value, console_->width()));
+  context.emit = [this, &run](const report::Record& sample, std::string_view line) {
+    if (run.settings.samples)
+      console_->out(report::to_json(sample) + "\n");
+    else if (!run.settings.json)
+      console_->out(std::string(line) + "\n");
   };
   return run.command->run(context, arguments);
 }
@@ -224,7 +226,8 @@ std::vector<std::string> Shell::take_notices(const drive::Profile* profile, bool
   if (session_ == nullptr) return out;
   for (const auto report : session_->take_reports())
     out.push_back(session_->url() + ": " + std::string(can::text(report)));
-  for (const auto& event : session_->take_events()) out.push_back(notice_text(event, profile, chinese));
+  for (const auto& event : session_->take_events())
+    out.push_back(commands::notice_text(event, profile, chinese));
   return out;
 }
 

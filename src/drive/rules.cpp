@@ -6,6 +6,10 @@
 
 #define TOML_HEADER_ONLY 1  // The shared library is built with exceptions.
 #define TOML_EXCEPTIONS 0
+// toml++ 3.3 asserts (or, without assertions, assumes) of a key what its input need not hold: "[=]". The code
+// behind it reports the error in order.
+#undef NDEBUG
+#define TOML_ASSERT(expression) static_cast<void>(0)
 #include <toml++/toml.h>
 
 #include "base/number.hpp"
@@ -130,6 +134,9 @@ class RulesReader {
             });
     if (inner_) return tl::unexpected<Error>(*inner_);
     if (!done) return tl::unexpected<Error>(done.error());
+    if (format == 0 || rules_.family.empty())
+      return fail(Errc::file, fmt::format("{}: 'format' or 'family' is missing", file_),
+                  "begin the file with format = 1 and family = \"NAME\"");
     return std::move(rules_);
   }
 
@@ -165,10 +172,12 @@ class RulesReader {
   }
 
   Result<void> nmt(const Reader& reader) {
-    return reader.read({{"node_id", [&](const auto& n) { return get(n, rules_.node_id_parameter); }},
-                        {"bitrate", [&](const auto& n) { return get(n, rules_.bitrate_parameter); }},
-                        {"autostart", [&](const auto& n) { return get(n, rules_.autostart_parameter); }},
-                        {"max_nodes", [&](const auto& n) { return get_int(n, rules_.max_nodes); }}});
+    return reader.read(
+        {{"node_id", [&](const auto& n) { return get(n, rules_.node_id_parameter); }},
+         {"bitrate", [&](const auto& n) { return get(n, rules_.bitrate_parameter); }},
+         {"autostart", [&](const auto& n) { return get(n, rules_.autostart_parameter); }},
+         {"guarding_alarm", [&](const auto& n) { return get(n, rules_.guarding_alarm_parameter); }},
+         {"max_nodes", [&](const auto& n) { return get_int(n, rules_.max_nodes); }}});
   }
 
   Result<void> mirror(const Reader& reader) {

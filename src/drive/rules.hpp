@@ -56,6 +56,7 @@ struct Rules {
   std::string node_id_parameter;
   std::string bitrate_parameter;
   std::string autostart_parameter;
+  std::string guarding_alarm_parameter;  ///< 0: the end of life guarding raises no fault.
   std::uint32_t max_nodes = 127;
 
   std::vector<ObjectAddress> mirror_add_node_id;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "canopen/cob_id.hpp"
 #include "session/transfer_run.hpp"
 
 namespace servoctl::session {
@@ -38,10 +39,14 @@ Result<std::optional<can::Frame>> Session::receive(TimePoint deadline) {
     if (options_.cancelled()) return fail(Errc::interrupted, "interrupted");
     deadline = std::min(deadline, now() + kCancelSlice);
   }
-  auto frame = bus_->receive(std::min(deadline, watch_.deadline()));
+  while (const auto question = guard_.take_frame())
+    if (const auto sent = bus_->send(*question); !sent) return tl::unexpected<Error>(sent.error());
+  auto frame = bus_->receive(std::min({deadline, watch_.deadline(), guard_.deadline()}));
   if (!frame) return frame;
   if (*frame) watch_.on_frame(**frame, now());
+  if (*frame) guard_.on_frame(**frame, now());
   watch_.on_time(now());
+  guard_.on_time(now());
   if (const auto report = *frame ? can::parse_report(**frame) : std::nullopt)
     if (const auto alive = on_report(*report); !alive) return tl::unexpected<Error>(alive.error());
   return frame;
@@ -77,10 +82,27 @@ Result<void> Session::listen() {
 
 std::vector<canopen::NodeEvent> Session::take_events() {
   std::vector<canopen::NodeEvent> out;
-  while (auto event = watch_.take_event()) out.push_back(*event);
+  while (const auto event = watch_.take_event()) out.push_back(*event);
+  while (const auto event = guard_.take_event()) out.push_back(*event);
+  std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
   return out;
 }
 
-TimePoint Session::next_event() const { return std::min(bus_->next_event(), watch_.deadline()); }
+void Session::guard(std::uint8_t node, canopen::GuardOptions options) {
+  watch_.set_guarded(node, true);
+  guard_.start(node, options, now());
+  guard_.on_time(now());
+}
+
+void Session::stop_guarding() {
+  for (std::uint8_t node = canopen::kFirstNode; node <= canopen::kLastNode; ++node) {
+    watch_.set_guarded(node, false);
+    guard_.stop(node);
+  }
+}
+
+TimePoint Session::next_event() const {
+  return std::min({bus_->next_event(), watch_.deadline(), guard_.deadline()});
+}
 
 }  // namespace servoctl::session

@@ -15,6 +15,7 @@
 #include "base/result.hpp"
 #include "can/bus.hpp"
 #include "can/controller_report.hpp"
+#include "canopen/node_guard.hpp"
 #include "canopen/node_watch.hpp"
 #include "canopen/sdo_client.hpp"
 
@@ -64,6 +65,9 @@ class Session {
   /// What the controller reported since the last call; the same report in succession is told once.
   std::vector<can::ControllerReport> take_reports() { return std::exchange(reports_, {}); }
   canopen::NodeWatch& watch() { return watch_; }
+  /// Guards a node in every wait from now on; what is noticed is among the events.
+  void guard(std::uint8_t node, canopen::GuardOptions options);
+  void stop_guarding();
 
   TimePoint now() const { return bus_->now(); }
   can::Bus& bus() { return *bus_; }
@@ -85,6 +89,7 @@ class Session {
   std::string url_;
   Options options_;
   canopen::NodeWatch watch_;
+  canopen::NodeGuard guard_;
   std::vector<can::ControllerReport> reports_;
   std::optional<can::ControllerReport> last_report_;
 };

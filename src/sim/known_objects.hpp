@@ -9,6 +9,8 @@ namespace servoctl::sim {
 
 inline constexpr ObjectAddress kErrorRegister{0x1001, 0};
 inline constexpr ObjectAddress kErrorHistory{0x1003, 0};
+inline constexpr ObjectAddress kGuardTime{0x100C, 0};
+inline constexpr ObjectAddress kLifeFactor{0x100D, 0};
 inline constexpr ObjectAddress kStore{0x1010, 1};
 inline constexpr ObjectAddress kRestore{0x1011, 1};
 inline constexpr ObjectAddress kHeartbeatTime{0x1017, 0};

@@ -18,6 +18,8 @@ namespace {
 /// From a reset to the boot-up message.
 constexpr Duration kBootTime = std::chrono::milliseconds(50);
 constexpr std::size_t kHistorySize = 8;
+/// EMCY of a life guarding or heartbeat error (CiA 301, table 26).
+constexpr std::uint16_t kLifeGuardError = 0x8130;
 
 canopen::SdoServer::Options server_options(const drive::Rules& rules) {
   canopen::SdoServer::Options options;
@@ -35,7 +37,8 @@ SimDrive::SimDrive(const drive::Profile& profile, std::uint8_t node, Memory& mem
       node_(node),
       values_(profile),
       power_(profile.rules),
-      server_(node, *this, server_options(profile.rules)) {
+      server_(node, *this, server_options(profile.rules)),
+      error_control_(node) {
   auto& cells = memory_->cells(key_);
   const auto* node_id = parameter(profile.rules.node_id_parameter);
   if (node_id == nullptr || !node_id->object || cells.find(*node_id->object) != cells.end()) return;
@@ -50,6 +53,8 @@ void SimDrive::on_frame(const can::Frame& frame, TimePoint now) {
     if (message->node == 0 || message->node == node_) on_nmt(message->command, now);
     return;
   }
+  error_control_.on_frame(frame, now);
+  while (const auto answer = error_control_.take_frame()) tx_.push_back(*answer);
   if (nmt_ == NmtState::stopped) return;  // CiA 301, table 39: no SDO in this state.
   server_.on_frame(frame, now);
   collect_answers(now);
@@ -87,17 +92,17 @@ void SimDrive::on_time(TimePoint now) {
     tx_.push_back(late_.front().frame);
     late_.pop_front();
   }
-  if (now >= next_heartbeat_) {
-    tx_.push_back(canopen::heartbeat_frame(node_, nmt_));
-    plan_heartbeat(now);
-  }
+  error_control_.on_time(now);
+  while (const auto heartbeat = error_control_.take_frame()) tx_.push_back(*heartbeat);
+  if (error_control_.take_life_lost()) on_life_lost(now);
   if (planned_fault_ && now >= planned_fault_->time)
     raise_fault(std::exchange(planned_fault_, std::nullopt)->code, {}, now);
 }
 
 TimePoint SimDrive::deadline() const {
   if (misbehaviour_.silent) return kNever;
-  auto next = std::min({boot_at_, power_.deadline(), server_.deadline(), next_heartbeat_, planned_silence_});
+  auto next = std::min(
+      {boot_at_, power_.deadline(), server_.deadline(), error_control_.deadline(), planned_silence_});
   if (!late_.empty()) next = std::min(next, late_.front().time);
   if (planned_fault_) next = std::min(next, planned_fault_->time);
   return next;
@@ -133,38 +138,13 @@ void SimDrive::power_on(TimePoint now) {
   }
   load_mirrors();
   server_ = canopen::SdoServer(node_, *this, server_options(profile_->rules));
-  tx_.push_back(canopen::heartbeat_frame(node_, NmtState::initialising));
   const auto* autostart = parameter(profile_->rules.autostart_parameter);
   const bool start = autostart != nullptr && autostart->object && effective(*autostart->object) == 1;
-  set_nmt(start ? NmtState::operational : NmtState::pre_operational);
-  plan_heartbeat(now);
-}
-
-void SimDrive::restore_if_asked() {
-  auto& cells = memory_->cells(key_);
-  const auto set = [&](const std::string& id) {
-    const auto* p = parameter(id);
-    const auto cell = p != nullptr && p->object ? cells.find(*p->object) : cells.end();
-    return cell != cells.end() && load_le(cell->second) == 1;
-  };
-  if (set(profile_->rules.restore_defaults_parameter)) cells.clear();
-  if (set(profile_->rules.clear_alarms_parameter))
-    cells.erase(*parameter(profile_->rules.clear_alarms_parameter)->object);
-  (void)memory_->save();
-}
-
-void SimDrive::load_mirrors() {
-  const auto& with_node = profile_->rules.mirror_add_node_id;
-  for (const auto& p : profile_->parameters) {
-    if (!p.mirror || !p.object || !values_.has(*p.mirror)) continue;
-    const bool add = std::find(with_node.begin(), with_node.end(), *p.mirror) != with_node.end();
-    values_.set_number(*p.mirror, effective(*p.object) + (add ? node_ : 0U));
-  }
-}
-
-std::uint64_t SimDrive::effective(ObjectAddress object) const {
-  const auto found = at_start_.find(object);
-  return found == at_start_.end() ? values_.number(object) : found->second;
+  nmt_ = start ? NmtState::operational : NmtState::pre_operational;
+  error_control_ = canopen::ErrorControlSlave(node_);
+  error_control_.boot(nmt_, now);
+  tx_.push_back(*error_control_.take_frame());
+  set_up_error_control(now);
 }
 
 void SimDrive::on_nmt(NmtCommand command, TimePoint now) {
@@ -176,18 +156,29 @@ void SimDrive::on_nmt(NmtCommand command, TimePoint now) {
     case NmtCommand::reset_communication:
       full_restart_ = command == NmtCommand::reset_node;
       boot_at_ = now + kBootTime;
-      next_heartbeat_ = kNever;
+      error_control_.stop();
       server_.reset();
       late_.clear();
       nmt_ = NmtState::initialising;
   }
 }
 
-void SimDrive::set_nmt(NmtState state) { nmt_ = state; }
+void SimDrive::set_nmt(NmtState state) {
+  nmt_ = state;
+  error_control_.set_state(state);
+}
 
-void SimDrive::plan_heartbeat(TimePoint now) {
-  const auto period = std::chrono::milliseconds(values_.number(kHeartbeatTime));
-  next_heartbeat_ = period.count() == 0 ? kNever : now + period;
+void SimDrive::set_up_error_control(TimePoint now) {
+  error_control_.set_heartbeat(std::chrono::milliseconds(values_.number(kHeartbeatTime)), now);
+  error_control_.set_life_time(std::chrono::milliseconds(values_.number(kGuardTime)),
+                               static_cast<std::uint32_t>(values_.number(kLifeFactor)));
+}
+
+/// The master has stopped asking.
+void SimDrive::on_life_lost(TimePoint now) {
+  const auto* alarm = parameter(profile_->rules.guarding_alarm_parameter);
+  const bool masked = alarm != nullptr && alarm->object && effective(*alarm->object) == 0;
+  if (!masked) raise_fault(kLifeGuardError, {}, now);
 }
 
 std::uint32_t SimDrive::read(ObjectAddress object, Bytes& out) {
@@ -244,23 +235,13 @@ std::uint32_t SimDrive::write_command(ObjectAddress object, ByteSpan data, bool&
   return 0;
 }
 
-std::uint32_t SimDrive::save_objects() {
-  auto& cells = memory_->cells(key_);
-  for (const auto& object : profile_->dictionary.objects())
-    for (const auto& entry : object.entries)
-      if (entry.access == od::Access::rw && !entry.command && !entry.is_volatile &&
-          entry.address != kControlword)
-        cells[entry.address] = values_.get(entry.address);
-  return memory_->save() ? 0 : abort::kCannotStore;
-}
-
 void SimDrive::after_write(ObjectAddress object, ByteSpan data) {
   const auto* parameter = profile_->parameter(object);
   if (parameter != nullptr && parameter->access == od::Access::rw && !parameter->is_volatile) {
     memory_->cells(key_)[object] = Bytes(data.begin(), data.end());
     (void)memory_->save();
   }
-  if (object == kHeartbeatTime) plan_heartbeat(now_);
+  if (object == kHeartbeatTime || object == kGuardTime || object == kLifeFactor) set_up_error_control(now_);
   if (object == kModes) values_.set(kModeDisplay, data);
   if (object == kControlword) {
     const auto& gate = profile_->rules.fault_reset_enabled_by;

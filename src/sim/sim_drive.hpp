@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "canopen/emergency.hpp"
+#include "canopen/error_control.hpp"
 #include "canopen/nmt.hpp"
 #include "canopen/sdo_server.hpp"
 #include "drive/profile.hpp"
@@ -75,7 +76,8 @@ class SimDrive final : public Device, private canopen::ObjectStore {
   void on_nmt(canopen::NmtCommand command, TimePoint now);
   void set_nmt(canopen::NmtState state);
   void collect_answers(TimePoint now);
-  void plan_heartbeat(TimePoint now);
+  void set_up_error_control(TimePoint now);
+  void on_life_lost(TimePoint now);
   void send_emergency(std::uint16_t code, std::array<std::uint8_t, 5> vendor);
   std::uint64_t effective(ObjectAddress object) const;
   const od::Parameter* parameter(const std::string& id) const {
@@ -90,11 +92,11 @@ class SimDrive final : public Device, private canopen::ObjectStore {
   std::unordered_map<ObjectAddress, std::uint64_t> at_start_;  ///< Parameters that take effect by a restart.
   PowerStage power_;
   canopen::SdoServer server_;
+  canopen::ErrorControlSlave error_control_;
   canopen::NmtState nmt_ = canopen::NmtState::initialising;
   TimePoint now_{};
   TimePoint boot_at_ = TimePoint::min();  ///< When the boot-up message is due; kNever once it is sent.
   bool full_restart_ = true;
-  TimePoint next_heartbeat_ = kNever;
   std::deque<std::uint32_t> history_;
   std::deque<can::Frame> tx_;
   std::deque<Delayed> late_;

@@ -80,5 +80,18 @@ TEST(Rules, ThatAreNoTomlAreRefusedWithLine) {
   EXPECT_EQ(rules.error().line, 2U);
 }
 
+TEST(Rules, MayBeAnyGarbage) {
+  for (const auto* text : {"[=]", "[[.]]", "= 1", "[a", "\"", "a = [", "\xFF\xFE"})
+    EXPECT_FALSE(parse_rules(text, "x.toml")) << text;
+}
+
+TEST(Rules, NameTheirFormatAndFamily) {
+  for (const auto* text : {"", "family = \"x1\"", "format = 1", "format = 1\nfamily = \"\""}) {
+    const auto rules = parse_rules(text, "x1.toml");
+    ASSERT_FALSE(rules) << text;
+    EXPECT_EQ(rules.error().message, "x1.toml: 'format' or 'family' is missing");
+  }
+}
+
 }  // namespace
 }  // namespace servoctl::drive

@@ -46,6 +46,9 @@ sleep 0.1
 contains "the read as candump saw it" "601#4041600000000000" "$(cat "$work/dump")"
 contains "its answer" "581#4B41600070020000" "$(cat "$work/dump")"
 contains "the boot-up" "701#00" "$(cat "$work/dump")"
+check "node guarding finds both drives alive" "0 0" "$("$servoctl" nmt watch -n 1,5 --guard 100ms --for 1s --json | jq -r '[.result.nodes[].lost] | join(" ")')"
+contains "it asks by remote frames" "701#R" "$(cat "$work/dump")"
+contains "the toggle bit alternates" "701#FF" "$(cat "$work/dump")"
 
 # 2. Hand-written frames against the simulated drive.
 : >"$work/dump2"

@@ -1,11 +1,11 @@
-#include "cli/notice.hpp"
+#include "commands/notice.hpp"
 
 #include <fmt/format.h>
 
 #include "base/bytes.hpp"
 #include "base/duration.hpp"
 
-namespace servoctl::cli {
+namespace servoctl::commands {
 namespace {
 
 std::string emergency_words(const canopen::Emergency& e, const drive::Profile* profile, bool chinese) {
@@ -28,6 +28,16 @@ struct Words {
     const auto silence = std::chrono::duration_cast<std::chrono::milliseconds>(lost.silence);
     return fmt::format("heartbeat lost: silent for {} ms", silence.count());
   }
+  std::string operator()(const canopen::NodeEvent::GuardingLost& lost) const {
+    const auto silence = std::chrono::duration_cast<std::chrono::milliseconds>(lost.silence).count();
+    return lost.wrong_toggle
+               ? fmt::format("node guarding lost: its answers do not change their toggle bit, for {} ms",
+                             silence)
+               : fmt::format("node guarding lost: no answer for {} ms", silence);
+  }
+  std::string operator()(const canopen::NodeEvent::GuardingBack& back) const {
+    return fmt::format("answers node guarding again, {}", canopen::name(back.state));
+  }
   std::string operator()(const canopen::Emergency& e) const {
     if (e.is_reset()) return "EMCY 0x0000: error reset or no error";
     return fmt::format("EMCY 0x{:04X} {}; error register 0x{:02X} ({}); vendor bytes {}", e.code,
@@ -44,4 +54,4 @@ std::string notice_text(const canopen::NodeEvent& event, const drive::Profile* p
   return out;
 }
 
-}  // namespace servoctl::cli
+}  // namespace servoctl::commands

@@ -1,0 +1,80 @@
+#include "canopen/node_guard.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "canopen/cob_id.hpp"
+#include "canopen/nmt.hpp"
+
+namespace servoctl::canopen {
+
+void NodeGuard::start(std::uint8_t node, GuardOptions options, TimePoint now) {
+  nodes_[node] = {};
+  nodes_[node].active = true;
+  nodes_[node].options = options;
+  nodes_[node].next = now;
+}
+
+TimePoint NodeGuard::lost_at(const Node& node) const {
+  return node.asked && !node.lost ? *node.asked + node.options.life_factor * node.options.period : kNever;
+}
+
+void NodeGuard::on_frame(const can::Frame& frame, TimePoint now) {
+  const auto message = parse_error_control(frame);
+  if (!message || !nodes_[message->node].active) return;
+  auto& node = nodes_[message->node];
+  if (message->boot_up) {
+    node.toggle.reset();
+    return;
+  }
+  const std::uint8_t toggle = frame.data[0] >> 7U;
+  if (node.toggle && toggle != *node.toggle) {
+    node.wrong_toggle = true;
+    return;
+  }
+  node.toggle = toggle ^ 1U;
+  node.asked.reset();
+  node.wrong_toggle = false;
+  if (std::exchange(node.lost, false))
+    events_.push_back({now, message->node, NodeEvent::GuardingBack{message->state}});
+}
+
+void NodeGuard::on_time(TimePoint now) {
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    auto& node = nodes_[i];
+    if (!node.active) continue;
+    const auto id = static_cast<std::uint8_t>(i);
+    if (now >= lost_at(node)) {
+      node.lost = true;
+      node.toggle.reset();
+      events_.push_back({now, id, NodeEvent::GuardingLost{now - *node.asked, node.wrong_toggle}});
+    }
+    if (now < node.next) continue;
+    if (!node.asked) node.asked = now;
+    node.next = now + node.options.period;
+    tx_.push_back(guarding_request(id));
+  }
+}
+
+std::optional<can::Frame> NodeGuard::take_frame() {
+  if (tx_.empty()) return std::nullopt;
+  const auto frame = tx_.front();
+  tx_.pop_front();
+  return frame;
+}
+
+TimePoint NodeGuard::deadline() const {
+  TimePoint next = kNever;
+  for (const auto& node : nodes_)
+    if (node.active) next = std::min({next, node.next, lost_at(node)});
+  return next;
+}
+
+std::optional<NodeEvent> NodeGuard::take_event() {
+  if (events_.empty()) return std::nullopt;
+  const auto event = events_.front();
+  events_.pop_front();
+  return event;
+}
+
+}  // namespace servoctl::canopen

@@ -1,0 +1,48 @@
+// What a simulated drive keeps when its power goes, and what it makes of that when it starts.
+#include <algorithm>
+
+#include "canopen/sdo_abort.hpp"
+#include "sim/known_objects.hpp"
+#include "sim/sim_drive.hpp"
+
+namespace servoctl::sim {
+namespace abort = canopen::sdo_abort;
+
+void SimDrive::restore_if_asked() {
+  auto& cells = memory_->cells(key_);
+  const auto set = [&](const std::string& id) {
+    const auto* p = parameter(id);
+    const auto cell = p != nullptr && p->object ? cells.find(*p->object) : cells.end();
+    return cell != cells.end() && load_le(cell->second) == 1;
+  };
+  if (set(profile_->rules.restore_defaults_parameter)) cells.clear();
+  if (set(profile_->rules.clear_alarms_parameter))
+    cells.erase(*parameter(profile_->rules.clear_alarms_parameter)->object);
+  (void)memory_->save();
+}
+
+void SimDrive::load_mirrors() {
+  const auto& with_node = profile_->rules.mirror_add_node_id;
+  for (const auto& p : profile_->parameters) {
+    if (!p.mirror || !p.object || !values_.has(*p.mirror)) continue;
+    const bool add = std::find(with_node.begin(), with_node.end(), *p.mirror) != with_node.end();
+    values_.set_number(*p.mirror, effective(*p.object) + (add ? node_ : 0U));
+  }
+}
+
+std::uint64_t SimDrive::effective(ObjectAddress object) const {
+  const auto found = at_start_.find(object);
+  return found == at_start_.end() ? values_.number(object) : found->second;
+}
+
+std::uint32_t SimDrive::save_objects() {
+  auto& cells = memory_->cells(key_);
+  for (const auto& object : profile_->dictionary.objects())
+    for (const auto& entry : object.entries)
+      if (entry.access == od::Access::rw && !entry.command && !entry.is_volatile &&
+          entry.address != kControlword)
+        cells[entry.address] = values_.get(entry.address);
+  return memory_->save() ? 0 : abort::kCannotStore;
+}
+
+}  // namespace servoctl::sim
