@@ -91,6 +91,8 @@ struct Context {
   /// nothing: the result has to carry the samples.
   std::function<void(const report::Record& sample, std::string_view line)> emit;
 
+  bool keeps_samples = false;  ///< `--json`: the result carries what emit() was given.
+
   std::vector<Error>
       errors;  ///< Parts that failed while others succeeded; the first one makes the exit code.
   std::vector<std::string> notices;  ///< Things worth knowing that are no errors.

@@ -117,7 +117,7 @@ class Log {
       report::Record record{
           {"time", time.count()}, {"node", event.node}, {"event", event_name(event)}, {"text", text}};
       context_->emit(record, fmt::format("{:10.3f}  {}", time.count(), text));
-      events_.emplace_back(std::move(record));
+      if (context_->keeps_samples) events_.emplace_back(std::move(record));
     }
   }
 

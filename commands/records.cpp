@@ -50,17 +50,6 @@ std::string range_of(const od::Parameter& p) {
          (p.max ? od::to_string(*p.max) : std::string());
 }
 
-/// Columns of a decoded value: value, unit, label, hex; type and raw bytes for JSON.
-struct Decoded {
-  Value value;
-  Value raw;
-  Value label;
-  Value label_zh;
-  std::string unit;
-  std::string text;  ///< What a person reads: number, unit, label.
-  std::string type;
-};
-
 /// A long text ends where nobody reads on; JSON carries it whole.
 std::string shortened(std::string text, std::size_t bytes) {
   constexpr std::size_t kMost = 200;
@@ -68,32 +57,6 @@ std::string shortened(std::string text, std::size_t bytes) {
   std::size_t end = kMost;
   while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80) --end;
   return text.substr(0, end) + fmt::format("… ({} bytes; --to FILE keeps them)", bytes);
-}
-
-Decoded decode(const Reading& reading, ByteSpan bytes) {
-  Decoded out;
-  auto meaning = drive::meaning(reading.target, reading.node);
-  const auto type = type_of(reading, bytes);
-  out.type = std::string(od::name(type));
-  const auto value = od::decode(type, bytes);
-  if (!value) {
-    out.value = to_hex(bytes);
-    out.text = shortened(to_hex(bytes), bytes.size());
-    return out;
-  }
-  out.raw = od_value(*value);
-  out.value = meaning.scale == 1 ? out.raw : Value(drive::scaled(meaning, *value));
-  out.unit = std::string(meaning.unit);
-  out.text = shortened(od::to_string(*value), bytes.size());
-  if (meaning.scale != 1)
-    out.text += fmt::format(" = {:.12g} {}", drive::scaled(meaning, *value), meaning.unit);
-  else if (!meaning.unit.empty())
-    out.text += " " + out.unit;
-  if (const auto* label = drive::label_of(meaning, *value)) {
-    out.label = label->label;
-    out.label_zh = report::text_or_null(label->label_zh);
-  }
-  return out;
 }
 
 List reading_row(const Reading& reading, bool chinese) {
@@ -114,7 +77,7 @@ List reading_row(const Reading& reading, bool chinese) {
     return row;
   }
   const auto& bytes = *reading.bytes;
-  auto decoded = decode(reading, bytes);
+  auto decoded = decode_value(reading, bytes);
   const bool number = std::holds_alternative<std::uint64_t>(decoded.raw.data()) ||
                       std::holds_alternative<std::int64_t>(decoded.raw.data());
   Value hex;
@@ -239,6 +202,32 @@ od::DataType type_of(const Reading& reading, ByteSpan bytes) {
   const bool printable = !bytes.empty() && std::all_of(bytes.begin(), bytes.end(),
                                                        [](std::uint8_t b) { return b == 0 || b >= 0x20; });
   return printable ? od::DataType::string : od::DataType::bytes;
+}
+
+DecodedValue decode_value(const Reading& reading, ByteSpan bytes) {
+  DecodedValue out;
+  auto meaning = drive::meaning(reading.target, reading.node);
+  const auto type = type_of(reading, bytes);
+  out.type = std::string(od::name(type));
+  const auto value = od::decode(type, bytes);
+  if (!value) {
+    out.value = to_hex(bytes);
+    out.text = shortened(to_hex(bytes), bytes.size());
+    return out;
+  }
+  out.raw = od_value(*value);
+  out.value = meaning.scale == 1 ? out.raw : Value(drive::scaled(meaning, *value));
+  out.unit = std::string(meaning.unit);
+  out.text = shortened(od::to_string(*value), bytes.size());
+  if (meaning.scale != 1)
+    out.text += fmt::format(" = {:.12g} {}", drive::scaled(meaning, *value), meaning.unit);
+  else if (!meaning.unit.empty())
+    out.text += " " + out.unit;
+  if (const auto* label = drive::label_of(meaning, *value)) {
+    out.label = label->label;
+    out.label_zh = report::text_or_null(label->label_zh);
+  }
+  return out;
 }
 
 Table reading_table(Context& context, std::span<const Reading> readings) {

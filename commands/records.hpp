@@ -37,6 +37,18 @@ struct Reading {
   Result<Bytes> bytes = Bytes{};
 };
 
+/// The value of an object, taken apart for a reader and for JSON.
+struct DecodedValue {
+  report::Value value;     ///< In its unit.
+  report::Value raw;       ///< The number as it is sent; null when the bytes do not fit the type.
+  report::Value label;     ///< Of an enum, or null.
+  report::Value label_zh;  ///< In Chinese, or null.
+  std::string unit;
+  std::string text;  ///< What a person reads: number and unit; the beginning of a long value.
+  std::string type;
+};
+DecodedValue decode_value(const Reading& reading, ByteSpan bytes);
+
 /// Readings as a table, an `error` in the rows that failed. Errors are added to `context.errors`.
 report::Table reading_table(Context& context, std::span<const Reading> readings);
 

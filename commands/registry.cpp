@@ -22,6 +22,7 @@ extern const Command kNmtPreop;
 extern const Command kNmtReset;
 extern const Command kNmtResetComm;
 extern const Command kNmtWatch;
+extern const Command kDecode;
 extern const Command kDrives;
 extern const Command kEdsCheck;
 extern const Command kSim;
@@ -74,7 +75,7 @@ std::span<const Command* const> registry() {
       &kScan,      &kInfo,     &kStatus,   &kRead,        &kWrite,        &kObjects,
       &kParamList, &kParamGet, &kParamSet, &kParamSearch, &kParamExplain, &kFaultList,
       &kNmtStart,  &kNmtStop,  &kNmtPreop, &kNmtReset,    &kNmtResetComm, &kNmtWatch,
-      &kDrives,    &kEdsCheck, &kSim,      &kCompletion,  &kHelp,
+      &kDecode,    &kDrives,   &kEdsCheck, &kSim,         &kCompletion,   &kHelp,
   };
   return kAll;
 }

@@ -39,7 +39,7 @@ _servoctl_scan() {
     return
   fi
   case $command in
-    '') source='=scan info status read write objects param fault nmt drives eds sim completion help' ;;
+    '') source='=scan info status read write objects param fault nmt decode drives eds sim completion help' ;;
     param) source='=list get set search explain' ;;
     fault) source='=list' ;;
     nmt) source='=start stop preop reset reset-comm watch' ;;
@@ -53,10 +53,11 @@ _servoctl_scan() {
     'param search') source='none' ;;
     'param explain') source='parameters' ;;
     'fault list') source='none' ;;
+    'decode') source='files' ;;
     'eds check') source='files' ;;
     'sim') source='none' ;;
     'completion') source='=bash zsh fish objects parameters families' ;;
-    'help') source='=scan info status read write objects param fault nmt drives eds sim completion help' ;;
+    'help') source='=scan info status read write objects param fault nmt decode drives eds sim completion help' ;;
   esac
   case $command in
     'read') options+=' --type --to --transfer' ;;
@@ -67,6 +68,7 @@ _servoctl_scan() {
     'nmt reset') options+=' --wait' ;;
     'nmt reset-comm') options+=' --wait' ;;
     'nmt watch') options+=' --for --guard --life' ;;
+    'decode') options+=' --raw' ;;
   esac
 }
 

@@ -100,6 +100,9 @@ complete -c servoctl -n '__servoctl_at nmt' -a watch -d 'Watch whether nodes are
 complete -c servoctl -n '__servoctl_in nmt watch' -l for -x -d 'how long; until Ctrl-C unless said'
 complete -c servoctl -n '__servoctl_in nmt watch' -l guard -x -d 'ask by node guarding, once in this time'
 complete -c servoctl -n '__servoctl_in nmt watch' -l life -x -d 'lost after so many guard times without answer (default 3)'
+complete -c servoctl -n __servoctl_at -a decode -d 'Explain a recording: SDO with names and values, NMT, EMCY'
+complete -c servoctl -n '__servoctl_in decode' -r -F
+complete -c servoctl -n '__servoctl_in decode' -l raw -d 'show the frames as well'
 complete -c servoctl -n __servoctl_at -a drives -d 'List the drive families servoctl knows'
 complete -c servoctl -n '__servoctl_at eds' -a check -d 'Check EDS and DCF files against CiA 306'
 complete -c servoctl -n '__servoctl_in eds check' -r -F
@@ -107,7 +110,7 @@ complete -c servoctl -n __servoctl_at -a sim -d 'Put simulated drives on a bus u
 complete -c servoctl -n __servoctl_at -a completion -d 'Print the completion script of a shell'
 complete -c servoctl -n '__servoctl_in completion' -x -a 'bash zsh fish objects parameters families'
 complete -c servoctl -n __servoctl_at -a help -d 'Show the commands, or how one is used'
-complete -c servoctl -n '__servoctl_in help' -x -a 'scan info status read write objects param fault nmt drives eds sim completion help'
+complete -c servoctl -n '__servoctl_in help' -x -a 'scan info status read write objects param fault nmt decode drives eds sim completion help'
 complete -c servoctl -n __servoctl_at -a param
 complete -c servoctl -n __servoctl_at -a fault
 complete -c servoctl -n __servoctl_at -a nmt

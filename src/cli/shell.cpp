@@ -98,6 +98,7 @@ Result<Value> Shell::execute(Run& run, const commands::Arguments& arguments) {
     if (console_->ask(question)) return {};
     return fail(Errc::refused, "not confirmed; nothing was sent");
   };
+  context.keeps_samples = run.settings.json && !run.settings.samples;
   context.emit = [this, &run](const report::Record& sample, std::string_view line) {
     if (run.settings.samples)
       console_->out(report::to_json(sample) + "\n");
@@ -115,7 +116,7 @@ Result<void> Shell::prepare(Run& run) {
                 "leave --read-only out when you mean it");
   if (!run.settings.drive.empty() || includes(command.needs, Needs::dictionary))
     if (const auto ready = prepare_profile(run); !ready) return ready;
-  if (!includes(command.needs, Needs::bus)) return {};
+  if (!includes(command.needs, Needs::bus)) return name_nodes(run);
   // What is wrong in the line itself is told before a bus is opened.
   if (includes(command.needs, Needs::node) && run.settings.nodes.empty())
     return fail(Errc::usage, fmt::format("'{}' needs a node", command.path),
@@ -164,6 +165,15 @@ tl::unexpected<Error> Shell::ask_for_family(Run& run) {
   }
   return fail(Errc::usage, fmt::format("'{}' needs to know the drive family", run.command->path),
               std::move(hint));
+}
+
+/// A command without a bus takes the nodes as they are written.
+Result<void> Shell::name_nodes(Run& run) {
+  if (run.settings.nodes.empty()) return {};
+  auto nodes = parse_nodes(run.settings.nodes);
+  if (!nodes) return tl::unexpected<Error>(nodes.error());
+  run.context.nodes = std::move(*nodes);
+  return {};
 }
 
 Result<void> Shell::prepare_nodes(Run& run) {

@@ -60,6 +60,7 @@ class Shell {
   Result<void> prepare(Run& run);
   Result<void> prepare_profile(Run& run);
   Result<void> prepare_nodes(Run& run);
+  static Result<void> name_nodes(Run& run);
   tl::unexpected<Error> ask_for_family(Run& run);
   int finish(Run& run, const Result<report::Value>& result);
   int finish_json(Run& run, const report::Value& value, int code);

@@ -4,6 +4,7 @@
 
 #include "base/text.hpp"
 #include "can/local.hpp"
+#include "can/replay.hpp"
 #include "can/socketcan.hpp"
 #include "can/trace.hpp"
 #include "sim/cell.hpp"
@@ -19,9 +20,10 @@ Result<std::unique_ptr<can::Bus>> open_plain(std::string_view url, const BusOpti
   if (scheme == "socketcan") return can::open_socketcan(rest);
   if (scheme == "local") return can::open_local(rest);
   if (scheme == "sim") return sim::open_sim(rest, options.drive_folders, options.clock);
-  const std::string schemes[] = {"socketcan", "local", "sim"};
+  if (scheme == "replay") return can::open_replay(rest);
+  const std::string schemes[] = {"socketcan", "local", "sim", "replay"};
   auto hint = did_you_mean(scheme, schemes);
-  if (hint.empty()) hint = "write can0, local:NAME or sim:FAMILY@NODE";
+  if (hint.empty()) hint = "write can0, local:NAME, sim:FAMILY@NODE or replay:FILE";
   return fail(Errc::usage, fmt::format("'{}' is no bus", url), std::move(hint));
 }
 
@@ -32,8 +34,9 @@ Result<std::unique_ptr<can::Bus>> open_bus(std::string_view url, const BusOption
   if (!bus || options.trace.empty()) return bus;
   const auto colon = url.find(':');
   const auto name = url.substr(0, colon) == "socketcan" ? url.substr(colon + 1) : url.substr(0, colon);
-  // A simulated clock does not run with the wall's.
-  const bool simulated = name == "sim" && options.clock == sim::SimBus::Clock::virtual_time;
+  // These clocks do not run with the wall's.
+  const bool simulated =
+      name == "replay" || (name == "sim" && options.clock == sim::SimBus::Clock::virtual_time);
   return can::trace_to(std::move(*bus), options.trace, name,
                        simulated ? can::TraceClock::bus : can::TraceClock::wall);
 }

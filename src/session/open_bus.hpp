@@ -17,7 +17,8 @@ struct BusOptions {
   sim::SimBus::Clock clock = sim::SimBus::Clock::real_time;
 };
 
-/// Opens a bus by URL: `can0` or `socketcan:can0`, `local:NAME`, `sim:gsd600@1,gsd600@2?state=FILE`.
+/// Opens a bus by URL: `can0` or `socketcan:can0`, `local:NAME`, `sim:gsd600@1,gsd600@2?state=FILE`,
+/// `replay:FILE`.
 /// Errc::usage for a URL that is not understood, Errc::bus with the mending command for an interface that is
 /// missing or down.
 Result<std::unique_ptr<can::Bus>> open_bus(std::string_view url, const BusOptions& options);

@@ -1,0 +1,71 @@
+#include "can/replay.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <utility>
+
+#include "base/file.hpp"
+#include "base/text.hpp"
+
+namespace servoctl::can {
+namespace {
+
+constexpr std::uintmax_t kMaxFile = std::uintmax_t{1} << 30U;
+
+/// Whether only a master sends such a frame (CiA 301, 7.3.5; CiA 305).
+bool is_of_master(const Frame& frame) {
+  if (frame.extended || frame.error) return false;
+  return frame.id == 0x000 || frame.remote || (frame.id > 0x600 && frame.id <= 0x67F) || frame.id == 0x7E5;
+}
+
+TimePoint time_of(const LogFrame& line) { return TimePoint(line.time); }
+
+}  // namespace
+
+ReplayBus::ReplayBus(std::vector<LogFrame> lines, std::string name)
+    : lines_(std::move(lines)), done_(lines_.size()), name_(std::move(name)), now_(time_of(lines_.front())) {}
+
+Result<void> ReplayBus::send(const Frame& frame) {
+  for (std::size_t i = next_; i < lines_.size(); ++i) {
+    if (done_[i] || lines_[i].frame != frame || !is_of_master(frame)) continue;
+    done_[i] = true;
+    now_ = std::max(now_, time_of(lines_[i]));
+    skip_done();
+    return {};
+  }
+  return fail(Errc::bus, fmt::format("{} was not sent when {} was recorded", to_string(frame), name_),
+              "a recording answers only the commands it was made with, in their order; `decode` shows them");
+}
+
+Result<std::optional<Frame>> ReplayBus::receive(TimePoint deadline) {
+  const bool waits_for_us = next_ < lines_.size() && is_of_master(lines_[next_].frame);
+  if (next_ == lines_.size() || waits_for_us || time_of(lines_[next_]) > deadline) {
+    // The longest wait without an answer is a day: kNever would be no time.
+    now_ = std::max(now_, std::min(deadline, now_ + std::chrono::hours(24)));
+    return std::optional<Frame>();
+  }
+  const auto& line = lines_[next_];
+  now_ = std::max(now_, time_of(line));
+  done_[next_] = true;
+  skip_done();
+  return std::optional(line.frame);
+}
+
+void ReplayBus::skip_done() {
+  while (next_ < lines_.size() && done_[next_]) ++next_;
+}
+
+Result<std::unique_ptr<Bus>> open_replay(const std::filesystem::path& file) {
+  const auto text = read_file(file, kMaxFile);
+  if (!text) return tl::unexpected<Error>(text.error());
+  std::vector<LogFrame> lines;
+  for (const auto row : split(std::string_view(*text), '\n'))
+    if (auto line = parse_log_line(row)) lines.push_back(std::move(*line));
+  if (lines.empty())
+    return fail(Errc::file, fmt::format("{} holds no frame", file.string()),
+                "recordings are in the form of `candump -L`; `--trace FILE` makes them");
+  std::stable_sort(lines.begin(), lines.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
+  return std::make_unique<ReplayBus>(std::move(lines), file.string());
+}
+
+}  // namespace servoctl::can
