@@ -35,7 +35,7 @@ report::Record check(Context& context, const std::string& path, const od::EdsFil
           {"objects", file.dictionary.objects().size()},
           {"entries", file.dictionary.entry_count()},
           {"errors", errors},
-          {"warnings", file.diagnostics.size() - errors},
+          {"warnings", file.warning_count()},
           {"findings", clean ? report::Value() : report::Value(findings), Show::text},
           {"findings", std::move(findings), Show::json}};
 }
@@ -43,13 +43,14 @@ report::Record check(Context& context, const std::string& path, const od::EdsFil
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   report::List out;
   for (const auto& path : arguments.all("file")) {
-    const auto text = read_file(path);
-    if (!text) return tl::unexpected<Error>(text.error());
-    const auto file = od::read_eds(*text, path);
-    if (!file) return tl::unexpected<Error>(file.error());
-    out.emplace_back(check(context, path, *file));
+    const auto text = read_file(path, od::kMostEdsBytes);
+    const auto file = text ? od::read_eds(*text, path) : tl::unexpected<Error>(text.error());
+    if (file)
+      out.emplace_back(check(context, path, *file));
+    else
+      context.errors.push_back(file.error());
   }
-  return report::Value(std::move(out));
+  return out.empty() ? report::Value() : report::Value(std::move(out));
 }
 
 }  // namespace

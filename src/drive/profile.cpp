@@ -31,13 +31,14 @@ std::optional<fs::path> own_folder() {
 }
 
 Result<void> add_dictionary(Profile& profile, const fs::path& path) {
-  const auto text = read_file(path);
+  const auto text = read_file(path, od::kMostEdsBytes);
   if (!text) return tl::unexpected<Error>(text.error());
   auto file = od::read_eds(*text, path.string());
   if (!file) return tl::unexpected<Error>(file.error());
   profile.dictionary = std::move(file->dictionary);
-  for (const auto& finding : file->diagnostics)
-    profile.warnings.push_back(od::to_string(finding, path.filename().string()));
+  if (!file->diagnostics.empty())
+    profile.warnings.push_back(fmt::format("{0}: {1} errors, {2} warnings; `eds check {0}` lists them",
+                                           path.string(), file->error_count(), file->warning_count()));
   if (profile.rules.name.empty()) profile.rules.name = file->device.product_name;
   if (profile.rules.vendor.empty()) profile.rules.vendor = file->device.vendor_name;
   return {};

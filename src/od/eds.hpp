@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -20,6 +21,7 @@ struct Diagnostic {
   std::string rule;          ///< Short stable name, such as `missing-data-type`; for filters and scripts.
   std::string message;       ///< What is wrong.
   std::string remedy;        ///< What to change.
+  std::uint32_t count = 1;   ///< Above 1: stands for that many findings of its rule that are left out.
 };
 
 /// What an EDS or DCF says of the device beside its objects.
@@ -30,6 +32,15 @@ struct DeviceInfo {
   std::uint32_t product_number = 0;
   std::uint32_t revision_number = 0;
   std::vector<std::uint32_t> bitrates;  ///< kbit/s that are marked as supported.
+  std::vector<DataType> dummies;        ///< Types that may fill gaps in an RPDO: [DummyUsage], 0001h-0007h.
+};
+
+/// What a DCF says of an entry beside its value (CiA 306-1, 5.3).
+struct EntryNote {
+  ObjectAddress address;
+  std::string denotation;     ///< The application's name for the entry.
+  std::string upload_file;    ///< Where a DOMAIN read from the device goes.
+  std::string download_file;  ///< What is written into a DOMAIN.
 };
 
 /// An EDS or DCF read in full: everything usable, and everything that was not.
@@ -37,13 +48,19 @@ struct EdsFile {
   DeviceInfo device;
   std::uint8_t node_id = 0;  ///< DCF only, 0 otherwise.
   Dictionary dictionary;
+  std::vector<EntryNote> notes;         ///< Only of entries that have one; in rising address.
   std::vector<Diagnostic> diagnostics;  ///< In rising line.
 
   std::size_t error_count() const;
+  std::size_t warning_count() const;
 };
 
-/// Reads the text of an electronic data sheet or device configuration file (CiA 306-1). A bad entry is
-/// reported and skipped, never the whole file; Errc::file only when there is not one object in it. `file` is
+/// Far above any data sheet; what is larger is refused unread.
+constexpr std::size_t kMostEdsBytes = 32U << 20U;
+
+/// Reads an electronic data sheet or device configuration file (CiA 306-1) in any encoding to_utf8() knows. A
+/// bad entry is reported and skipped, never the whole file; Errc::file only when there is not one object in
+/// it, when it is no text, or larger than kMostEdsBytes. Time and memory are linear in its length. `file` is
 /// used in messages.
 Result<EdsFile> read_eds(std::string_view text, std::string_view file);
 

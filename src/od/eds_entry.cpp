@@ -4,14 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <utility>
+#include <vector>
 
 #include "base/number.hpp"
 #include "base/text.hpp"
+#include "od/eds_value.hpp"
 
 namespace servoctl::od {
 namespace {
-
-constexpr std::string_view kNodeId = "$nodeid";
 
 struct AccessRow {
   std::string_view word;
@@ -26,36 +26,61 @@ constexpr std::array kAccess{
     AccessRow{"rwr", Access::rw, PdoMapping::tpdo}, AccessRow{"rww", Access::rw, PdoMapping::rpdo},
 };
 
-bool has_leading_zero(std::string_view text) {
-  return text.size() > 1 && text[0] == '0' && text[1] >= '0' && text[1] <= '9';
-}
+struct AccessSynonym {
+  std::string_view written;
+  std::string_view meant;
+};
 
-void warn_of_leading_zero(const IniKey& key, std::string_view number, Findings& findings) {
-  if (has_leading_zero(number))
-    findings.warn(key, "leading-zero",
-                  fmt::format("'{}' is taken as decimal; by the standard a leading zero means octal", number),
-                  "write it without leading zeros, or with 0x");
-}
+constexpr std::array kAccessSynonyms{
+    AccessSynonym{"r", "ro"},         AccessSynonym{"w", "wo"},           AccessSynonym{"r/w", "rw"},
+    AccessSynonym{"wr", "rw"},        AccessSynonym{"readonly", "ro"},    AccessSynonym{"writeonly", "wo"},
+    AccessSynonym{"readwrite", "rw"}, AccessSynonym{"constant", "const"}, AccessSynonym{"cons", "const"}};
 
-/// Cuts `$NODEID` and its plus off; what remains is the number, `0` when nothing does.
-std::pair<std::string_view, bool> without_node_id(std::string_view text) {
-  const auto at = lower(text).find(kNodeId);
-  if (at == std::string::npos) return {text, false};
-  auto rest = trim(at == 0 ? text.substr(kNodeId.size()) : text.substr(0, at));
-  if (!rest.empty() && rest.front() == '+') rest = trim(rest.substr(1));
-  if (!rest.empty() && rest.back() == '+') rest = trim(rest.substr(0, rest.size() - 1));
-  return {rest.empty() ? std::string_view("0") : rest, true};
+struct NamedCode {
+  std::string_view name;
+  std::uint16_t code;
+};
+
+/// CiA 301, tables 42 and 44.
+constexpr std::array kObjectCodes{NamedCode{"DOMAIN", 2},  NamedCode{"DEFTYPE", 5}, NamedCode{"DEFSTRUCT", 6},
+                                  NamedCode{"VAR", 7},     NamedCode{"ARRAY", 8},   NamedCode{"RECORD", 9},
+                                  NamedCode{"VARIABLE", 7}};
+constexpr std::array kTypeCodes{
+    NamedCode{"BOOLEAN", 0x01},         NamedCode{"INTEGER8", 0x02},       NamedCode{"INTEGER16", 0x03},
+    NamedCode{"INTEGER32", 0x04},       NamedCode{"UNSIGNED8", 0x05},      NamedCode{"UNSIGNED16", 0x06},
+    NamedCode{"UNSIGNED32", 0x07},      NamedCode{"REAL32", 0x08},         NamedCode{"VISIBLE_STRING", 0x09},
+    NamedCode{"OCTET_STRING", 0x0A},    NamedCode{"UNICODE_STRING", 0x0B}, NamedCode{"TIME_OF_DAY", 0x0C},
+    NamedCode{"TIME_DIFFERENCE", 0x0D}, NamedCode{"DOMAIN", 0x0F},         NamedCode{"INTEGER24", 0x10},
+    NamedCode{"REAL64", 0x11},          NamedCode{"INTEGER64", 0x15},      NamedCode{"UNSIGNED24", 0x16},
+    NamedCode{"UNSIGNED64", 0x1B}};
+
+/// A number, or its name in the standard, which the book does not allow and some files have.
+template <std::size_t N>
+std::optional<std::uint64_t> number_or_name(const IniKey& key, const std::array<NamedCode, N>& names,
+                                            std::uint64_t max, Findings& findings) {
+  const bool is_number = key.value.front() >= '0' && key.value.front() <= '9';
+  for (const auto& row : names) {
+    if (is_number) break;
+    if (!equals_nocase(row.name, key.value)) continue;
+    findings.warn(key, "name-for-number",
+                  fmt::format("{}: '{}' is taken as 0x{:04X}", key.key, key.value, row.code),
+                  fmt::format("write 0x{:04X}", row.code));
+    return row.code;
+  }
+  return eds_number(key, max, findings);
 }
 
 std::optional<DataType> entry_type(const IniSection& section, Findings& findings) {
   const auto* key = section.find("DataType");
   if (key == nullptr || key->value.empty()) {
+    const auto* code = section.find("ObjectType");
+    if (code != nullptr && (parse_integer(code->value) == Integer{false, 2})) return DataType::domain;
     findings.add(Severity::error, section.line, 1, "missing-data-type",
                  fmt::format("[{}] has no DataType", section.name),
                  "add DataType, for example DataType=0x0007 for an unsigned number of 32 bits");
     return std::nullopt;
   }
-  const auto code = eds_number(*key, 0xFFFF, findings);
+  const auto code = number_or_name(*key, kTypeCodes, 0xFFFF, findings);
   if (!code) return std::nullopt;
   const auto type = data_type_from_cia(*code);
   if (!type)
@@ -64,31 +89,42 @@ std::optional<DataType> entry_type(const IniSection& section, Findings& findings
   return type;
 }
 
+/// The row of the word; of a near one when only one is near (`r` → `ro`, `r/w` → `rw`); the ro row when it
+/// is neither, because what is not known to be writable is not written.
+const AccessRow& access_of(const IniKey& key, Findings& findings) {
+  const auto text = without_comment(key, findings);
+  for (const auto& row : kAccess)
+    if (equals_nocase(row.word, text)) return row;
+  for (const auto& synonym : kAccessSynonyms) {
+    if (!equals_nocase(synonym.written, text)) continue;
+    findings.warn(key, "access-spelling", fmt::format("'{}' is taken as {}", text, synonym.meant),
+                  fmt::format("write {}", synonym.meant));
+    return *std::find_if(kAccess.begin(), kAccess.end(),
+                         [&](const AccessRow& row) { return row.word == synonym.meant; });
+  }
+  std::vector<std::string> words;
+  for (const auto& row : kAccess) words.emplace_back(row.word);
+  const auto guess = text.size() > 8 ? std::string() : did_you_mean(text, words);
+  findings.error(key, "unknown-access-type", fmt::format("'{}' is no access type; taken as ro", shown(text)),
+                 guess.empty() ? "write ro, rw, wo, const, rwr or rww" : guess);
+  return kAccess[0];
+}
+
 void read_access(const IniSection& section, Entry& entry, Findings& findings) {
   const auto* key = section.find("AccessType");
-  const AccessRow* row = nullptr;
-  if (key != nullptr)
-    for (const auto& candidate : kAccess)
-      if (equals_nocase(candidate.word, key->value)) row = &candidate;
-  if (key == nullptr) {
+  if (key == nullptr || key->value.empty())
     findings.add(Severity::error, section.line, 1, "missing-access-type",
                  fmt::format("[{}] has no AccessType; taken as ro", section.name),
                  "add AccessType=ro, rw, wo or const");
-  } else if (row == nullptr) {
-    findings.error(*key, "unknown-access-type",
-                   fmt::format("'{}' is no access type; taken as ro", key->value),
-                   "write ro, rw, wo, const, rwr or rww");
-  }
-  // What is not known to be writable is not written.
-  if (row == nullptr) row = &kAccess[0];
-  entry.access = row->access;
+  const auto& row = key == nullptr || key->value.empty() ? kAccess[0] : access_of(*key, findings);
+  entry.access = row.access;
   const auto* mapping = section.find("PDOMapping");
   if (mapping == nullptr || mapping->value.empty()) return;
   const auto mappable = eds_number(*mapping, 1, findings);
-  if (mappable.value_or(0) == 1) entry.pdo = row->direction;
+  if (mappable.value_or(0) == 1) entry.pdo = row.direction;
 }
 
-void check_order(const IniSection& section, const Entry& entry, Findings& findings) {
+void check_order(const IniSection& section, Entry& entry, Findings& findings) {
   const auto tell = [&](std::string_view rule, const std::string& message) {
     findings.add(Severity::warning, section.line, 1, std::string(rule),
                  fmt::format("[{}]: {}", section.name, message),
@@ -97,60 +133,28 @@ void check_order(const IniSection& section, const Entry& entry, Findings& findin
   const auto above = [](const std::optional<NodeValue>& a, const std::optional<NodeValue>& b) {
     return a && b && compare_numbers(a->for_node(1), b->for_node(1)) > 0;
   };
-  if (above(entry.low, entry.high)) tell("limits-crossed", "LowLimit is above HighLimit");
+  if (above(entry.low, entry.high)) {
+    tell("limits-crossed", "LowLimit is above HighLimit; neither is used");
+    entry.low = entry.high = std::nullopt;
+  }
   if (above(entry.low, entry.default_value) || above(entry.default_value, entry.high))
     tell("default-out-of-limits", "DefaultValue is not within the limits");
 }
 
 }  // namespace
 
-void Findings::add(Severity severity, std::uint32_t line, std::uint32_t column, std::string rule,
-                   std::string message, std::string remedy) {
-  all_.push_back({severity, line, column, std::move(rule), std::move(message), std::move(remedy)});
-}
-
-void Findings::error(const IniKey& key, std::string rule, std::string message, std::string remedy) {
-  add(Severity::error, key.line, key.value_column, std::move(rule), std::move(message), std::move(remedy));
-}
-
-void Findings::warn(const IniKey& key, std::string rule, std::string message, std::string remedy) {
-  add(Severity::warning, key.line, key.value_column, std::move(rule), std::move(message), std::move(remedy));
-}
-
-std::vector<Diagnostic> Findings::take() {
-  std::stable_sort(all_.begin(), all_.end(),
-                   [](const Diagnostic& a, const Diagnostic& b) { return a.line < b.line; });
-  return std::move(all_);
-}
-
-std::optional<std::uint64_t> eds_number(const IniKey& key, std::uint64_t max, Findings& findings) {
-  const auto number = parse_integer(key.value);
-  if (!number || number->negative || number->magnitude > max) {
-    findings.error(key, "bad-number",
-                   fmt::format("{}: '{}' is no number of 0 to {}", key.key, key.value, max),
-                   "write a number such as 7 or 0x7");
-    return std::nullopt;
-  }
-  warn_of_leading_zero(key, key.value, findings);
-  return number->magnitude;
-}
-
-std::optional<NodeValue> eds_value(const IniKey* key, DataType type, Findings& findings) {
-  if (key == nullptr || key->value.empty()) return std::nullopt;
-  const auto [text, plus_node_id] = without_node_id(key->value);
-  if (plus_node_id && !is_integer(type)) {
-    findings.error(*key, "bad-value", fmt::format("{}: $NODEID in a value of {}", key->key, name(type)),
-                   "only integers can contain the node-ID");
-    return std::nullopt;
-  }
-  auto value = parse_value(type, text);
-  if (!value) {
-    findings.error(*key, "bad-value", fmt::format("{}: {}", key->key, value.error().message),
-                   fmt::format("write a value of {}, or leave it empty", name(type)));
-    return std::nullopt;
-  }
-  if (is_integer(type)) warn_of_leading_zero(*key, text, findings);
-  return NodeValue{std::move(*value), plus_node_id};
+ObjectCode eds_object_code(const IniSection& section, Findings& findings) {
+  const auto* key = section.find("ObjectType");
+  if (key == nullptr || key->value.empty()) return ObjectCode::var;
+  const auto code = number_or_name(*key, kObjectCodes, 0xFF, findings);
+  if (!code) return ObjectCode::var;
+  const bool known = std::any_of(kObjectCodes.begin(), kObjectCodes.end(),
+                                 [&](const NamedCode& row) { return row.code == *code; });
+  if (known) return static_cast<ObjectCode>(*code);
+  findings.error(*key, "unknown-object-type",
+                 fmt::format("'{}' is no object type; taken as VAR", shown(key->value)),
+                 "write 0x7 for a variable, 0x8 for an array, 0x9 for a record");
+  return ObjectCode::var;
 }
 
 std::optional<Entry> eds_entry(const IniSection& section, ObjectAddress address, Findings& findings) {

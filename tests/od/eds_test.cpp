@@ -105,7 +105,7 @@ TEST(Eds, ExpandsCompactSubObjects) {
   EXPECT_EQ(file.dictionary.find({0x2010, 1})->name, "Gain1");
   EXPECT_EQ(file.dictionary.find({0x2010, 2})->name, "Second");
   EXPECT_EQ(to_string(file.dictionary.find({0x2010, 1})->default_value->value), "7");
-  EXPECT_EQ(to_string(file.dictionary.find({0x2010, 3})->default_value->value), "9");
+  EXPECT_EQ(to_string(file.dictionary.find({0x2010, 3})->configured->value), "9");
   EXPECT_EQ(file.dictionary.find({0x2010, 4}), nullptr);
 }
 

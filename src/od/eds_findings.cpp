@@ -1,0 +1,48 @@
+#include "od/eds_findings.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <utility>
+
+namespace servoctl::od {
+
+void Findings::add(Severity severity, std::uint32_t line, std::uint32_t column, std::string_view rule,
+                   std::string message, std::string remedy) {
+  if (enough_of(rule)) return;
+  auto& known = rules_[std::string(rule)];
+  known.severity = severity;
+  ++known.count;
+  all_.push_back({severity, line, column, std::string(rule), std::move(message), std::move(remedy)});
+}
+
+void Findings::error(const IniKey& key, std::string_view rule, std::string message, std::string remedy) {
+  add(Severity::error, key.line, key.value_column, rule, std::move(message), std::move(remedy));
+}
+
+void Findings::warn(const IniKey& key, std::string_view rule, std::string message, std::string remedy) {
+  add(Severity::warning, key.line, key.value_column, rule, std::move(message), std::move(remedy));
+}
+
+bool Findings::enough_of(std::string_view rule) {
+  const auto known = rules_.find(rule);
+  if (known == rules_.end() || known->second.count < kMostOfARule) return false;
+  ++known->second.count;
+  return true;
+}
+
+std::vector<Diagnostic> Findings::take() {
+  std::stable_sort(all_.begin(), all_.end(),
+                   [](const Diagnostic& a, const Diagnostic& b) { return a.line < b.line; });
+  const auto last_line = all_.empty() ? 1 : all_.back().line;
+  for (const auto& entry : rules_) {
+    const auto& rule = entry.second;
+    if (rule.count <= kMostOfARule) continue;
+    const auto more = rule.count - kMostOfARule;
+    all_.push_back({rule.severity, last_line, 1, entry.first,
+                    fmt::format("{} more of this rule {} left out", more, more == 1 ? "is" : "are"),
+                    "mend those that are shown, then check again", more});
+  }
+  return std::move(all_);
+}
+
+}  // namespace servoctl::od

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "od/dictionary.hpp"
+#include "od/eds_compact.hpp"
+#include "od/eds_findings.hpp"
+#include "od/eds_section.hpp"
+#include "od/ini.hpp"
+
+namespace servoctl::od {
+
+/// A section of an object or of one of its sub-indexes.
+struct ObjectSection {
+  SectionName name;
+  const IniSection* section = nullptr;
+};
+
+/// The sections of one object, each once.
+struct ObjectSections {
+  const IniSection* main = nullptr;
+  std::vector<std::pair<std::uint8_t, const IniSection*>> subs;  ///< In rising sub-index.
+};
+
+/// Tells keys that stand twice in a section; IniSection::find takes the last.
+void check_duplicate_keys(const IniSection& section, Findings& findings);
+
+void tell_duplicate(const IniSection& again, const IniSection& first, Findings& findings);
+
+/// Puts the sections of one index in order and tells what stands twice. Sub-indexes are hexadecimal (CiA
+/// 306-1, 4.6.3); where only decimal reading gives them without a gap, they are taken so, with a warning.
+ObjectSections group_sections(std::span<const ObjectSection> sections, Findings& findings);
+
+/// The object that the sections describe, with its usable entries.
+Object eds_object(std::uint16_t index, const ObjectSections& sections, const CompactLists& lists,
+                  std::vector<EntryNote>& notes, Findings& findings);
+
+}  // namespace servoctl::od

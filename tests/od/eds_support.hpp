@@ -1,0 +1,39 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "od/eds.hpp"
+
+namespace servoctl::od {
+
+/// The file; a failure of the test when it is refused.
+inline EdsFile read(std::string_view text) {
+  auto file = read_eds(text, "x.eds");
+  EXPECT_TRUE(file) << (file ? "" : file.error().message);
+  return file.value_or(EdsFile{});
+}
+
+/// `7:9 leading-zero` of every finding: line, column, rule.
+inline std::vector<std::string> findings(const EdsFile& file) {
+  std::vector<std::string> out;
+  for (const auto& d : file.diagnostics) {
+    EXPECT_FALSE(d.message.empty()) << d.rule;
+    EXPECT_FALSE(d.remedy.empty()) << d.rule;
+    out.push_back(std::to_string(d.line) + ":" + std::to_string(d.column) + " " + d.rule);
+  }
+  return out;
+}
+
+using Rules = std::vector<std::string>;
+
+/// One variable with these further lines.
+inline std::string variable(std::string_view index, std::string_view type, std::string_view more) {
+  return "[" + std::string(index) + "]\nParameterName=X\nDataType=" + std::string(type) +
+         "\nAccessType=rw\n" + std::string(more) + "\n";
+}
+
+}  // namespace servoctl::od
