@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <span>
@@ -14,6 +15,8 @@
 #include "can/bus.hpp"
 #include "can/descriptor.hpp"
 #include "can/frame.hpp"
+
+struct can_frame;  // linux/can.h
 
 namespace servoctl::can {
 
@@ -53,20 +56,18 @@ class SocketCanBus final : public Bus {
   Result<void> send(const Frame& frame) override;
   Result<std::optional<Frame>> receive(TimePoint deadline) override;
   int poll_fd() const override { return socket_.get(); }
-  TimePoint next_event() const override { return held_back_ ? TimePoint::min() : kNever; }
+  TimePoint next_event() const override { return inbox_.empty() ? kNever : TimePoint::min(); }
 
  private:
-  Result<std::optional<Frame>> take();
-  bool lost_some(std::optional<std::uint32_t> total);
-  tl::unexpected<Error> lost(int error) const;
-  tl::unexpected<Error> queue_full() const;
+  Result<void> fill();
+  void take(const ::can_frame& raw, std::optional<std::uint32_t> lost_in_all);
 
   Descriptor socket_;
   std::string interface_name_;
   Duration send_limit_;
-  std::uint32_t lost_frames_ = 0;   ///< As last told by the kernel.
-  bool is_bus_off_ = false;         ///< As last reported.
-  std::optional<Frame> held_back_;  ///< Received, to be given after the report of a loss.
+  std::uint32_t lost_frames_ = 0;  ///< As last told by the kernel.
+  bool is_bus_off_ = false;        ///< As last reported.
+  std::deque<Frame> inbox_;        ///< Received, not given yet.
 };
 
 }  // namespace servoctl::can

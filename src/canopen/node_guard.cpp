@@ -13,6 +13,12 @@ void NodeGuard::start(std::uint8_t node, GuardOptions options, TimePoint now) {
   nodes_[node].active = true;
   nodes_[node].options = options;
   nodes_[node].next = now;
+  update_deadline();
+}
+
+void NodeGuard::stop(std::uint8_t node) {
+  nodes_[node] = {};
+  update_deadline();
 }
 
 TimePoint NodeGuard::lost_at(const Node& node) const {
@@ -20,6 +26,7 @@ TimePoint NodeGuard::lost_at(const Node& node) const {
 }
 
 void NodeGuard::on_frame(const can::Frame& frame, TimePoint now) {
+  if (deadline_ == kNever) return;  // It guards nobody.
   const auto message = parse_error_control(frame);
   if (!message || !nodes_[message->node].active) return;
   auto& node = nodes_[message->node];
@@ -37,9 +44,11 @@ void NodeGuard::on_frame(const can::Frame& frame, TimePoint now) {
   node.wrong_toggle = false;
   if (std::exchange(node.lost, false))
     events_.push_back({now, message->node, NodeEvent::GuardingBack{message->state}});
+  update_deadline();
 }
 
 void NodeGuard::on_time(TimePoint now) {
+  if (now < deadline_) return;
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     auto& node = nodes_[i];
     if (!node.active) continue;
@@ -54,6 +63,7 @@ void NodeGuard::on_time(TimePoint now) {
     node.next = now + node.options.period;
     tx_.push_back(guarding_request(id));
   }
+  update_deadline();
 }
 
 std::optional<can::Frame> NodeGuard::take_frame() {
@@ -63,11 +73,10 @@ std::optional<can::Frame> NodeGuard::take_frame() {
   return frame;
 }
 
-TimePoint NodeGuard::deadline() const {
-  TimePoint next = kNever;
+void NodeGuard::update_deadline() {
+  deadline_ = kNever;
   for (const auto& node : nodes_)
-    if (node.active) next = std::min({next, node.next, lost_at(node)});
-  return next;
+    if (node.active) deadline_ = std::min({deadline_, node.next, lost_at(node)});
 }
 
 std::optional<NodeEvent> NodeGuard::take_event() {

@@ -27,13 +27,13 @@ class NodeGuard {
  public:
   /// `node` 1..127. The first request is due at once.
   void start(std::uint8_t node, GuardOptions options, TimePoint now);
-  void stop(std::uint8_t node) { nodes_[node] = {}; }
+  void stop(std::uint8_t node);
   bool guards(std::uint8_t node) const { return nodes_[node].active; }
 
   void on_frame(const can::Frame& frame, TimePoint now);
   void on_time(TimePoint now);
   std::optional<can::Frame> take_frame();
-  TimePoint deadline() const;
+  TimePoint deadline() const { return deadline_; }
   /// NodeEvent::GuardingLost and NodeEvent::GuardingBack.
   std::optional<NodeEvent> take_event();
 
@@ -48,8 +48,10 @@ class NodeGuard {
     std::optional<std::uint8_t> toggle;  ///< The bit the next answer must carry.
   };
   TimePoint lost_at(const Node& node) const;
+  void update_deadline();
 
   std::array<Node, 128> nodes_{};
+  TimePoint deadline_ = kNever;  ///< Of all nodes.
   std::deque<can::Frame> tx_;
   std::deque<NodeEvent> events_;
 };

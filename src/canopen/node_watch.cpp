@@ -11,7 +11,10 @@ TimePoint NodeWatch::Node::deadline() const {
 
 void NodeWatch::on_frame(const can::Frame& frame, TimePoint now) {
   if (const auto emergency = parse_emergency(frame)) return on_emergency(*emergency, now);
-  if (const auto message = parse_error_control(frame)) on_error_control(*message, now);
+  if (const auto message = parse_error_control(frame)) {
+    on_error_control(*message, now);
+    update_deadline();
+  }
 }
 
 /// A node that repeats itself while nobody takes its events is counted, not listed.
@@ -47,6 +50,7 @@ void NodeWatch::on_error_control(const ErrorControl& message, TimePoint now) {
 }
 
 void NodeWatch::on_time(TimePoint now) {
+  if (now < deadline_) return;
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     auto& node = nodes_[i];
     if (now < node.deadline()) continue;
@@ -55,12 +59,17 @@ void NodeWatch::on_time(TimePoint now) {
     node.last.reset();
     node.intervals = 0;
   }
+  update_deadline();
 }
 
-TimePoint NodeWatch::deadline() const {
-  TimePoint next = kNever;
-  for (const auto& node : nodes_) next = std::min(next, node.deadline());
-  return next;
+void NodeWatch::update_deadline() {
+  deadline_ = kNever;
+  for (const auto& node : nodes_) deadline_ = std::min(deadline_, node.deadline());
+}
+
+void NodeWatch::set_guarded(std::uint8_t node, bool guarded) {
+  nodes_[node].guarded = guarded;
+  update_deadline();
 }
 
 std::optional<NodeEvent> NodeWatch::take_event() {
@@ -75,6 +84,7 @@ void NodeWatch::forget(std::uint8_t node) {
   nodes_[node] = {};
   nodes_[node].boots = before.boots;
   nodes_[node].guarded = before.guarded;
+  update_deadline();
 }
 
 }  // namespace servoctl::canopen

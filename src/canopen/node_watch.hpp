@@ -46,7 +46,7 @@ class NodeWatch {
  public:
   void on_frame(const can::Frame& frame, TimePoint now);
   void on_time(TimePoint now);
-  TimePoint deadline() const;
+  TimePoint deadline() const { return deadline_; }
 
   std::optional<NodeEvent> take_event();
 
@@ -59,7 +59,7 @@ class NodeWatch {
   /// The longest interval seen between two heartbeats; zero until two were.
   Duration period(std::uint8_t node) const { return nodes_[node].period; }
   /// The node answers a master's questions and sends nothing by itself: its silence means nothing.
-  void set_guarded(std::uint8_t node, bool guarded) { nodes_[node].guarded = guarded; }
+  void set_guarded(std::uint8_t node, bool guarded);
   /// Forgets the state and the period of the node, before it is told to reset.
   void forget(std::uint8_t node);
 
@@ -78,7 +78,10 @@ class NodeWatch {
   void on_emergency(const Emergency& emergency, TimePoint now);
   void on_error_control(const ErrorControl& message, TimePoint now);
 
+  void update_deadline();
+
   std::array<Node, 128> nodes_{};
+  TimePoint deadline_ = kNever;  ///< Of all nodes; asked with every frame, changed by heartbeats only.
   std::deque<NodeEvent> events_;
 };
 

@@ -13,7 +13,7 @@ class Progress {
  public:
   explicit Progress(Console& console) : console_(&console) {}
 
-  /// `done` bytes of `total`, when that is known. `now` is on the wall's steady clock.
+  /// `done` bytes of `total`, when that is known. `now` is on the clock of the bus.
   void update(std::size_t done, std::optional<std::size_t> total, TimePoint now);
   /// Wipes the line.
   void end();

@@ -209,8 +209,8 @@ Result<session::Session*> Shell::open(const Settings& settings) {
     trace_ = settings.trace;
     session_ = std::make_unique<session::Session>(std::move(*bus), settings.bus, session::Options{});
     session_->options().cancelled = options_.cancelled;
-    session_->options().progress = [this](std::size_t done, std::optional<std::size_t> total) {
-      progress_.update(done, total, steady_now());
+    session_->options().progress = [this](std::size_t done, std::optional<std::size_t> total, TimePoint now) {
+      progress_.update(done, total, now);
     };
     // Boot-ups of drives that are simulated in this process are no news.
     if (const auto heard = session_->listen(); !heard) return tl::unexpected<Error>(heard.error());

@@ -37,16 +37,18 @@ Result<void> Session::download(std::uint8_t node, ObjectAddress object, Bytes da
 Result<std::optional<can::Frame>> Session::receive(TimePoint deadline) {
   if (options_.cancelled) {
     if (options_.cancelled()) return fail(Errc::interrupted, "interrupted");
-    deadline = std::min(deadline, now() + kCancelSlice);
+    // A stale time ends the wait too early at most, and saves asking the clock once a frame.
+    deadline = std::min(deadline, received_at_ + kCancelSlice);
   }
   while (const auto question = guard_.take_frame())
     if (const auto sent = bus_->send(*question); !sent) return tl::unexpected<Error>(sent.error());
   auto frame = bus_->receive(std::min({deadline, watch_.deadline(), guard_.deadline()}));
   if (!frame) return frame;
-  if (*frame) watch_.on_frame(**frame, now());
-  if (*frame) guard_.on_frame(**frame, now());
-  watch_.on_time(now());
-  guard_.on_time(now());
+  received_at_ = now();
+  if (*frame) watch_.on_frame(**frame, received_at_);
+  if (*frame) guard_.on_frame(**frame, received_at_);
+  watch_.on_time(received_at_);
+  guard_.on_time(received_at_);
   if (const auto report = *frame ? can::parse_report(**frame) : std::nullopt)
     if (const auto alive = on_report(*report); !alive) return tl::unexpected<Error>(alive.error());
   return frame;

@@ -34,8 +34,9 @@ struct Options {
   Duration timeout = std::chrono::milliseconds(500);  ///< Longest wait for one SDO answer.
   std::uint32_t retries = 1;        ///< Further tries of a read that was not answered; never of a write.
   std::function<bool()> cancelled;  ///< Asked in every wait; may be empty.
-  /// Told how many bytes of a long transfer have gone, of how many in all where that is known; may be empty.
-  std::function<void(std::size_t done, std::optional<std::size_t> total)> progress;
+  /// Told how many bytes of a long transfer have gone, of how many in all where that is known, on the bus's
+  /// clock; may be empty.
+  std::function<void(std::size_t done, std::optional<std::size_t> total, TimePoint now)> progress;
 };
 
 /// A bus with its nodes. One pump drives any number of protocol machines; listeners see every frame in every
@@ -92,6 +93,7 @@ class Session {
   canopen::NodeGuard guard_;
   std::vector<can::ControllerReport> reports_;
   std::optional<can::ControllerReport> last_report_;
+  TimePoint received_at_{};  ///< When receive() ended; asking the clock costs a system call on some machines.
 };
 
 }  // namespace servoctl::session

@@ -54,7 +54,7 @@ std::vector<Result<Bytes>> TransferRun::run() {
       return std::move(results_);
     }
     if (*frame) dispatch(**frame);
-    const auto now = session_->now();
+    const auto now = session_->received_at_;
     for (auto& channel : channels_)
       if (channel.client.deadline() <= now) channel.client.on_time(now);
   }
@@ -67,9 +67,9 @@ void TransferRun::dispatch(const can::Frame& frame) {
   const int channel = channel_of_node_[frame.id & 0x7FU];
   if (channel == kNone) return;
   auto& client = channels_[static_cast<std::size_t>(channel)].client;
-  client.on_frame(frame, session_->now());
+  client.on_frame(frame, session_->received_at_);
   if (session_->options().progress && client.total().value_or(client.transferred()) > kLongTransfer)
-    session_->options().progress(client.transferred(), client.total());
+    session_->options().progress(client.transferred(), client.total(), session_->received_at_);
 }
 
 bool TransferRun::advance(Channel& channel) {

@@ -1,0 +1,81 @@
+#include "can/socketcan_error.hpp"
+
+#include <fmt/format.h>
+#include <cerrno>
+#include <string_view>
+
+#include "can/descriptor.hpp"
+#include "can/socketcan.hpp"
+
+namespace servoctl::can {
+namespace {
+
+bool needs_no_bitrate(std::string_view name) {
+  return name.starts_with("vcan") || name.starts_with("vxcan") || name.starts_with("slcan");
+}
+
+std::string missing_hint() {
+  const auto present = can_interfaces();
+  const auto here = present.empty() ? std::string("no CAN interface is here")
+                                    : fmt::format("CAN interfaces here: {}", fmt::join(present, ", "));
+  return here +
+         "; for a USB adapter: plug it in, then `sudo ip link set can0 up type can bitrate 500000`, with the "
+         "bitrate "
+         "of the drives; for a virtual bus: `sudo ip link add dev vcan0 type vcan && sudo ip link set vcan0 "
+         "up`";
+}
+
+}  // namespace
+
+std::string up_command(const std::string& name) {
+  if (needs_no_bitrate(name)) return fmt::format("`sudo ip link set {} up`", name);
+  return fmt::format("`sudo ip link set {} up type can bitrate 500000`, with the bitrate of the drives",
+                     name);
+}
+
+tl::unexpected<Error> interface_missing(const std::string& name) {
+  return fail(Errc::bus, fmt::format("there is no interface {}", name), missing_hint());
+}
+
+tl::unexpected<Error> interface_is_no_can(const std::string& name) {
+  return fail(Errc::bus, fmt::format("{} is not a CAN interface", name), missing_hint());
+}
+
+tl::unexpected<Error> interface_down(const std::string& name) {
+  return fail(Errc::bus, fmt::format("{} is down", name), fmt::format("bring it up: {}", up_command(name)));
+}
+
+tl::unexpected<Error> interface_bus_off(const std::string& name) {
+  return fail(
+      Errc::bus, fmt::format("{} is off the bus after too many errors (bus-off)", name),
+      fmt::format(
+          "check the bitrate, the cable and the two 120 ohm resistors; then `sudo ip link set {0} type "
+          "can restart`, or take it down and up again: `sudo ip link set {0} down && sudo ip link "
+          "set {0} up`",
+          name));
+}
+
+tl::unexpected<Error> interface_lost(const std::string& name, int error) {
+  const auto up = up_command(name);
+  if (error == ENETDOWN)
+    return fail(Errc::bus, fmt::format("{} went down", name), fmt::format("bring it up again: {}", up));
+  if (error == ENXIO || error == ENODEV)
+    return fail(Errc::bus, fmt::format("{} went down: the interface is gone", name),
+                fmt::format("was the adapter unplugged? plug it in, then {}", up));
+  return fail(Errc::bus, fmt::format("{} failed: {}", name, system_text(error)),
+              fmt::format("`ip -details -statistics link show {}` tells its state", name));
+}
+
+tl::unexpected<Error> interface_queue_full(const std::string& name) {
+  return fail(Errc::bus, fmt::format("the transmit queue of {} stays full", name),
+              fmt::format("is another node on the bus and the bitrate right? "
+                          "`ip -details -statistics link show {0}`, `sudo ip link set {0} txqueuelen 1000`",
+                          name));
+}
+
+tl::unexpected<Error> interface_cannot_open(const std::string& name, int error) {
+  return fail(Errc::bus, fmt::format("cannot open {}: {}", name, system_text(error)),
+              fmt::format("`ip -details link show {}` tells its state", name));
+}
+
+}  // namespace servoctl::can

@@ -1,0 +1,115 @@
+// From the name of an interface to a socket that is bound to it.
+#include <linux/can.h>
+#include <linux/can/error.h>
+#include <linux/can/raw.h>
+#include <net/if.h>
+#include <net/if_arp.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+
+#include "can/socketcan.hpp"
+#include "can/socketcan_error.hpp"
+
+namespace servoctl::can {
+namespace {
+
+constexpr const char* kNetwork = "/sys/class/net";
+
+/// A controller that is bus-off has no carrier; what is sent then is dropped without an error.
+bool has_carrier(const std::string& name) {
+  int carrier = 1;
+  std::ifstream file(fmt::format("{}/{}/carrier", kNetwork, name));
+  return !(file >> carrier) || carrier != 0;
+}
+
+/// Finds the interface and makes sure that it can be used.
+Result<int> interface_index(int fd, const std::string& name) {
+  ifreq request{};
+  std::copy(name.begin(), name.end(), request.ifr_name);
+  if (::ioctl(fd, SIOCGIFINDEX, &request) != 0) {
+    if (errno != ENODEV) return interface_cannot_open(name, errno);
+    return interface_missing(name);
+  }
+  const int index = request.ifr_ifindex;
+  if (::ioctl(fd, SIOCGIFHWADDR, &request) != 0) return interface_cannot_open(name, errno);
+  if (request.ifr_hwaddr.sa_family != ARPHRD_CAN) return interface_is_no_can(name);
+  if (::ioctl(fd, SIOCGIFFLAGS, &request) != 0) return interface_cannot_open(name, errno);
+  if ((request.ifr_flags & IFF_UP) == 0) return interface_down(name);
+  if (!has_carrier(name)) return interface_bus_off(name);
+  return index;
+}
+
+template <class T>
+bool set_option(int fd, int level, int option, const T& value) {
+  return ::setsockopt(fd, level, option, &value, sizeof value) == 0;
+}
+
+/// Frames with a 29-bit identifier never pass: CANopen has none, and they would match an 11-bit mask.
+bool set_filters(int fd, std::span<const Filter> filters) {
+  std::vector<can_filter> raw;
+  if (filters.size() <= CAN_RAW_FILTER_MAX)
+    for (const auto& filter : filters)
+      raw.push_back({filter.id & CAN_SFF_MASK, (filter.mask & CAN_SFF_MASK) | CAN_EFF_FLAG});
+  if (raw.empty()) raw.push_back({0, CAN_EFF_FLAG});
+  const auto size = static_cast<socklen_t>(raw.size() * sizeof raw.front());
+  return ::setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FILTER, raw.data(), size) == 0;
+}
+
+bool configure(int fd, std::span<const Filter> filters) {
+  constexpr can_err_mask_t kReports = CAN_ERR_TX_TIMEOUT | CAN_ERR_CRTL | CAN_ERR_BUSOFF | CAN_ERR_RESTARTED;
+  constexpr int kReceiveBytes = 4 << 20;
+  // Beyond the limit for ordinary users where that is allowed; otherwise the kernel takes what it allows.
+  if (!set_option(fd, SOL_SOCKET, SO_RCVBUFFORCE, kReceiveBytes))
+    set_option(fd, SOL_SOCKET, SO_RCVBUF, kReceiveBytes);
+  set_option(fd, SOL_SOCKET, SO_RXQ_OVFL, 1);
+  return set_option(fd, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, kReports) && set_filters(fd, filters);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Bus>> open_socketcan(std::string_view interface_name,
+                                            std::span<const Filter> filters) {
+  const std::string name(interface_name);
+  if (name.empty() || name.size() >= IFNAMSIZ || name.find('/') != std::string::npos)
+    return fail(Errc::usage, fmt::format("'{}' cannot be the name of an interface", name),
+                "an interface has 1 to 15 characters, such as can0; `ip link` lists them");
+  Descriptor socket(::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW));
+  if (!socket && (errno == EAFNOSUPPORT || errno == EPROTONOSUPPORT))
+    return fail(
+        Errc::bus, fmt::format("cannot open {}: the kernel has no CAN (SocketCAN)", name),
+        "load it with `sudo modprobe can-raw`, or use a bus that needs no kernel CAN: local:NAME between "
+        "processes of this machine, sim: for simulated drives");
+  if (!socket) return interface_cannot_open(name, errno);
+  const auto index = interface_index(socket.get(), name);
+  if (!index) return fail(index.error());
+  if (!configure(socket.get(), filters)) return interface_cannot_open(name, errno);
+  sockaddr_can address{};
+  address.can_family = AF_CAN;
+  address.can_ifindex = *index;
+  // The one way in which the socket interface takes addresses of all families.
+  const auto* const generic = reinterpret_cast<const sockaddr*>(&address);
+  if (::bind(socket.get(), generic, sizeof address) != 0) return interface_cannot_open(name, errno);
+  return std::make_unique<SocketCanBus>(std::move(socket), name);
+}
+
+std::vector<std::string> can_interfaces() {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(kNetwork, error), end; !error && entry != end;
+       entry.increment(error)) {
+    int type = 0;
+    std::ifstream(entry->path() / "type") >> type;
+    if (type == ARPHRD_CAN) names.push_back(entry->path().filename());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace servoctl::can
