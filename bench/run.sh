@@ -37,3 +37,6 @@ for name, words in {
     times = [run(words) for _ in range(30)]
     print(f"{name:<54} {statistics.median(times):9.2f} {peak(words):10.1f}")
 PYTHON
+
+echo
+"$(dirname "$0")/../tests/with-vcan.sh" "$(cd "$(dirname "$0")" && pwd)/vcan.sh" "$(cd "$build" && pwd)" || echo "vcan0: not available here"
