@@ -114,7 +114,7 @@ TEST_F(ErrorControlTest, AnswersGuardingWithAToggleBitThatBeginsAtZero) {
 TEST_F(ErrorControlTest, SendsHeartbeatsAndAnswersNoGuardingThen) {
   boot();
   slave.set_heartbeat(200ms, now);
-  play(slave, now, {"+ 199ms", "+ 1ms", "> 702#7F", "< 702#R1", "+ 199ms", "> 702#7F"});
+  play(slave, now, {"+ 199ms", "+ 1ms", "> 702#7F", "< 702#R1", "+ 198ms", "+ 1ms", "> 702#7F"});
   slave.set_heartbeat(Duration::zero(), now);
   play(slave, now, {"+ 1s", "< 702#R1", "> 702#7F"});
 }

@@ -122,6 +122,13 @@ TEST_F(BlockClientTest, AcknowledgesEarlyWhenTheEndOfABlockWasLost) {
   expect_failure(Errc::timeout, "no answer within 500 ms");
 }
 
+TEST_F(BlockClientTest, AsksEarlyOnlyOnceForTheSameBlock) {
+  upload({"> 602#A4501F017F000000", "< 582#C2501F0115000000", "> 602#A300000000000000",
+          "< 582#0101010101010101", "+ 250ms", "> 602#A2017F0000000000", "< 582#0102020202020202", "+ 499ms",
+          "+ 1ms", "> 602#80501F0100000405"});
+  expect_failure(Errc::timeout, "no answer within 500 ms");
+}
+
 TEST_F(BlockClientTest, IgnoresSegmentsThatComeTwice) {
   upload({"> 602#A4501F017F000000", "< 582#C2501F010E000000", "> 602#A300000000000000",
           "< 582#C2501F010E000000", "< 582#0101010101010101", "< 582#0101010101010101",
@@ -294,6 +301,16 @@ TEST_F(BlockServerTest, GivesUpWhenTheClientFallsSilent) {
       server, now,
       {"< 602#A4501F017F000000", "> 582#C6501F0114000000", "< 602#A300000000000000", "> 582#0101020304050607",
        "> 582#0208090A0B0C0D0E", "> 582#830F101112131400", "+ 0ms", "+ 1s", "> 582#80501F0100000405"});
+}
+
+TEST_F(BlockServerTest, GivesTheClientItsFullTimeForEveryAnswer) {
+  object.value = text("123456789");
+  play(server, now,
+       {"< 602#A4501F017F000000", "> 582#C6501F0109000000", "+ 900ms", "< 602#A300000000000000",
+        "> 582#0131323334353637", "> 582#8238390000000000", "+ 0ms", "+ 900ms", "< 602#A2027F0000000000",
+        "> 582#D5C3310000000000", "+ 999ms", "+ 1ms", "> 582#80501F0100000405"});
+  play(server, now,
+       {"< 602#C6501F0109000000", "> 582#A4501F017F000000", "+ 999ms", "+ 1ms", "> 582#80501F0100000405"});
 }
 
 /// A client and a server with a line between them that loses and doubles frames.

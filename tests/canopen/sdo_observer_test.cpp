@@ -73,6 +73,25 @@ TEST_F(SdoObserverTest, PutsABlockWriteTogether) {
   EXPECT_EQ(see("582#A100000000000000").kind, Kind::end);
 }
 
+TEST_F(SdoObserverTest, CountsOnlyWhatWasAcknowledgedOfEveryBlock) {
+  const auto end =
+      see({"602#C6501F0119000000", "582#A4501F0102000000", "602#0131313131313131", "602#0232323232323232",
+           "582#A202020000000000", "602#0133333333333333", "602#8234343434000000", "582#A201020000000000",
+           "602#8134343434000000", "582#A201020000000000", "602#CD00000000000000"});
+  EXPECT_EQ(end.data, text("1111111222222233333334444"));
+}
+
+TEST_F(SdoObserverTest, SaysWhichFramesBelongToABlockTransfer) {
+  EXPECT_TRUE(see("602#A4501F017F000000").block);
+  EXPECT_TRUE(see("602#A100000000000000").block);
+  EXPECT_FALSE(see("602#4041600000000000").block);
+  EXPECT_FALSE(see("602#A4").block);
+}
+
+TEST_F(SdoObserverTest, TakesFourBytesWhereNoSizeIsIndicated) {
+  EXPECT_EQ(see("602#2E00200001020304").data, (Bytes{1, 2, 3, 4}));
+}
+
 TEST_F(SdoObserverTest, TellsWhoAbortedWhat) {
   const auto refused = see({"602#40FF5F0000000000", "582#80FF5F0000000206"});
   EXPECT_EQ(refused.kind, Kind::abort);

@@ -118,6 +118,16 @@ TEST_F(SdoServerTest, ForgetsATransferTheClientAborts) {
         "< 602#0001020304050607", "> 582#8000200001000405"});
 }
 
+TEST_F(SdoServerTest, GivesTheClientItsFullTimeForEverySegment) {
+  play(server, now,
+       {"< 602#2100200010000000", "> 582#6000200000000000", "+ 900ms", "< 602#0031323334353637",
+        "> 582#2000000000000000", "+ 999ms", "+ 1ms", "> 582#8000200000000405"});
+  store.values[{0x2000, 0}] = Bytes(20, 1);
+  play(server, now,
+       {"< 602#4000200000000000", "> 582#4100200014000000", "+ 900ms", "< 602#6000000000000000",
+        "> 582#0001010101010101", "+ 999ms", "+ 1ms", "> 582#8000200000000405"});
+}
+
 TEST_F(SdoServerTest, GivesUpAClientThatFallsSilent) {
   play(server, now,
        {"< 602#2100200008000000", "> 582#6000200000000000", "+ 999ms", "+ 1ms", "> 582#8000200000000405",

@@ -38,7 +38,7 @@ TEST(ErrorControl, TellsBootUpAndStatesAndDropsTheToggleBit) {
   EXPECT_EQ(parse_error_control(frame("705#05"))->state, NmtState::operational);
   EXPECT_EQ(parse_error_control(frame("705#85"))->state, NmtState::operational);
   EXPECT_EQ(parse_error_control(frame("77F#7F"))->node, 127);
-  for (const auto* text : {"700#05", "780#05", "705#", "705#0500", "705#R", "00000705#05"})
+  for (const auto* text : {"700#05", "780#05", "705#", "705#0500", "705#R", "705#R1", "00000705#05"})
     EXPECT_FALSE(parse_error_control(frame(text))) << text;
 }
 
@@ -58,6 +58,41 @@ TEST(Emergency, OfTwoBytesIsUnderstoodAndSyncIsNone) {
   EXPECT_FALSE(parse_emergency(frame("080#01")));
   EXPECT_FALSE(parse_emergency(frame("081#16")));
   EXPECT_FALSE(parse_emergency(frame("100#0000000000000000")));
+}
+
+TEST(Emergency, EveryClassOfCia301HasItsText) {
+  // CiA 301 v4.2, table 26: the code, and another one of the same class.
+  const std::pair<std::uint16_t, std::string_view> rows[] = {{0x1000, "generic error"},
+                                                             {0x2300, "current, output side"},
+                                                             {0x2400, "current"},
+                                                             {0x3000, "voltage, generic"},
+                                                             {0x3400, "voltage"},
+                                                             {0x4100, "ambient temperature"},
+                                                             {0x4200, "device temperature"},
+                                                             {0x4300, "temperature"},
+                                                             {0x5000, "device hardware"},
+                                                             {0x6000, "device software, generic"},
+                                                             {0x6100, "internal software"},
+                                                             {0x6200, "user software"},
+                                                             {0x6300, "data set"},
+                                                             {0x6400, "device software"},
+                                                             {0x7000, "additional modules"},
+                                                             {0x7100, "additional modules"},
+                                                             {0x8000, "monitoring"},
+                                                             {0x8100, "communication, generic"},
+                                                             {0x8110, "CAN overrun: messages lost"},
+                                                             {0x8120, "CAN in error passive mode"},
+                                                             {0x8140, "recovered from bus-off"},
+                                                             {0x8150, "CAN-ID collision"},
+                                                             {0x8200, "protocol error, generic"},
+                                                             {0x8210, "PDO not processed: length error"},
+                                                             {0x8220, "PDO length exceeded"},
+                                                             {0x8250, "RPDO timed out"},
+                                                             {0x8300, "monitoring"},
+                                                             {0x9000, "external error"},
+                                                             {0xF001, "additional functions"},
+                                                             {0xFF01, "device specific"}};
+  for (const auto& [code, text] : rows) EXPECT_EQ(emergency_text(code), text) << std::hex << code;
 }
 
 TEST(Emergency, CodesAreNamedByTheirClass) {
@@ -166,6 +201,22 @@ TEST_F(NodeWatchTest, LearnsAnewAfterBootUp) {
   hear("705#00", 10ms);
   watch.on_time(now + 1h);
   EXPECT_EQ(kinds(), std::vector<std::size_t>{kBootUp});
+}
+
+TEST_F(NodeWatchTest, TellsNoChangeAfterALostNodeHasBooted) {
+  for (int i = 0; i < 4; ++i) hear("705#7F", 100ms);
+  watch.on_time(now + 1h);
+  now += 1h;
+  hear("705#00", 1ms);
+  hear("705#7F", 100ms);
+  EXPECT_EQ(kinds(), (std::vector<std::size_t>{kLost, kBootUp}));
+}
+
+TEST_F(NodeWatchTest, DoesNotTakeTheSilenceOfALostNodeForItsPeriod) {
+  for (int i = 0; i < 4; ++i) hear("705#05", 200ms);
+  watch.on_time(now + 1s);
+  for (int i = 0; i < 4; ++i) hear("705#05", i == 0 ? 10s : Duration(200ms));
+  EXPECT_EQ(watch.deadline(), now + 600ms);
 }
 
 TEST_F(NodeWatchTest, PassesEmergenciesOn) {
