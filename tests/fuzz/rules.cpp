@@ -1,0 +1,16 @@
+#include "drive/rules.hpp"
+
+#include "tests/fuzz/fuzz.hpp"
+
+using namespace servoctl;
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const auto rules = drive::parse_rules(fuzz::text(data, size), "fuzz.toml");
+  if (rules) {
+    fuzz::require(!rules->family.empty(), "rules name their family");
+    fuzz::require(!rules->numbering || rules->numbering->block > 0, "a block of parameters is not empty");
+  } else {
+    fuzz::require(rules.error().code == Errc::file, "rules that cannot be read are Errc::file");
+  }
+  return 0;
+}
