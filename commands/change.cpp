@@ -5,6 +5,7 @@
 
 #include "canopen/sdo_client.hpp"
 #include "drive/cia402.hpp"
+#include "session/measure.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -12,9 +13,10 @@ namespace {
 using report::Show;
 using report::Value;
 
-/// An object no dictionary knows is read to learn its size: a write of another length would be refused or
+/// An object whose length no manual tells is read to learn it: a write of another length would be refused or
 /// worse.
-Result<od::DataType> learn_type(Context& context, std::uint8_t node, const drive::Target& target) {
+Result<drive::Meaning> learn_size(Context& context, std::uint8_t node, const drive::Target& target,
+                                  const drive::Meaning& meaning) {
   const auto bytes = context.session->upload(node, target.address);
   if (!bytes) {
     auto error = bytes.error();
@@ -22,11 +24,26 @@ Result<od::DataType> learn_type(Context& context, std::uint8_t node, const drive
     error.hint = "say the type: --type i32, or the drive family: -d FAMILY";
     return tl::unexpected<Error>(std::move(error));
   }
-  Reading reading{node, target, {}, *bytes};
-  const auto type = type_of(reading, *bytes);
-  context.notices.push_back(fmt::format("node {}, object {}: taken as {} by the length of what it holds",
-                                        node, to_string(target.address), od::name(type)));
-  return type;
+  auto learned = drive::fitted(meaning, bytes->size());
+  if (!meaning.type_known) learned.type = type_of({node, target, {}, *bytes}, *bytes);
+  if (learned.type != meaning.type || !meaning.type_known)
+    context.notices.push_back(fmt::format("node {}, object {}: taken as {} by the length of what it holds",
+                                          node, to_string(target.address), od::name(learned.type)));
+  if (const auto size = od::size_of(learned.type); size && *size != bytes->size())
+    return fail(Errc::negative,
+                fmt::format("the object holds {} bytes, and {} is none of that length", bytes->size(),
+                            od::name(learned.type)),
+                "say the type: --type i32");
+  return learned;
+}
+
+/// What the drive's gear makes of the unit in the text, where only the drive can tell.
+void add_bridge(Context& context, std::uint8_t node, const drive::Target& target, std::string_view text,
+                drive::Meaning& meaning) {
+  if (!meaning.measure || context.profile == nullptr || !drive::needs_bridge(meaning, text)) return;
+  const session::MeasureQuestion question[] = {{node, *meaning.measure}};
+  const auto measure = session::read_measures(*context.session, *context.profile, question).front();
+  if (measure) meaning.bridge = drive::bridge(meaning.unit, target.address, *measure);
 }
 
 bool is_parameter(const drive::Profile& profile, const Change& change, const std::string& id) {
@@ -46,8 +63,8 @@ std::string_view reason_to_ask(const drive::Profile* profile, const Change& chan
   const auto controlword = static_cast<std::uint16_t>(load_le(change.data) & 0xFF7FU);
   if (index == 0x6040 && drive::decode_command(controlword, 0) == drive::ControlCommand::enable_operation)
     return "It enables the drive: the motor is energised and may move.";
-  if (profile != nullptr && (is_parameter(*profile, change, profile->rules.node_id_parameter) ||
-                             is_parameter(*profile, change, profile->rules.bitrate_parameter)))
+  if (profile != nullptr && (is_parameter(*profile, change, profile->rules.nmt.node_id) ||
+                             is_parameter(*profile, change, profile->rules.nmt.bitrate)))
     return "After a restart the drive is found under another address.";
   return {};
 }
@@ -63,9 +80,9 @@ std::string effect_text(od::Effect effect) {
 }
 
 report::List change_row(const Change& change, const Result<session::Written>& written, bool chinese) {
-  const auto meaning = drive::meaning(change.target, change.node);
-  const auto value = od::decode(change.type, change.data);
-  const auto shown = value ? od::to_string(*value) : to_hex(change.data);
+  const Reading reading{change.node, change.target, change.type, change.data, change.bridge};
+  const auto decoded = decode_value(reading, change.data);
+  const auto effect = drive::meaning(change.target, change.node).effect;
   const auto name = chinese ? change.target.label_zh() : change.target.label();
   std::string state = "not written";
   if (written && written->answer_lost)
@@ -74,25 +91,23 @@ report::List change_row(const Change& change, const Result<session::Written>& wr
     state = "written, read back";
   else if (written)
     state = "written";
-  const auto* label = value ? drive::label_of(meaning, *value) : nullptr;
   return {change.node,
           to_string(change.target.address),
           change.target.address.index,
           change.target.address.sub,
           report::text_or_null(name),
           change.target.parameter != nullptr ? Value(change.target.parameter->id) : Value(),
-          meaning.scale == 1 || !value
-              ? shown
-              : fmt::format("{} = {:.12g} {}", shown, drive::scaled(meaning, *value), meaning.unit),
-          value ? od_value(*value) : Value(shown),
-          value ? Value(drive::scaled(meaning, *value)) : Value(),
-          report::text_or_null(std::string(meaning.unit)),
-          label != nullptr ? Value(label->label) : Value(),
+          decoded.text,
+          decoded.raw.is_null() ? decoded.value : decoded.raw,
+          decoded.value,
+          report::text_or_null(decoded.unit),
+          decoded.familiar,
+          decoded.label,
           state,
           written.has_value(),
           written ? Value(written->read_back.has_value()) : Value(false),
-          written ? report::text_or_null(effect_text(meaning.effect)) : Value(),
-          report::text_or_null(std::string(od::name(meaning.effect))),
+          written ? report::text_or_null(effect_text(effect)) : Value(),
+          report::text_or_null(std::string(od::name(effect))),
           written ? Value() : error_record(written.error())};
 }
 
@@ -119,16 +134,19 @@ Result<Change> make_change(Context& context, std::uint8_t node, const drive::Tar
   }
   if (type) {
     meaning.type = *type;
-  } else if (!meaning.type_known) {
-    const auto learned = learn_type(context, node, target);
+  } else if (!meaning.type_known || !meaning.size_known) {
+    const auto learned = learn_size(context, node, target, meaning);
     if (!learned) return tl::unexpected<Error>(learned.error());
-    meaning.type = *learned;
+    meaning = *learned;
   }
+  add_bridge(context, node, target, value, meaning);
   const auto parsed = drive::parse_quantity(meaning, value);
   if (!parsed) return named(parsed.error());
   const auto data = od::encode(meaning.type, *parsed);
   if (!data) return named(data.error());
-  return Change{node, target, meaning.type, *data};
+  Change out{node, target, meaning.type, *data};
+  out.bridge = meaning.bridge;
+  return out;
 }
 
 Result<void> confirm_changes(Context& context, std::span<const Change> changes) {
@@ -171,6 +189,7 @@ Value write_changes(Context& context, std::span<const Change> changes, bool read
                    {"raw", "", Show::json},
                    {"value", "", Show::json},
                    {"unit", "", Show::json},
+                   {"si", "", Show::json},
                    {"label", "", Show::json},
                    {"state", "result", Show::text},
                    {"written", "", Show::json},

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "commands/command.hpp"
+#include "commands/reading.hpp"
 #include "commands/records.hpp"
 #include "session/write.hpp"
 
@@ -18,6 +19,7 @@ struct Change {
   od::DataType type = od::DataType::u32;
   Bytes data;
   canopen::Transfer transfer = canopen::Transfer::automatic;
+  std::optional<drive::Bridge> bridge = {};  ///< What the drive's own measures say of the unit.
 };
 
 /// Name of the object for a message: its label, else its address.

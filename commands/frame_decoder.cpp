@@ -8,6 +8,7 @@
 #include "canopen/nmt.hpp"
 #include "canopen/sdo_abort.hpp"
 #include "commands/notice.hpp"
+#include "commands/reading.hpp"
 #include "commands/records.hpp"
 
 namespace servoctl::commands {

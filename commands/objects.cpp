@@ -2,6 +2,7 @@
 
 #include "base/text.hpp"
 #include "commands/command.hpp"
+#include "commands/reading.hpp"
 #include "commands/records.hpp"
 
 namespace servoctl::commands {

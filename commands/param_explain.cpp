@@ -1,5 +1,6 @@
 #include "commands/command.hpp"
 #include "commands/records.hpp"
+#include "drive/naming.hpp"
 
 namespace servoctl::commands {
 namespace {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "commands/command.hpp"
+#include "commands/reading.hpp"
 #include "commands/records.hpp"
 
 namespace servoctl::commands {
@@ -14,20 +15,21 @@ constexpr Parameter kParameters[] = {
      .many = true},
 };
 
-Result<std::vector<const od::Parameter*>> wanted(const drive::Profile& profile,
-                                                 std::span<const std::string> words) {
-  std::vector<const od::Parameter*> out;
+Result<std::vector<drive::Target>> wanted(const drive::Profile& profile, std::span<const std::string> words) {
+  std::vector<drive::Target> out;
   for (const auto& word : words) {
     if (word.find('*') == std::string::npos) {
-      const auto parameter = drive::resolve_parameter(profile, word);
-      if (!parameter) return tl::unexpected<Error>(parameter.error());
-      out.push_back(*parameter);
+      const auto target = drive::resolve_panel(profile, word);
+      if (!target) return tl::unexpected<Error>(target.error());
+      if (!od::readable(drive::meaning(*target, 0).access))
+        return fail(Errc::usage, fmt::format("{} is write-only", target->label()), "`param set` writes it");
+      out.push_back(*target);
       continue;
     }
     const auto before = out.size();
     for (const auto& parameter : profile.parameters)
       if (fits(word, parameter.id) && parameter.object && od::readable(parameter.access))
-        out.push_back(&parameter);
+        out.push_back(drive::target_at(&profile, *parameter.object));
     if (out.size() == before)
       return fail(Errc::usage, fmt::format("no readable parameter fits '{}'", word),
                   "`param list` shows all");
@@ -36,19 +38,14 @@ Result<std::vector<const od::Parameter*>> wanted(const drive::Profile& profile,
 }
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
-  const auto parameters = wanted(*context.profile, arguments.all("id"));
-  if (!parameters) return tl::unexpected<Error>(parameters.error());
+  const auto targets = wanted(*context.profile, arguments.all("id"));
+  if (!targets) return tl::unexpected<Error>(targets.error());
   std::vector<Reading> readings;
   std::vector<session::SdoRequest> requests;
   for (const auto node : context.nodes) {
-    for (const auto* parameter : *parameters) {
-      const auto target = drive::resolve(context.profile, parameter->id);
-      if (!target) return tl::unexpected<Error>(target.error());
-      if (!od::readable(parameter->access))
-        return fail(Errc::usage, fmt::format("{} ({}) is write-only", parameter->id, parameter->name),
-                    "`param set` writes it");
-      readings.push_back({node, *target, {}, Bytes{}});
-      requests.push_back({.node = node, .object = target->address, .size = size_of(readings.back())});
+    for (const auto& target : *targets) {
+      readings.push_back({node, target, {}, Bytes{}});
+      requests.push_back({.node = node, .object = target.address, .size = size_of(readings.back())});
     }
   }
   auto answers = context.session->transfer(requests);

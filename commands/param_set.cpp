@@ -41,9 +41,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   std::vector<Change> changes;
   for (const auto node : context.nodes) {
     for (const auto& assignment : *assignments) {
-      const auto parameter = drive::resolve_parameter(*context.profile, assignment.id);
-      if (!parameter) return tl::unexpected<Error>(parameter.error());
-      const auto target = drive::resolve(context.profile, (*parameter)->id);
+      const auto target = drive::resolve_panel(*context.profile, assignment.id);
       if (!target) return tl::unexpected<Error>(target.error());
       auto change = make_change(context, node, *target, assignment.value, {});
       if (!change) return tl::unexpected<Error>(change.error());
@@ -54,8 +52,9 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   if (const auto confirmed = confirm_changes(context, changes); !confirmed)
     return tl::unexpected<Error>(confirmed.error());
   // A write-only parameter starts an action and has nothing to read back.
-  const bool readable = std::all_of(changes.begin(), changes.end(),
-                                    [](const Change& c) { return od::readable(c.target.parameter->access); });
+  const bool readable = std::all_of(changes.begin(), changes.end(), [](const Change& c) {
+    return od::readable(drive::meaning(c.target, c.node).access);
+  });
   return write_changes(context, changes, readable);
 }
 

@@ -1,5 +1,6 @@
 #include "commands/command.hpp"
 #include "commands/file_transfer.hpp"
+#include "commands/reading.hpp"
 #include "commands/records.hpp"
 #include "commands/transfer_option.hpp"
 #include "commands/type_option.hpp"

@@ -5,6 +5,7 @@
 #include "commands/command.hpp"
 #include "commands/records.hpp"
 #include "drive/cia402.hpp"
+#include "drive/quantity.hpp"
 
 namespace servoctl::commands {
 namespace {

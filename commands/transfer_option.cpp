@@ -18,7 +18,7 @@ Transfer given_transfer(const Arguments& arguments) {
 
 bool knows_block(const Context& context) {
   return context.profile == nullptr ||
-         (context.profile->rules.sdo_segmented && context.profile->rules.sdo_block);
+         (context.profile->rules.sdo.segmented && context.profile->rules.sdo.block);
 }
 
 }  // namespace
@@ -34,7 +34,7 @@ Result<Transfer> write_transfer(const Context& context, const Arguments& argumen
     return fail(Errc::usage, fmt::format("{} bytes do not fit an expedited transfer", size),
                 "it takes 1 to 4 bytes; leave --transfer out");
   if (given != Transfer::automatic || size <= 4) return given;
-  if (context.profile != nullptr && !context.profile->rules.sdo_segmented)
+  if (context.profile != nullptr && !context.profile->rules.sdo.segmented)
     return fail(
         Errc::usage,
         fmt::format("{} takes at most 4 bytes a write, and these are {}", context.profile->family, size),

@@ -68,10 +68,26 @@ std::string full_name(const Profile& profile, const Target& target) {
                                                       : to_string(target.address);
 }
 
+/// A number that only the family's rule knows.
+std::optional<Target> by_rule(const Profile& profile, std::string_view text) {
+  if (profile.parameter(text) != nullptr) return std::nullopt;
+  for (const auto& rule : profile.rules.numbering) {
+    const auto number = rule.unlisted ? rule.number(text) : std::nullopt;
+    if (!number) continue;
+    auto target = target_at(&profile, rule.object(*number));
+    if (target.parameter != nullptr) return target;
+    target.unlisted = rule.prefix + std::string(text.substr(rule.prefix.size()));
+    target.read_only = rule.read_only;
+    return target;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::string Target::label() const {
   if (parameter != nullptr) return parameter->id + " " + parameter->name;
+  if (!unlisted.empty()) return unlisted;
   return entry != nullptr ? entry->name : std::string();
 }
 
@@ -123,6 +139,13 @@ Result<const od::Parameter*> resolve_parameter(const Profile& profile, std::stri
               std::move(hint));
 }
 
+Result<Target> resolve_panel(const Profile& profile, std::string_view text) {
+  if (auto target = by_rule(profile, text)) return *target;
+  const auto parameter = resolve_parameter(profile, text);
+  if (!parameter) return tl::unexpected<Error>(parameter.error());
+  return resolve(&profile, (*parameter)->id);
+}
+
 Result<Target> resolve(const Profile* profile, std::string_view text) {
   if (const auto address = parse_object_address(text)) return target_at(profile, *address);
   if (profile == nullptr)
@@ -136,6 +159,7 @@ Result<Target> resolve(const Profile* profile, std::string_view text) {
                   "it can be changed on the panel only; `param explain` tells what it does");
     return target_at(profile, *parameter->object);
   }
+  if (auto target = by_rule(*profile, text)) return *target;
   auto found = named(*profile, text);
   if (found.empty()) {
     const auto wanted = od::identifier(text);

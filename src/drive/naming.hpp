@@ -16,6 +16,8 @@ struct Target {
   ObjectAddress address;
   const od::Entry* entry = nullptr;
   const od::Parameter* parameter = nullptr;
+  std::string unlisted;    ///< A panel number the family's rule gives an object, but its table does not list.
+  bool read_only = false;  ///< By the rule of such numbers.
 
   /// `Pn0202 Auto tuning mode`, `Statusword`, or empty when nothing is known.
   std::string label() const;
@@ -32,6 +34,10 @@ Result<Target> resolve(const Profile* profile, std::string_view text);
 /// The panel parameter of this number or name. Errc::usage as in resolve(); one without an object is found as
 /// well.
 Result<const od::Parameter*> resolve_parameter(const Profile& profile, std::string_view text);
+
+/// The object of a panel parameter, by number or name; of numbers the table does not list as well where the
+/// family's rule allows it. Errc::usage as in resolve().
+Result<Target> resolve_panel(const Profile& profile, std::string_view text);
 
 /// All names that resolve() understands, for completion: panel numbers as printed, then objects in index
 /// order.

@@ -30,11 +30,20 @@ std::optional<fs::path> own_folder() {
   return std::nullopt;
 }
 
+/// The family whose files say what CiA 301 and CiA 402 say of every drive.
+constexpr std::string_view kGenericFamily = "cia402";
+
+/// Whether it has controlword and statusword: the numbers from 6000h on mean other things in other profiles.
+bool is_drive(const od::Dictionary& dictionary) {
+  return dictionary.find({0x6040, 0}) != nullptr && dictionary.find({0x6041, 0}) != nullptr;
+}
+
 Result<void> add_dictionary(Profile& profile, const fs::path& path) {
   const auto text = read_file(path, od::kMostEdsBytes);
   if (!text) return tl::unexpected<Error>(text.error());
   auto file = od::read_eds(*text, path.string());
   if (!file) return tl::unexpected<Error>(file.error());
+  if (is_drive(file->dictionary)) od::inherit(file->dictionary, profile.dictionary);
   profile.dictionary = std::move(file->dictionary);
   if (!file->diagnostics.empty())
     profile.warnings.push_back(fmt::format("{0}: {1} errors, {2} warnings; `eds check {0}` lists them",
@@ -71,7 +80,7 @@ Result<void> add_faults(Profile& profile, const fs::path& path) {
 Result<void> add_rules(Profile& profile, const fs::path& path) {
   const auto text = read_file(path);
   if (!text) return tl::unexpected<Error>(text.error());
-  auto rules = parse_rules(*text, path.string());
+  auto rules = parse_rules(*text, path.string(), std::move(profile.rules));
   if (!rules) return tl::unexpected<Error>(rules.error());
   profile.rules = std::move(*rules);
   return {};
@@ -91,26 +100,62 @@ constexpr Part kParts[] = {
     {".faults.csv", add_faults},
 };
 
-Result<Profile> load_parts(const Family& family) {
-  Profile profile;
+/// Parents of parents end here: a family that is its own ancestor would never.
+constexpr int kMostAncestors = 4;
+
+Result<Profile> load_family(std::string_view name, std::span<const fs::path> folders, int ancestors);
+
+Result<Profile> load_parent(const Family& family, std::span<const fs::path> folders, int ancestors) {
+  std::error_code ignored;
+  const auto path = with_extension(family.stem, ".toml");
+  if (!fs::exists(path, ignored)) return Profile{};
+  const auto text = read_file(path);
+  if (!text) return tl::unexpected<Error>(text.error());
+  const auto parent = parent_of(*text);
+  if (parent.empty()) return Profile{};
+  if (ancestors == kMostAncestors)
+    return fail(Errc::file,
+                fmt::format("{}: its parents never end (parent = \"{}\")", path.string(), parent));
+  auto loaded = load_family(parent, folders, ancestors + 1);
+  if (!loaded)
+    return fail(Errc::file, fmt::format("{}: parent: {}", path.string(), loaded.error().message),
+                loaded.error().hint);
+  return loaded;
+}
+
+Result<Profile> load_parts(const Family& family, std::span<const fs::path> folders, int ancestors) {
+  auto parent = load_parent(family, folders, ancestors);
+  if (!parent) return parent;
+  auto profile = std::move(*parent);
   profile.family = family.name;
+  profile.warnings.clear();
   std::error_code ignored;
   for (const auto& part : kParts) {
     const auto path = with_extension(family.stem, part.extension);
     if (!fs::exists(path, ignored)) continue;
-    if (part.extension == ".dcf" && !profile.dictionary.empty()) continue;
+    if (part.extension == ".dcf" && fs::exists(with_extension(family.stem, ".eds"), ignored)) continue;
     if (const auto added = part.add(profile, path); !added) return tl::unexpected<Error>(added.error());
   }
   profile.build_index();
   return profile;
 }
 
-Result<Profile> load_single_file(const fs::path& path) {
+/// A file of the user's own stands on what CiA 402 says of the objects it shares with it.
+Result<Profile> load_single_file(const fs::path& path, std::span<const fs::path> folders) {
+  if (lower(path.extension().string()) == ".toml") {
+    const auto stem = fs::path(path).replace_extension();
+    return load_parts({lower(stem.filename().string()), stem}, folders, 0);
+  }
   Profile profile;
+  if (auto generic = load_family(kGenericFamily, folders, 0)) profile = std::move(*generic);
   profile.family = path.string();
+  profile.rules.name.clear();
+  profile.rules.vendor.clear();
+  profile.rules.name_zh.clear();
   const bool table = lower(path.extension().string()) == ".csv";
   const auto added = table ? add_parameters(profile, path) : add_dictionary(profile, path);
   if (!added) return tl::unexpected<Error>(added.error());
+  if (!table && !is_drive(profile.dictionary)) profile.faults.clear();
   profile.build_index();
   return profile;
 }
@@ -118,7 +163,7 @@ Result<Profile> load_single_file(const fs::path& path) {
 bool names_a_file(std::string_view family) {
   const auto folded = lower(family);
   return family.find('/') != std::string_view::npos || folded.ends_with(".eds") || folded.ends_with(".dcf") ||
-         folded.ends_with(".csv");
+         folded.ends_with(".csv") || folded.ends_with(".toml");
 }
 
 void find_in(const fs::path& folder, std::vector<Family>& out) {
@@ -197,12 +242,13 @@ std::vector<Family> find_families(std::span<const fs::path> folders) {
   return out;
 }
 
-Result<Profile> load_profile(std::string_view family, std::span<const fs::path> folders) {
-  if (names_a_file(family)) return load_single_file(fs::path(family));
+namespace {
+
+Result<Profile> load_family(std::string_view family, std::span<const fs::path> folders, int ancestors) {
   const auto families = find_families(folders);
   const auto found = std::find_if(families.begin(), families.end(),
                                   [&](const Family& f) { return equals_nocase(f.name, family); });
-  if (found != families.end()) return load_parts(*found);
+  if (found != families.end()) return load_parts(*found, folders, ancestors);
   std::vector<std::string> names;
   for (const auto& known : families) names.push_back(known.name);
   auto hint = did_you_mean(family, names);
@@ -212,6 +258,13 @@ Result<Profile> load_profile(std::string_view family, std::span<const fs::path> 
             ? std::string("no drive data was found: set SERVOCTL_DRIVES to its folder, or name an .eds file")
             : "known families: " + one_of(names) + "; or name an .eds file";
   return fail(Errc::usage, fmt::format("no drive family is called '{}'", family), std::move(hint));
+}
+
+}  // namespace
+
+Result<Profile> load_profile(std::string_view family, std::span<const fs::path> folders) {
+  if (names_a_file(family)) return load_single_file(fs::path(family), folders);
+  return load_family(family, folders, 0);
 }
 
 Result<Rules> load_rules(const Family& family) {

@@ -59,8 +59,9 @@ struct Family {
 /// file.
 std::vector<Family> find_families(std::span<const std::filesystem::path> folders);
 
-/// Loads a family by name, or a user's own `.eds`, `.dcf` or `.csv` file by path. Errc::usage for an unknown
-/// name (nearest ones offered), Errc::file for a file that cannot be used.
+/// Loads a family by name, or a user's own `.eds`, `.dcf`, `.csv` or `.toml` file by path (a `.toml` with the
+/// files of the same name beside it). What its parent says holds where it says nothing itself. Errc::usage
+/// for an unknown name (nearest ones offered), Errc::file for a file that cannot be used.
 Result<Profile> load_profile(std::string_view family, std::span<const std::filesystem::path> folders);
 
 /// Only the rules of a family, for recognising drives.

@@ -1,76 +1,16 @@
 #include "drive/quantity.hpp"
 
 #include <fmt/format.h>
-#include <array>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
 
 #include "base/number.hpp"
 #include "base/text.hpp"
+#include "drive/unit.hpp"
 
 namespace servoctl::drive {
 namespace {
-
-enum class Dimension : std::uint8_t {
-  time,
-  speed,
-  ratio,
-  frequency,
-  pulse_rate,
-  voltage,
-  current,
-  torque,
-  power,
-  angle,
-  temperature
-};
-
-struct Unit {
-  std::string_view name;
-  Dimension dimension;
-  double factor;  ///< One of this unit in the base unit of its dimension.
-};
-
-constexpr double kPi = 3.14159265358979323846;
-
-constexpr std::array kUnits{
-    Unit{"us", Dimension::time, 1e-6},
-    Unit{"ms", Dimension::time, 1e-3},
-    Unit{"s", Dimension::time, 1},
-    Unit{"min", Dimension::time, 60},
-    Unit{"rpm", Dimension::speed, 1},
-    Unit{"rev/s", Dimension::speed, 60},
-    Unit{"r/min", Dimension::speed, 1},
-    Unit{"rad/s", Dimension::speed, 30 / kPi},
-    Unit{"deg/s", Dimension::speed, 1. / 6},
-    Unit{"%", Dimension::ratio, 1},
-    Unit{"‰", Dimension::ratio, 0.1},
-    Unit{"Hz", Dimension::frequency, 1},
-    Unit{"kHz", Dimension::frequency, 1e3},
-    Unit{"pps", Dimension::pulse_rate, 1},
-    Unit{"kpps", Dimension::pulse_rate, 1e3},
-    Unit{"mV", Dimension::voltage, 1e-3},
-    Unit{"V", Dimension::voltage, 1},
-    Unit{"mA", Dimension::current, 1e-3},
-    Unit{"A", Dimension::current, 1},
-    Unit{"mNm", Dimension::torque, 1e-3},
-    Unit{"Nm", Dimension::torque, 1},
-    Unit{"W", Dimension::power, 1},
-    Unit{"kW", Dimension::power, 1e3},
-    Unit{"deg", Dimension::angle, 1. / 360},
-    Unit{"rad", Dimension::angle, 0.5 / kPi},
-    Unit{"rev", Dimension::angle, 1},
-    Unit{"degC", Dimension::temperature, 1},
-};
-
-const Unit* find_unit(std::string_view name) {
-  for (const auto& unit : kUnits)
-    if (unit.name == name) return &unit;
-  for (const auto& unit : kUnits)
-    if (equals_nocase(unit.name, name)) return &unit;
-  return nullptr;
-}
 
 /// Splits `60rpm` and `1.5 rev/s`; empty when the text does not begin with a number or nothing follows it.
 struct NumberWithUnit {
@@ -89,29 +29,41 @@ std::optional<NumberWithUnit> split_unit(std::string_view text) {
 /// The double nearest to the decimal number with 12 significant digits: takes the noise of 400 × 0.1 away.
 double tidy(double value) { return parse_real(fmt::format("{:.12g}", value)).value_or(value); }
 
-Result<od::Value> from_physical(const Meaning& meaning, const NumberWithUnit& given, std::string_view text) {
-  const auto* unit = find_unit(given.unit);
-  const auto* own = find_unit(meaning.unit);
-  const bool same = equals_nocase(given.unit, meaning.unit) && !meaning.unit.empty();
+/// How many of the object's own unit the given unit is; by the drive's own measure where there is one.
+std::optional<double> in_own_unit(const Meaning& meaning, std::string_view unit) {
+  if (const auto direct = conversion(unit, meaning.unit)) return direct;
+  if (!meaning.bridge) return std::nullopt;
+  const auto bridged = conversion(unit, meaning.bridge->unit);
+  return bridged ? std::optional(*bridged / meaning.bridge->factor) : std::nullopt;
+}
+
+tl::unexpected<Error> inconvertible(const Meaning& meaning, const NumberWithUnit& given,
+                                    std::string_view text) {
   if (meaning.unit.empty())
     return fail(Errc::usage, fmt::format("'{}' carries a unit, but this object has none", text),
                 "write the plain number");
-  if (!same && (unit == nullptr || own == nullptr || unit->dimension != own->dimension))
-    return fail(Errc::usage,
-                fmt::format("'{}': the unit of this object is {}, which {} cannot be converted to", text,
-                            meaning.unit, given.unit),
-                fmt::format("write a value in {} or the raw number", meaning.unit));
-  const double physical = same ? given.number : given.number * unit->factor / own->factor;
-  const double raw = tidy(physical / meaning.scale);
+  auto hint = fmt::format("write a value in {} or the raw number", meaning.unit);
+  if (meaning.measure && !meaning.bridge) hint += "; what one is worth could not be learnt from the drive";
+  return fail(Errc::usage,
+              fmt::format("'{}': the unit of this object is {}, which {} cannot be converted to", text,
+                          meaning.unit, given.unit),
+              std::move(hint));
+}
+
+Result<od::Value> from_physical(const Meaning& meaning, const NumberWithUnit& given, std::string_view text) {
+  const auto factor = in_own_unit(meaning, given.unit);
+  if (!factor) return inconvertible(meaning, given, text);
+  const double raw = tidy(given.number * *factor / meaning.scale);
+  if (meaning.encoding != od::Encoding::plain) return od::encode_number(meaning.encoding, meaning.type, raw);
   if (od::is_real(meaning.type)) return od::Value(raw);
   if (std::abs(raw) > 9.0e18)
     return fail(Errc::usage, fmt::format("'{}' is too large for this object", text));
   if (raw != std::nearbyint(raw))
-    return fail(
-        Errc::usage,
-        fmt::format("'{}' is {:g} steps of {:g} {}: not a whole number", text, raw, meaning.scale,
-                    meaning.unit),
-        fmt::format("the nearest value is {:g} {}", std::nearbyint(raw) * meaning.scale, meaning.unit));
+    return fail(Errc::usage,
+                fmt::format("'{}' is {:g} steps of {:g} {}: not a whole number", text, raw, meaning.scale,
+                            meaning.unit),
+                fmt::format("the nearest value is {:g} {}",
+                            tidy(std::nearbyint(raw) * meaning.scale / *factor), given.unit));
   return od::parse_value(meaning.type, fmt::format("{:.0f}", raw));
 }
 
@@ -121,6 +73,19 @@ const od::EnumLabel* find_label(const Meaning& meaning, std::string_view text) {
     if (equals_nocase(label.label, text) || (!label.label_zh.empty() && label.label_zh == text))
       return &label;
   return nullptr;
+}
+
+/// Bit patterns of numbers do not stand in the order of the numbers.
+int compare(const Meaning& meaning, const od::Value& a, const od::Value& b) {
+  if (meaning.encoding == od::Encoding::plain) return od::compare_numbers(a, b);
+  const double x = od::decode_number(meaning.encoding, a);
+  const double y = od::decode_number(meaning.encoding, b);
+  return x < y ? -1 : x > y ? 1 : 0;
+}
+
+bool is_assumed(std::string_view fields, std::string_view field) {
+  const auto all = split(fields, ';');
+  return std::find(all.begin(), all.end(), field) != all.end();
 }
 
 std::string labels_text(const Meaning& meaning) {
@@ -133,6 +98,11 @@ std::string labels_text(const Meaning& meaning) {
 }
 
 }  // namespace
+
+std::string plain_text(const Meaning& meaning, const od::Value& value) {
+  return meaning.encoding == od::Encoding::plain ? od::to_string(value)
+                                                 : fmt::format("{:.12g}", scaled(meaning, value));
+}
 
 Meaning meaning(const Target& target, std::uint8_t node) {
   Meaning out;
@@ -147,8 +117,12 @@ Meaning meaning(const Target& target, std::uint8_t node) {
     out.max = parameter.max;
     out.labels = parameter.labels.empty() ? nullptr : &parameter.labels;
     out.effect = parameter.effect;
+    out.encoding = parameter.encoding;
+    out.size_known = !is_assumed(parameter.assumed, "type");
+    out.measure = needed_measure(out.unit, target.address);
     return out;
   }
+  if (target.read_only) out.access = od::Access::ro;
   if (target.entry == nullptr) return out;
   const auto& entry = *target.entry;
   out.type = entry.type;
@@ -160,19 +134,36 @@ Meaning meaning(const Target& target, std::uint8_t node) {
   if (entry.high) out.max = entry.high->for_node(node);
   out.labels = entry.labels.empty() ? nullptr : &entry.labels;
   out.effect = entry.effect;
+  out.encoding = entry.encoding;
+  out.size_known = !is_assumed(entry.assumed, "type");
+  out.measure = needed_measure(out.unit, target.address);
   return out;
 }
 
+Meaning fitted(Meaning meaning, std::size_t bytes) {
+  if (!meaning.type_known || meaning.size_known || !od::is_integer(meaning.type)) return meaning;
+  const auto fitting = [&](od::DataType type) {
+    return od::is_signed(type) == od::is_signed(meaning.type) && od::size_of(type) == bytes;
+  };
+  for (const auto type : {od::DataType::i8, od::DataType::i16, od::DataType::i32, od::DataType::i64,
+                          od::DataType::u8, od::DataType::u16, od::DataType::u32, od::DataType::u64})
+    if (fitting(type)) meaning.type = type;
+  if (meaning.encoding != od::Encoding::plain)
+    meaning.encoding = bytes == 2 ? od::Encoding::f32hi : od::Encoding::f32;
+  return meaning;
+}
+
 Result<void> check_limits(const Meaning& meaning, const od::Value& value) {
-  const bool low = meaning.min && od::compare_numbers(value, *meaning.min) < 0;
-  const bool high = meaning.max && od::compare_numbers(value, *meaning.max) > 0;
+  const bool low = meaning.min && compare(meaning, value, *meaning.min) < 0;
+  const bool high = meaning.max && compare(meaning, value, *meaning.max) > 0;
   if (!low && !high) return {};
   std::string hint;
   if (meaning.labels != nullptr)
     hint = "values: " + labels_text(meaning);
   else if (meaning.scale != 1)
     hint = fmt::format("one step is {:g} {}", meaning.scale, meaning.unit);
-  return fail(Errc::usage, fmt::format("{} is out of range: {}", od::to_string(value), range_text(meaning)),
+  return fail(Errc::usage,
+              fmt::format("{} is out of range: {}", plain_text(meaning, value), range_text(meaning)),
               std::move(hint));
 }
 
@@ -181,6 +172,9 @@ Result<od::Value> parse_quantity(const Meaning& meaning, std::string_view text) 
   auto value = [&]() -> Result<od::Value> {
     if (const auto* label = find_label(meaning, text))
       return od::parse_value(meaning.type, fmt::format("{}", label->value));
+    if (meaning.encoding != od::Encoding::plain)
+      if (const auto real = parse_real(text))
+        return od::encode_number(meaning.encoding, meaning.type, *real / meaning.scale);
     const bool number = od::is_integer(meaning.type) || od::is_real(meaning.type);
     if (number && !parse_integer(text))
       if (const auto physical = split_unit(text)) return from_physical(meaning, *physical, text);
@@ -196,9 +190,28 @@ Result<od::Value> parse_quantity(const Meaning& meaning, std::string_view text) 
   return value;
 }
 
+bool needs_bridge(const Meaning& meaning, std::string_view text) {
+  if (!meaning.measure || parse_integer(trim(text))) return false;
+  const auto given = split_unit(trim(text));
+  return given && !conversion(given->unit, meaning.unit);
+}
+
 double scaled(const Meaning& meaning, const od::Value& value) {
-  const double raw = od::to_double(value);
-  return meaning.scale == 1 ? raw : tidy(raw * meaning.scale);
+  if (meaning.encoding == od::Encoding::plain) {
+    const double raw = od::to_double(value);
+    return meaning.scale == 1 ? raw : tidy(raw * meaning.scale);
+  }
+  const double number = od::decode_number(meaning.encoding, value) * meaning.scale;
+  return parse_real(fmt::format("{}", static_cast<float>(number))).value_or(number);
+}
+
+std::optional<Familiar> familiar(const Meaning& meaning, const od::Value& value) {
+  if (std::holds_alternative<std::string>(value) || std::holds_alternative<Bytes>(value)) return std::nullopt;
+  const double own = scaled(meaning, value);
+  if (meaning.bridge) return Familiar{tidy(own * meaning.bridge->factor), meaning.bridge->unit};
+  const auto unit = familiar_unit(meaning.unit);
+  if (unit.empty()) return std::nullopt;
+  return Familiar{tidy(own * conversion(meaning.unit, unit).value_or(1)), unit};
 }
 
 const od::EnumLabel* label_of(const Meaning& meaning, const od::Value& value) {
@@ -212,9 +225,9 @@ const od::EnumLabel* label_of(const Meaning& meaning, const od::Value& value) {
 
 std::string range_text(const Meaning& meaning) {
   if (meaning.min && meaning.max)
-    return fmt::format("{}..{}", od::to_string(*meaning.min), od::to_string(*meaning.max));
-  if (meaning.min) return "at least " + od::to_string(*meaning.min);
-  if (meaning.max) return "at most " + od::to_string(*meaning.max);
+    return fmt::format("{}..{}", plain_text(meaning, *meaning.min), plain_text(meaning, *meaning.max));
+  if (meaning.min) return "at least " + plain_text(meaning, *meaning.min);
+  if (meaning.max) return "at most " + plain_text(meaning, *meaning.max);
   return {};
 }
 

@@ -8,6 +8,7 @@
 
 #include "base/result.hpp"
 #include "drive/naming.hpp"
+#include "drive/scaling.hpp"
 #include "od/value.hpp"
 
 namespace servoctl::drive {
@@ -24,20 +25,43 @@ struct Meaning {
   std::optional<od::Value> max;
   const std::vector<od::EnumLabel>* labels = nullptr;
   od::Effect effect = od::Effect::unstated;
+  od::Encoding encoding = od::Encoding::plain;
+  bool size_known = true;          ///< False: the manual does not tell the length; the drive must be asked.
+  std::optional<Measure> measure;  ///< What must be read from the drive to convert the unit.
+  std::optional<Bridge> bridge;    ///< What came of it; filled in by whoever read it.
 };
 
 Meaning meaning(const Target& target, std::uint8_t node);
 
+/// The meaning for an object that turned out to have this many bytes, where the manual does not tell its
+/// length: an integer of the same sign and that length, half a float instead of a whole one.
+Meaning fitted(Meaning meaning, std::size_t bytes);
+
 /// Reads what a user writes for this object: a plain number is the raw number that the drive and its panel
 /// show; a number with a unit (`60rpm`, `250ms`, `12%`) is converted and must come out exact; an enum label
-/// stands for its value. Checked against type and limits. Errc::usage tells range and unit.
+/// stands for its value. Where the object carries an encoded number (`f32`), a decimal number is that number
+/// and a hexadecimal one its bits. Checked against type and limits. Errc::usage tells range and unit.
 Result<od::Value> parse_quantity(const Meaning& meaning, std::string_view text);
+
+/// Whether the text carries a unit that only the drive's own measures can convert.
+bool needs_bridge(const Meaning& meaning, std::string_view text);
 
 /// Checks a value against the limits; `what` names the object in the message.
 Result<void> check_limits(const Meaning& meaning, const od::Value& value);
 
-/// Raw × scale without the noise of binary fractions: 400 × 0.1 is 40.
+/// The number in `unit`: raw × scale without the noise of binary fractions (400 × 0.1 is 40), or the number
+/// an encoded object carries.
 double scaled(const Meaning& meaning, const od::Value& value);
+
+/// The value in the unit people think in: degrees for increments, rpm for rad/s; empty when there is none.
+struct Familiar {
+  double value = 0;
+  std::string_view unit;
+};
+std::optional<Familiar> familiar(const Meaning& meaning, const od::Value& value);
+
+/// The raw number as people read it: `400`, `-5`, `1.5` for an encoded number.
+std::string plain_text(const Meaning& meaning, const od::Value& value);
 
 /// The label of the value, or null.
 const od::EnumLabel* label_of(const Meaning& meaning, const od::Value& value);

@@ -6,11 +6,13 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/object_address.hpp"
 #include "base/result.hpp"
 #include "drive/cia402.hpp"
+#include "drive/scaling.hpp"
 
 namespace servoctl::drive {
 
@@ -20,13 +22,27 @@ struct Condition {
   std::uint64_t value = 0;
 };
 
-/// How panel numbers map to objects: parameter n stands at `index + n / block`, sub-index `n % block +
-/// first_sub`.
+/// A parameter or object by name (`Fn_99`, `0x2005:01`), and what to write to it.
+struct Setting {
+  std::string name;
+  std::int64_t value = 0;
+};
+
+/// How panel numbers map to objects: number n stands at `index + n / block`, sub-index `n % block +
+/// first_sub`. `group` is for numbers in two parts: `P5.37` is number 5 × group + 37.
 struct Numbering {
   std::string prefix;
   std::uint16_t index = 0;
-  std::uint32_t block = 0;
+  std::uint32_t base = 10;  ///< 16: the digits are hexadecimal.
+  std::uint32_t group = 0;
+  std::uint32_t block = 1;
   std::uint8_t first_sub = 0;
+  bool unlisted = false;  ///< The rule holds for numbers the parameter table does not list as well.
+  bool read_only = false;
+
+  /// The number in the id, `37` of `Pn0037`; empty when the id is not of this kind.
+  std::optional<std::uint32_t> number(std::string_view id) const;
+  ObjectAddress object(std::uint32_t number) const;
 };
 
 /// Bits 10 to 15 of the statusword at standstill in one mode of operation.
@@ -36,10 +52,105 @@ struct ModeBits {
   std::uint16_t enabled = 0;
 };
 
+struct SdoRules {
+  bool segmented = true;
+  bool block = true;  ///< Needs `segmented`.
+  bool exact_length = true;
+  bool echoes_data = false;  ///< The acknowledge of a write carries its data.
+};
+
+struct NmtRules {
+  std::string node_id;         ///< Parameter of the node-ID.
+  std::string bitrate;         ///< Parameter of the bitrate code.
+  std::string autostart;       ///< Parameter: 1 goes to Operational by itself.
+  std::string guarding_alarm;  ///< Parameter: 0, the end of life guarding raises no fault.
+  std::uint32_t max_nodes = 127;
+  std::vector<Setting> needs;  ///< What must be set before the drive listens to CANopen at all.
+  bool disables_outside_operational = false;
+};
+
+/// What may be changed of a PDO, and when (CiA 301, 7.5.2.33 to 7.5.2.38, and the vendor's narrower rules).
+struct PdoRules {
+  enum class When : std::uint8_t { always, invalid, not_operational };
+  std::uint32_t cob_id_bits = 0xFFFF'FFFF;  ///< Bits of the COB-ID that may change.
+  When parameters = When::always;           ///< When transmission type and times may change.
+  When mapping = When::always;
+  bool disable_by_count = false;  ///< The mapping is opened by count 0 alone; the COB-ID stays valid.
+  std::uint8_t most_entries = 64;
+  std::uint16_t most_bits = 64;
+  bool whole_bytes = false;
+  std::vector<std::int64_t> refused_types;    ///< Transmission types the drive does not know.
+  std::map<std::int64_t, std::string> types;  ///< What vendor-specific types mean here.
+  std::string assign_rpdo;                    ///< Object that chooses among fixed PDOs (CoE 1C12h, 1C13h).
+  std::string assign_tpdo;
+};
+
+/// How values survive power-off.
+struct StoreRules {
+  std::vector<Setting> store;    ///< Beside 1010h.
+  std::vector<Setting> restore;  ///< Beside 1011h.
+  bool objects = true;           ///< 1010h and 1011h do it.
+  std::string flash_switch;      ///< Parameter that says whether writes go to the flash at once.
+  std::optional<std::int64_t> to_ram;
+  std::optional<std::int64_t> to_flash;
+  bool wears = false;  ///< Every write to the flash wears it.
+  std::string unlock;  ///< Parameter that holds the password.
+  std::optional<std::int64_t> unlock_open;
+  std::optional<std::int64_t> unlock_closed;
+  std::string restore_at_start;       ///< Parameter: 1 restores the defaults at the next start.
+  std::string clear_alarms_at_start;  ///< Parameter: 1 clears the alarm records at the next start.
+};
+
+/// How the drive is moved. Modes are numbers of 6060h; empty where it has none.
+struct MotionRules {
+  std::optional<std::int8_t> position;
+  std::optional<std::int8_t> velocity;
+  std::optional<std::int8_t> torque;
+  std::optional<std::int8_t> homing;
+  std::vector<std::uint16_t> enable{0x06, 0x07, 0x0F};
+  std::vector<std::uint16_t> start_homing{0x0F, 0x1F};
+  std::uint16_t homing_done_mask = 0x3400;  ///< Bits 10, 12, 13 of the statusword.
+  std::uint16_t homing_done = 0x1400;
+  std::uint16_t homing_error = 0x2000;
+  bool halt = true;                        ///< Bit 8 of the controlword.
+  std::vector<std::int64_t> no_homing;     ///< Values of 6098h that do nothing.
+  std::vector<std::string> speed_limit;    ///< What limits the speed in torque mode.
+  std::optional<std::uint32_t> setpoints;  ///< Targets the drive can hold.
+};
+
+/// How an emergency message names the alarm of the panel.
+struct EmergencyRules {
+  std::uint16_t drive_alarm = 0xFF00;  ///< The code of most alarms of the drive.
+  std::uint8_t size = 8;               ///< Bytes the drive sends.
+  std::string panel;  ///< Text of the panel, `Er{major}-{minor}`; empty when the bytes do not tell.
+  std::uint8_t major_byte = 3;
+  std::uint8_t minor_byte = 4;
+};
+
+struct FaultRules {
+  std::optional<Condition> reset_enabled_by;
+  std::vector<Setting> reset;  ///< What resets a fault beside the controlword.
+  bool by_controlword = true;
+  std::string alarm;          ///< Parameter or object that holds the panel's alarm number.
+  std::string length_alarm;   ///< Panel text of the alarm a write of a wrong length raises.
+  std::string mapping_alarm;  ///< … of mapping in Operational.
+  std::string range_alarm;    ///< … of a value out of range.
+  std::string access_alarm;   ///< … of a write to what cannot be written.
+};
+
+/// A setting that makes motion more dangerous than it looks, often from the factory.
+struct Caution {
+  std::string name;  ///< Parameter or object; empty: it always holds.
+  std::optional<std::int64_t> value;
+  std::string text;
+  std::string text_zh;
+};
+
 /// What `<family>.toml` says: the rules of a family that no table can carry. Parameters are named by their
-/// id.
+/// id. docs/drive-data.md describes every key.
 struct Rules {
   std::string family;
+  std::string parent;  ///< Family whose files hold where this one has none.
   std::string vendor;
   std::string name;
   std::string name_zh;
@@ -47,33 +158,32 @@ struct Rules {
   std::vector<Condition> identity;  ///< All must hold.
   bool identity_certain = false;    ///< False: a match is a guess, to be offered and never assumed.
 
-  std::optional<Numbering> numbering;
-
-  bool sdo_segmented = true;
-  bool sdo_block = true;  ///< Needs sdo_segmented.
-  bool sdo_exact_length = true;
-
-  std::string node_id_parameter;
-  std::string bitrate_parameter;
-  std::string autostart_parameter;
-  std::string guarding_alarm_parameter;  ///< 0: the end of life guarding raises no fault.
-  std::uint32_t max_nodes = 127;
+  std::vector<Numbering> numbering;
+  std::map<Measure, Quotient> units;
+  SdoRules sdo;
+  NmtRules nmt;
+  PdoRules pdo;
+  StoreRules store;
+  MotionRules motion;
+  EmergencyRules emergency;
+  FaultRules fault;
+  std::vector<Caution> cautions;
 
   std::vector<ObjectAddress> mirror_add_node_id;
-  std::string restore_defaults_parameter;
-  std::string clear_alarms_parameter;
-
-  std::array<std::uint16_t, 8> statusword{};  ///< By DriveState, fault last.
+  /// By DriveState, fault last; unless told otherwise those of CiA 402-2 with bits 4 and 9 set.
+  std::array<std::uint16_t, 8> statusword{0x0000, 0x0250, 0x0231, 0x0233, 0x0237, 0x0217, 0x021F, 0x0218};
   std::vector<ModeBits> mode_bits;
   std::vector<std::int64_t> quick_stop_stays_enabled;
-  std::optional<Condition> fault_reset_enabled_by;
-  std::uint16_t drive_alarm_code = 0xFF00;
 
   std::map<std::uint32_t, std::string> abort_texts_zh;
+  std::vector<std::string> assumed;  ///< Sections, or keys as `section.key`, the manual does not state.
 };
 
-/// Reads a rules file. Errc::file with file and line for a syntax error, an unknown key or a value of the
-/// wrong kind: a rule that is misspelt would silently not hold.
-Result<Rules> parse_rules(std::string_view toml, std::string_view file);
+/// Reads a rules file on top of `base`, the rules of its parent. Errc::file with file and line for a syntax
+/// error, an unknown key or a value of the wrong kind: a rule that is misspelt would silently not hold.
+Result<Rules> parse_rules(std::string_view toml, std::string_view file, Rules base = {});
+
+/// The name of the parent in a rules file, without reading the rest; empty when it has none or is no TOML.
+std::string parent_of(std::string_view toml);
 
 }  // namespace servoctl::drive

@@ -12,6 +12,7 @@ enum Column : std::size_t {
   kObject,
   kUnit,
   kScale,
+  kEncoding,
   kEffect,
   kEnum,
   kEnumZh,
@@ -21,8 +22,9 @@ enum Column : std::size_t {
   kNote,
   kLine
 };
-constexpr std::array<std::string_view, 11> kColumns{
-    "object", "unit", "scale", "effect", "enum", "enum_zh", "name_zh", "flags", "assumed", "note", "line"};
+constexpr std::array<std::string_view, 12> kColumns{"object", "unit",    "scale",   "encoding",
+                                                    "effect", "enum",    "enum_zh", "name_zh",
+                                                    "flags",  "assumed", "note",    "line"};
 
 void read_flags(TableRow& row, Entry& entry) {
   bool rpdo = false;
@@ -45,6 +47,7 @@ void read_flags(TableRow& row, Entry& entry) {
 void read_row(TableRow& row, Entry& entry) {
   entry.unit = std::string(row.cell(kUnit));
   entry.scale = row.scale(kScale);
+  entry.encoding = row.encoding(kEncoding);
   entry.effect = row.effect(kEffect);
   entry.labels = row.labels(kEnum, kEnumZh);
   entry.name_zh = std::string(row.cell(kNameZh));

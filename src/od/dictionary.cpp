@@ -86,6 +86,24 @@ std::size_t Dictionary::entry_count() const {
                          [](std::size_t sum, const Object& object) { return sum + object.entries.size(); });
 }
 
+void inherit(Dictionary& dictionary, const Dictionary& parent) {
+  for (const auto& object : parent.objects()) {
+    for (const auto& from : object.entries) {
+      auto* entry = dictionary.find(from.address);
+      if (entry == nullptr || entry->type != from.type) continue;
+      entry->name_zh = from.name_zh;
+      entry->unit = from.unit;
+      entry->scale = from.scale;
+      entry->encoding = from.encoding;
+      entry->labels = from.labels;
+      entry->note = from.note;
+      entry->command = from.command;
+      entry->is_volatile = from.is_volatile;
+      if (entry->effect == Effect::unstated && writable(entry->access)) entry->effect = from.effect;
+    }
+  }
+}
+
 std::string identifier(std::string_view name) {
   std::string out;
   for (const char c : name) {

@@ -9,6 +9,7 @@
 
 #include "base/object_address.hpp"
 #include "od/data_type.hpp"
+#include "od/encoding.hpp"
 #include "od/value.hpp"
 
 namespace servoctl::od {
@@ -71,6 +72,7 @@ struct Entry {
 
   std::string unit;  ///< After scaling; empty if none.
   double scale = 1;  ///< Value in `unit` = raw × scale.
+  Encoding encoding = Encoding::plain;
   Effect effect = Effect::unstated;
   std::vector<EnumLabel> labels;
   std::string note;
@@ -105,6 +107,10 @@ class Dictionary {
  private:
   std::vector<Object> objects_;
 };
+
+/// Gives the entries what they do not say themselves (unit, scale, labels, names, flags) from entries of the
+/// same address and type in `parent`.
+void inherit(Dictionary& dictionary, const Dictionary& parent);
 
 /// `Position actual value` → `position_actual_value`, `Homing speeds` → `homing_speeds`: the form in which
 /// objects are named on the command line.

@@ -233,7 +233,7 @@ Findings findings_of(const DecodedText& decoded) {
     findings.add(Severity::warning, decoded.line, decoded.column, rule, std::move(message),
                  std::move(remedy));
   };
-  if (decoded.encoding != Encoding::utf8 || decoded.replaced_bytes > 0)
+  if (decoded.encoding != TextEncoding::utf8 || decoded.replaced_bytes > 0)
     at("encoding",
        fmt::format("the file is taken as {}{}", name(decoded.encoding),
                    decoded.replaced_bytes == 0

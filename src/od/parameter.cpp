@@ -17,6 +17,7 @@ enum Column : std::size_t {
   kAccess,
   kUnit,
   kScale,
+  kEncoding,
   kDefault,
   kMin,
   kMax,
@@ -32,9 +33,9 @@ enum Column : std::size_t {
   kNoteZh,
   kLine
 };
-constexpr std::array<std::string_view, 20> kColumns{
-    "id",   "object",  "type", "access",  "unit",  "scale", "default", "min",  "max",     "effect",
-    "enum", "enum_zh", "name", "name_zh", "group", "flags", "assumed", "note", "note_zh", "line"};
+constexpr std::array<std::string_view, 21> kColumns{
+    "id",   "object",  "type", "access",  "unit",  "scale", "encoding", "default", "min",     "max", "effect",
+    "enum", "enum_zh", "name", "name_zh", "group", "flags", "assumed",  "note",    "note_zh", "line"};
 
 std::optional<Access> parse_access(std::string_view text) {
   for (const auto access : {Access::ro, Access::rw, Access::wo, Access::constant})
@@ -80,6 +81,7 @@ Parameter read_row(TableRow& row) {
     row.refuse(kAccess, "ro, rw, wo or const");
   out.unit = std::string(row.cell(kUnit));
   out.scale = row.scale(kScale);
+  out.encoding = row.encoding(kEncoding);
   read_limits(row, out);
   out.effect = row.effect(kEffect);
   out.labels = row.labels(kEnum, kEnumZh);

@@ -20,6 +20,7 @@ struct Parameter {
   Access access = Access::rw;
   std::string unit;  ///< After scaling; empty if none.
   double scale = 1;  ///< Value in `unit` = raw × scale.
+  Encoding encoding = Encoding::plain;
   std::optional<Value> default_value;
   std::optional<Value> min;
   std::optional<Value> max;

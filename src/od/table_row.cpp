@@ -75,6 +75,12 @@ double TableRow::scale(std::size_t column) {
   return number.value_or(1);
 }
 
+Encoding TableRow::encoding(std::size_t column) {
+  const auto encoding = parse_encoding(cell(column));
+  if (!encoding) refuse(column, "f32, f32hi or empty");
+  return encoding.value_or(Encoding::plain);
+}
+
 Effect TableRow::effect(std::size_t column) {
   const auto effect = parse_effect(cell(column));
   if (!effect) refuse(column, "immediate, restart, standstill or empty");

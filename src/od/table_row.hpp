@@ -38,6 +38,7 @@ class TableRow {
 
   std::optional<ObjectAddress> object(std::size_t column);
   double scale(std::size_t column);
+  Encoding encoding(std::size_t column);
   Effect effect(std::size_t column);
   std::optional<Value> value(std::size_t column, DataType type);
   std::vector<EnumLabel> labels(std::size_t column, std::size_t column_zh);

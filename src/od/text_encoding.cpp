@@ -99,10 +99,10 @@ bool has_nuls_at(std::string_view sample, std::size_t side) {
   return 5 * nuls[side] > sample.size() && 20 * nuls[1 - side] < nuls[side];
 }
 
-std::size_t mark_of(std::string_view bytes, Encoding encoding) {
-  if (encoding == Encoding::utf8) return bytes.starts_with(kUtf8Mark) ? kUtf8Mark.size() : 0;
+std::size_t mark_of(std::string_view bytes, TextEncoding encoding) {
+  if (encoding == TextEncoding::utf8) return bytes.starts_with(kUtf8Mark) ? kUtf8Mark.size() : 0;
   const bool marked = bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF");
-  return marked && (encoding == Encoding::utf16le || encoding == Encoding::utf16be) ? 2 : 0;
+  return marked && (encoding == TextEncoding::utf16le || encoding == TextEncoding::utf16be) ? 2 : 0;
 }
 
 void locate_first_high(std::string_view bytes, DecodedText& out) {
@@ -117,7 +117,8 @@ void locate_first_high(std::string_view bytes, DecodedText& out) {
 /// iconv over all of it; a byte (UTF-16: a pair) it refuses becomes U+FFFD.
 void convert(std::string_view bytes, DecodedText& out) {
   const iconv_t converter = iconv_open("UTF-8", name(out.encoding).data());
-  const std::size_t unit = out.encoding == Encoding::utf16le || out.encoding == Encoding::utf16be ? 2 : 1;
+  const std::size_t unit =
+      out.encoding == TextEncoding::utf16le || out.encoding == TextEncoding::utf16be ? 2 : 1;
   auto* from = const_cast<char*>(bytes.data());  // NOLINT: iconv does not write through it.
   std::size_t left = bytes.size();
   std::array<char, kSample> chunk{};
@@ -144,30 +145,30 @@ void drop_nuls(DecodedText& out) {
 
 }  // namespace
 
-std::string_view name(Encoding encoding) {
+std::string_view name(TextEncoding encoding) {
   switch (encoding) {
-    case Encoding::utf8: return "UTF-8";
-    case Encoding::utf16le: return "UTF-16LE";
-    case Encoding::utf16be: return "UTF-16BE";
-    case Encoding::gbk: return "GBK";
-    case Encoding::cp1252: return "CP1252";
-    case Encoding::cp850: return "CP850";
+    case TextEncoding::utf8: return "UTF-8";
+    case TextEncoding::utf16le: return "UTF-16LE";
+    case TextEncoding::utf16be: return "UTF-16BE";
+    case TextEncoding::gbk: return "GBK";
+    case TextEncoding::cp1252: return "CP1252";
+    case TextEncoding::cp850: return "CP850";
   }
   return "UTF-8";
 }
 
-Encoding guess_encoding(std::string_view bytes) {
-  if (bytes.starts_with(kUtf8Mark)) return Encoding::utf8;
-  if (bytes.starts_with("\xFF\xFE")) return Encoding::utf16le;
-  if (bytes.starts_with("\xFE\xFF")) return Encoding::utf16be;
+TextEncoding guess_encoding(std::string_view bytes) {
+  if (bytes.starts_with(kUtf8Mark)) return TextEncoding::utf8;
+  if (bytes.starts_with("\xFF\xFE")) return TextEncoding::utf16le;
+  if (bytes.starts_with("\xFE\xFF")) return TextEncoding::utf16be;
   const auto sample = bytes.substr(0, kSample);
   if (sample.find('\0') != std::string_view::npos) {
-    if (has_nuls_at(sample, 1)) return Encoding::utf16le;
-    if (has_nuls_at(sample, 0)) return Encoding::utf16be;
+    if (has_nuls_at(sample, 1)) return TextEncoding::utf16le;
+    if (has_nuls_at(sample, 0)) return TextEncoding::utf16be;
   }
-  if (is_utf8(bytes)) return Encoding::utf8;
-  if (looks_chinese(bytes)) return Encoding::gbk;
-  return looks_like_dos(bytes) ? Encoding::cp850 : Encoding::cp1252;
+  if (is_utf8(bytes)) return TextEncoding::utf8;
+  if (looks_chinese(bytes)) return TextEncoding::gbk;
+  return looks_like_dos(bytes) ? TextEncoding::cp850 : TextEncoding::cp1252;
 }
 
 DecodedText to_utf8(std::string_view bytes) {
@@ -175,7 +176,7 @@ DecodedText to_utf8(std::string_view bytes) {
   out.encoding = guess_encoding(bytes);
   out.mark = mark_of(bytes, out.encoding);
   const auto content = bytes.substr(out.mark);
-  if (out.encoding == Encoding::utf8) {
+  if (out.encoding == TextEncoding::utf8) {
     const bool nuls = content.find('\0') != std::string_view::npos;
     if (!nuls && is_utf8(content)) return out;
     locate_first_high(content, out);
@@ -186,7 +187,7 @@ DecodedText to_utf8(std::string_view bytes) {
       convert(content, out);
   } else {
     out.own_bytes = false;
-    if (out.encoding != Encoding::utf16le && out.encoding != Encoding::utf16be)
+    if (out.encoding != TextEncoding::utf16le && out.encoding != TextEncoding::utf16be)
       locate_first_high(content, out);
     convert(content, out);
   }

@@ -8,22 +8,22 @@
 namespace servoctl::od {
 
 /// How the letters of a file are written. Nothing in an EDS says it; CiA 306-1 asks for ASCII.
-enum class Encoding : std::uint8_t { utf8, utf16le, utf16be, gbk, cp1252, cp850 };
+enum class TextEncoding : std::uint8_t { utf8, utf16le, utf16be, gbk, cp1252, cp850 };
 
 /// `UTF-8`, `UTF-16LE`, `UTF-16BE`, `GBK`, `CP1252`, `CP850`: the names that iconv takes.
-std::string_view name(Encoding encoding);
+std::string_view name(TextEncoding encoding);
 
 /// Tells the encoding by the first of these that holds:
 /// a byte order mark; half of the bytes are NUL and all on the same side of their pairs (UTF-16); it is valid
 /// UTF-8; most bytes above 0x7F stand in runs of two Chinese characters or more (GBK); more letters of words
 /// are in 0x80-0x9F, where CP1252 has dashes and quotes, than above (CP850, and CP437, whose letters are the
 /// same); CP1252.
-Encoding guess_encoding(std::string_view bytes);
+TextEncoding guess_encoding(std::string_view bytes);
 
 /// A file's text in UTF-8. The view is of the file's own bytes where nothing had to be changed, else of
 /// `buffer`.
 struct DecodedText {
-  Encoding encoding = Encoding::utf8;
+  TextEncoding encoding = TextEncoding::utf8;
   std::string buffer;
   std::size_t skipped_nuls = 0;    ///< NUL bytes that were left out.
   std::size_t replaced_bytes = 0;  ///< Bytes without meaning, each one U+FFFD now.

@@ -43,7 +43,7 @@ std::uint32_t ObjectValues::check_write(ObjectAddress object, ByteSpan data, std
   if (!od::writable(entry->access)) return abort::kReadOnly;
   const auto size = od::size_of(entry->type);
   if (size && data.size() != *size) {
-    if (profile_->rules.sdo_exact_length) return abort::kLength;
+    if (profile_->rules.sdo.exact_length) return abort::kLength;
     return data.size() > *size ? abort::kTooLong : abort::kTooShort;
   }
   const auto value = od::decode(entry->type, data);

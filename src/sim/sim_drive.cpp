@@ -23,8 +23,8 @@ constexpr std::uint16_t kLifeGuardError = 0x8130;
 
 canopen::SdoServer::Options server_options(const drive::Rules& rules) {
   canopen::SdoServer::Options options;
-  options.segmented = rules.sdo_segmented;
-  options.block = rules.sdo_segmented && rules.sdo_block;
+  options.segmented = rules.sdo.segmented;
+  options.block = rules.sdo.segmented && rules.sdo.block;
   return options;
 }
 
@@ -40,7 +40,7 @@ SimDrive::SimDrive(const drive::Profile& profile, std::uint8_t node, Memory& mem
       server_(node, *this, server_options(profile.rules)),
       error_control_(node) {
   auto& cells = memory_->cells(key_);
-  const auto* node_id = parameter(profile.rules.node_id_parameter);
+  const auto* node_id = parameter(profile.rules.nmt.node_id);
   if (node_id == nullptr || !node_id->object || cells.find(*node_id->object) != cells.end()) return;
   if (!node_id->default_value || od::to_double(*node_id->default_value) != node)
     cells[*node_id->object] = store_le(node, od::size_of(node_id->type).value_or(1));
@@ -121,7 +121,7 @@ void SimDrive::power_on(TimePoint now) {
     restore_if_asked();
     values_.load_defaults(node_);
     for (const auto& cell : memory_->cells(key_)) values_.set(cell.first, cell.second);
-    const auto* node_id = parameter(profile_->rules.node_id_parameter);
+    const auto* node_id = parameter(profile_->rules.nmt.node_id);
     if (node_id != nullptr && node_id->object) {
       const auto set_to = values_.number(*node_id->object);
       if (set_to >= canopen::kFirstNode && set_to <= canopen::kLastNode && set_to != node_) {
@@ -138,7 +138,7 @@ void SimDrive::power_on(TimePoint now) {
   }
   load_mirrors();
   server_ = canopen::SdoServer(node_, *this, server_options(profile_->rules));
-  const auto* autostart = parameter(profile_->rules.autostart_parameter);
+  const auto* autostart = parameter(profile_->rules.nmt.autostart);
   const bool start = autostart != nullptr && autostart->object && effective(*autostart->object) == 1;
   nmt_ = start ? NmtState::operational : NmtState::pre_operational;
   error_control_ = canopen::ErrorControlSlave(node_);
@@ -176,7 +176,7 @@ void SimDrive::set_up_error_control(TimePoint now) {
 
 /// The master has stopped asking.
 void SimDrive::on_life_lost(TimePoint now) {
-  const auto* alarm = parameter(profile_->rules.guarding_alarm_parameter);
+  const auto* alarm = parameter(profile_->rules.nmt.guarding_alarm);
   const bool masked = alarm != nullptr && alarm->object && effective(*alarm->object) == 0;
   if (!masked) raise_fault(kLifeGuardError, {}, now);
 }
@@ -244,7 +244,7 @@ void SimDrive::after_write(ObjectAddress object, ByteSpan data) {
   if (object == kHeartbeatTime || object == kGuardTime || object == kLifeFactor) set_up_error_control(now_);
   if (object == kModes) values_.set(kModeDisplay, data);
   if (object == kControlword) {
-    const auto& gate = profile_->rules.fault_reset_enabled_by;
+    const auto& gate = profile_->rules.fault.reset_enabled_by;
     const bool may_reset = !gate || effective(gate->object) == gate->value;
     power_.on_controlword(static_cast<std::uint16_t>(load_le(data)),
                           static_cast<std::int64_t>(values_.number(kQuickStopOption)), may_reset, now_);

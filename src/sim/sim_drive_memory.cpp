@@ -15,9 +15,9 @@ void SimDrive::restore_if_asked() {
     const auto cell = p != nullptr && p->object ? cells.find(*p->object) : cells.end();
     return cell != cells.end() && load_le(cell->second) == 1;
   };
-  if (set(profile_->rules.restore_defaults_parameter)) cells.clear();
-  if (set(profile_->rules.clear_alarms_parameter))
-    cells.erase(*parameter(profile_->rules.clear_alarms_parameter)->object);
+  if (set(profile_->rules.store.restore_at_start)) cells.clear();
+  if (set(profile_->rules.store.clear_alarms_at_start))
+    cells.erase(*parameter(profile_->rules.store.clear_alarms_at_start)->object);
   (void)memory_->save();
 }
 

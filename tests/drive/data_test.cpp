@@ -36,15 +36,16 @@ TEST_P(DriveData, LoadsWithoutASingleFinding) {
 }
 
 TEST_P(DriveData, KeepsTheAddressRuleForEveryParameter) {
-  if (!profile.rules.numbering) return;
-  const auto& rule = *profile.rules.numbering;
+  if (profile.rules.numbering.empty()) return;
   for (const auto& p : profile.parameters) {
-    ASSERT_TRUE(p.id.starts_with(rule.prefix)) << p.id;
-    const auto number = parse_digits(std::string_view(p.id).substr(rule.prefix.size()), 10);
-    ASSERT_TRUE(number) << p.id;
-    const ObjectAddress expected{static_cast<std::uint16_t>(rule.index + *number / rule.block),
-                                 static_cast<std::uint8_t>(*number % rule.block + rule.first_sub)};
-    EXPECT_EQ(p.object, expected) << p.id;
+    int rules = 0;
+    for (const auto& rule : profile.rules.numbering) {
+      const auto number = rule.number(p.id);
+      if (!number) continue;
+      ++rules;
+      EXPECT_EQ(p.object, rule.object(*number)) << p.id;
+    }
+    EXPECT_EQ(rules, 1) << p.id;
   }
 }
 
@@ -132,8 +133,8 @@ TEST_P(DriveData, HasAnEffectForWhatCanBeWrittenAndNoneForTheRest) {
 
 TEST_P(DriveData, NamesRulesAfterParametersThatExist) {
   const auto& rules = profile.rules;
-  for (const auto& id : {rules.node_id_parameter, rules.bitrate_parameter, rules.autostart_parameter,
-                         rules.restore_defaults_parameter, rules.clear_alarms_parameter})
+  for (const auto& id : {rules.nmt.node_id, rules.nmt.bitrate, rules.nmt.autostart,
+                         rules.store.restore_at_start, rules.store.clear_alarms_at_start})
     if (!id.empty()) {
       EXPECT_NE(profile.parameter(id), nullptr) << id;
     }

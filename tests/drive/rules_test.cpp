@@ -14,7 +14,7 @@ name = "X1"
 [identity]
 certain = true
 match = [{ object = "0x1000:00", value = 0x20192 }, { object = "0x1018:01", value = 7 }]
-[numbering]
+[[numbering]]
 prefix = "A"
 index = 0x2000
 block = 200
@@ -26,8 +26,8 @@ fault = 0x0238
 mode_bits = [{ mode = -3, disabled = 0x1000, enabled = 0x0400 }]
 [quick_stop]
 stays_enabled = [5, 6]
-[fault_reset]
-enabled_by = { object = "0x2000:21", value = 1 }
+[fault]
+reset_enabled_by = { object = "0x2000:21", value = 1 }
 [abort_codes]
 0x08000024 = "数值不存在"
 )",
@@ -38,16 +38,16 @@ enabled_by = { object = "0x2000:21", value = 1 }
   EXPECT_EQ(rules->identity[1].object, (ObjectAddress{0x1018, 1}));
   EXPECT_EQ(rules->identity[1].value, 7U);
   EXPECT_TRUE(rules->identity_certain);
-  ASSERT_TRUE(rules->numbering);
-  EXPECT_EQ(rules->numbering->block, 200U);
-  EXPECT_FALSE(rules->sdo_segmented);
-  EXPECT_TRUE(rules->sdo_exact_length);
+  ASSERT_EQ(rules->numbering.size(), 1U);
+  EXPECT_EQ(rules->numbering[0].block, 200U);
+  EXPECT_FALSE(rules->sdo.segmented);
+  EXPECT_TRUE(rules->sdo.exact_length);
   EXPECT_EQ(rules->statusword[static_cast<std::size_t>(DriveState::fault)], 0x0238);
   ASSERT_EQ(rules->mode_bits.size(), 1U);
   EXPECT_EQ(rules->mode_bits[0].mode, -3);
   EXPECT_EQ(rules->quick_stop_stays_enabled, (std::vector<std::int64_t>{5, 6}));
-  ASSERT_TRUE(rules->fault_reset_enabled_by);
-  EXPECT_EQ(rules->fault_reset_enabled_by->object, (ObjectAddress{0x2000, 0x21}));
+  ASSERT_TRUE(rules->fault.reset_enabled_by);
+  EXPECT_EQ(rules->fault.reset_enabled_by->object, (ObjectAddress{0x2000, 0x21}));
   EXPECT_EQ(rules->abort_texts_zh.at(0x0800'0024), "数值不存在");
 }
 
@@ -66,9 +66,9 @@ TEST(Rules, WithAMisspeltKeyAreRefusedBecauseTheRuleWouldSilentlyNotHold) {
 TEST(Rules, WithAValueOfTheWrongKindAreRefusedWithItsPlace) {
   expect_refused("format = 1\n[sdo]\nsegmented = \"no\"\n",
                  "x.toml:3:13: the value of 'segmented' is of the wrong kind");
-  expect_refused("format = 1\n[numbering]\nblock = 0\n",
+  expect_refused("format = 1\n[[numbering]]\nblock = 0\n",
                  "x.toml:3:9: the value of 'block' is of the wrong kind");
-  expect_refused("format = 1\n[numbering]\nfirst_sub = 300\n",
+  expect_refused("format = 1\n[[numbering]]\nfirst_sub = 300\n",
                  "x.toml:3:13: the value of 'first_sub' is of the wrong kind");
   expect_refused("format = 2\n", "x.toml:1:10: the value of 'format' is of the wrong kind");
 }

@@ -86,7 +86,7 @@ TEST(EdsEncoding, OfUtf16IsSeenWithAndWithoutAMark) {
 
 TEST(EdsEncoding, WithBytesThatMeanNothingCountsThem) {
   const auto decoded = to_utf8("caf\xE9 \x9D");
-  EXPECT_EQ(decoded.encoding, Encoding::cp1252);
+  EXPECT_EQ(decoded.encoding, TextEncoding::cp1252);
   EXPECT_EQ(decoded.text(""), "café \xEF\xBF\xBD");
   EXPECT_EQ(decoded.replaced_bytes, 1U);
 }
@@ -112,20 +112,20 @@ TEST(EdsNul, IsSkippedWithAWarning) {
 TEST(EdsEncoding, OfInvalidUtf8FormsIsNotUtf8) {
   for (const auto* text :
        {"\xC0\x80", "\xED\xA0\x80", "\xF5\x80\x80\x80", "\xE2\x82", "\xE0\x80\x80", "\x80"})
-    EXPECT_NE(guess_encoding(text), Encoding::utf8) << text;
+    EXPECT_NE(guess_encoding(text), TextEncoding::utf8) << text;
   for (const auto* text : {"\xC2\x80", "\xED\x9F\xBF", "\xF4\x8F\xBF\xBF", "\xE2\x82\xAC", ""})
-    EXPECT_EQ(guess_encoding(text), Encoding::utf8) << text;
+    EXPECT_EQ(guess_encoding(text), TextEncoding::utf8) << text;
 }
 
 TEST(EdsEncoding, OfARuledCommentIsNotChinese) {
-  EXPECT_NE(guess_encoding("; \xC4\xC4\xC4\xC4\xC4\xC4\xC4\xC4"), Encoding::gbk);
+  EXPECT_NE(guess_encoding("; \xC4\xC4\xC4\xC4\xC4\xC4\xC4\xC4"), TextEncoding::gbk);
 }
 
 TEST(EdsEncoding, OfFewUmlautsInARowIsNotChinese) {
   EXPECT_EQ(guess_encoding("\xC4\xD6\xE4\xF6; f\xFCr gr\xF6\xDF"
                            "ere \xDC"
                            "berg\xE4nge"),
-            Encoding::cp1252);
+            TextEncoding::cp1252);
 }
 
 }  // namespace

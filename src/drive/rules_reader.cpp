@@ -1,0 +1,242 @@
+#include "drive/rules_reader.hpp"
+
+#include "base/number.hpp"
+
+namespace servoctl::drive {
+namespace {
+
+using Handlers = TableReader::Handlers;
+
+/// A table with exactly these keys, in any order.
+bool has_only(const toml::node& node, std::initializer_list<std::string_view> keys) {
+  const auto* table = node.as_table();
+  if (table == nullptr || table->size() != keys.size()) return false;
+  for (const auto key : keys)
+    if (table->get(key) == nullptr) return false;
+  return true;
+}
+
+const toml::node& at(const toml::node& node, std::string_view key) { return *node.as_table()->get(key); }
+
+bool get(const toml::node& node, Condition& out) {
+  return has_only(node, {"object", "value"}) && drive::get(at(node, "object"), out.object) &&
+         get_int(at(node, "value"), out.value);
+}
+
+bool get(const toml::node& node, Setting& out) {
+  return has_only(node, {"name", "value"}) && drive::get(at(node, "name"), out.name) &&
+         get_int(at(node, "value"), out.value);
+}
+
+bool get(const toml::node& node, ModeBits& out) {
+  return has_only(node, {"mode", "disabled", "enabled"}) && get_int(at(node, "mode"), out.mode) &&
+         get_int(at(node, "disabled"), out.disabled) && get_int(at(node, "enabled"), out.enabled);
+}
+
+bool get(const toml::node& node, Quotient::Factor& out) {
+  ObjectAddress object;
+  if (drive::get(node, object)) {
+    out = object;
+    return true;
+  }
+  const auto number = node.value<double>();
+  if (!number || *number == 0) return false;
+  out = *number;
+  return true;
+}
+
+bool get(const toml::node& node, PdoRules::When& out) {
+  std::string text;
+  if (!drive::get(node, text)) return false;
+  if (text == "always") out = PdoRules::When::always;
+  if (text == "invalid") out = PdoRules::When::invalid;
+  if (text == "not operational") out = PdoRules::When::not_operational;
+  return text == "always" || text == "invalid" || text == "not operational";
+}
+
+template <class T>
+TableReader::Handler list_into(std::vector<T>& out) {
+  return [&out](const toml::node& node) {
+    return get_list(node, out, [](const toml::node& n, T& o) { return get(n, o); });
+  };
+}
+
+TableReader::Handler quotient_into(Quotient& out) {
+  return [&out](const toml::node& node) {
+    const auto* table = node.as_table();
+    return table != nullptr && TableReader(*table, "")
+                                   .read({{"multiply", list_into(out.multiply)},
+                                          {"divide", list_into(out.divide)},
+                                          {"assumed", into(out.assumed)}})
+                                   .has_value();
+  };
+}
+
+}  // namespace
+
+Result<void> read_identity(const TableReader& reader, Rules& rules) {
+  return reader.read({{"certain", into(rules.identity_certain)}, {"match", list_into(rules.identity)}});
+}
+
+Result<void> read_numbering(const TableReader& reader, Numbering& out) {
+  return reader.read(
+      {{"prefix", into(out.prefix)},
+       {"index", into(out.index)},
+       {"base", [&](const auto& n) { return get_int(n, out.base) && (out.base == 10 || out.base == 16); }},
+       {"group", into(out.group)},
+       {"block", [&](const auto& n) { return get_int(n, out.block) && out.block > 0; }},
+       {"first_sub", into(out.first_sub)},
+       {"unlisted", into(out.unlisted)},
+       {"read_only", into(out.read_only)}});
+}
+
+Result<void> read_units(const TableReader& reader, Rules& rules) {
+  return reader.read(
+      {{"increments_per_turn",
+        [&](const auto& n) { return quotient_into(rules.units[Measure::increments_per_turn])(n); }},
+       {"pulses_per_turn",
+        [&](const auto& n) { return quotient_into(rules.units[Measure::pulses_per_turn])(n); }},
+       {"rated_torque",
+        [&](const auto& n) { return quotient_into(rules.units[Measure::rated_torque])(n); }}});
+}
+
+Result<void> read_sdo(const TableReader& reader, Rules& rules) {
+  return reader.read({{"segmented", into(rules.sdo.segmented)},
+                      {"block", into(rules.sdo.block)},
+                      {"exact_length", into(rules.sdo.exact_length)},
+                      {"echoes_data", into(rules.sdo.echoes_data)}});
+}
+
+Result<void> read_nmt(const TableReader& reader, Rules& rules) {
+  auto& out = rules.nmt;
+  return reader.read({{"node_id", into(out.node_id)},
+                      {"bitrate", into(out.bitrate)},
+                      {"autostart", into(out.autostart)},
+                      {"guarding_alarm", into(out.guarding_alarm)},
+                      {"max_nodes", into(out.max_nodes)},
+                      {"needs", list_into(out.needs)},
+                      {"disables_outside_operational", into(out.disables_outside_operational)}});
+}
+
+Result<void> read_pdo(const TableReader& reader, Rules& rules) {
+  auto& out = rules.pdo;
+  const auto types = [&](const toml::node& node) {
+    const auto* table = node.as_table();
+    if (table == nullptr) return false;
+    for (const auto& [key, value] : *table) {
+      const auto type = parse_digits(std::string_view(key.str()), 10);
+      std::string text;
+      if (!type || *type > 255 || !drive::get(value, text)) return false;
+      out.types[static_cast<std::int64_t>(*type)] = std::move(text);
+    }
+    return true;
+  };
+  return reader.read({{"cob_id_bits", into(out.cob_id_bits)},
+                      {"parameters", [&](const auto& n) { return get(n, out.parameters); }},
+                      {"mapping", [&](const auto& n) { return get(n, out.mapping); }},
+                      {"disable_by_count", into(out.disable_by_count)},
+                      {"most_entries", into(out.most_entries)},
+                      {"most_bits", into(out.most_bits)},
+                      {"whole_bytes", into(out.whole_bytes)},
+                      {"refused_types", into(out.refused_types)},
+                      {"types", types},
+                      {"assign_rpdo", into(out.assign_rpdo)},
+                      {"assign_tpdo", into(out.assign_tpdo)}});
+}
+
+Result<void> read_store(const TableReader& reader, Rules& rules) {
+  auto& out = rules.store;
+  return reader.read({{"store", list_into(out.store)},
+                      {"restore", list_into(out.restore)},
+                      {"objects", into(out.objects)},
+                      {"flash_switch", into(out.flash_switch)},
+                      {"to_ram", into(out.to_ram)},
+                      {"to_flash", into(out.to_flash)},
+                      {"wears", into(out.wears)},
+                      {"unlock", into(out.unlock)},
+                      {"unlock_open", into(out.unlock_open)},
+                      {"unlock_closed", into(out.unlock_closed)}});
+}
+
+Result<void> read_restart(const TableReader& reader, Rules& rules) {
+  return reader.read({{"restore_defaults", into(rules.store.restore_at_start)},
+                      {"clear_alarms", into(rules.store.clear_alarms_at_start)}});
+}
+
+Result<void> read_mirror(const TableReader& reader, Rules& rules) {
+  return reader.read({{"add_node_id", into(rules.mirror_add_node_id)}});
+}
+
+Result<void> read_statusword(const TableReader& reader, Rules& rules) {
+  const auto word = [&](DriveState state) { return into(rules.statusword[static_cast<std::size_t>(state)]); };
+  return reader.read({{"not_ready_to_switch_on", word(DriveState::not_ready_to_switch_on)},
+                      {"switch_on_disabled", word(DriveState::switch_on_disabled)},
+                      {"ready_to_switch_on", word(DriveState::ready_to_switch_on)},
+                      {"switched_on", word(DriveState::switched_on)},
+                      {"operation_enabled", word(DriveState::operation_enabled)},
+                      {"quick_stop_active", word(DriveState::quick_stop_active)},
+                      {"fault_reaction_active", word(DriveState::fault_reaction_active)},
+                      {"fault", word(DriveState::fault)},
+                      {"mode_bits", list_into(rules.mode_bits)}});
+}
+
+Result<void> read_quick_stop(const TableReader& reader, Rules& rules) {
+  return reader.read({{"stays_enabled", into(rules.quick_stop_stays_enabled)}});
+}
+
+Result<void> read_motion(const TableReader& reader, Rules& rules) {
+  auto& out = rules.motion;
+  return reader.read({{"position", into(out.position)},
+                      {"velocity", into(out.velocity)},
+                      {"torque", into(out.torque)},
+                      {"homing", into(out.homing)},
+                      {"enable", into(out.enable)},
+                      {"start_homing", into(out.start_homing)},
+                      {"homing_done_mask", into(out.homing_done_mask)},
+                      {"homing_done", into(out.homing_done)},
+                      {"homing_error", into(out.homing_error)},
+                      {"halt", into(out.halt)},
+                      {"no_homing", into(out.no_homing)},
+                      {"speed_limit", into(out.speed_limit)},
+                      {"setpoints", into(out.setpoints)}});
+}
+
+Result<void> read_emergency(const TableReader& reader, Rules& rules) {
+  auto& out = rules.emergency;
+  const auto byte = [](std::uint8_t& place) {
+    return [&place](const toml::node& n) { return get_int(n, place) && place >= 3 && place <= 7; };
+  };
+  return reader.read(
+      {{"drive_alarm", into(out.drive_alarm)},
+       {"size", [&](const auto& n) { return get_int(n, out.size) && out.size >= 2 && out.size <= 8; }},
+       {"panel", into(out.panel)},
+       {"major_byte", byte(out.major_byte)},
+       {"minor_byte", byte(out.minor_byte)}});
+}
+
+Result<void> read_fault(const TableReader& reader, Rules& rules) {
+  auto& out = rules.fault;
+  const auto condition = [&](const toml::node& node) {
+    Condition read;
+    if (!get(node, read)) return false;
+    out.reset_enabled_by = read;
+    return true;
+  };
+  return reader.read({{"reset_enabled_by", condition},
+                      {"reset", list_into(out.reset)},
+                      {"by_controlword", into(out.by_controlword)},
+                      {"alarm", into(out.alarm)},
+                      {"length_alarm", into(out.length_alarm)},
+                      {"mapping_alarm", into(out.mapping_alarm)},
+                      {"range_alarm", into(out.range_alarm)},
+                      {"access_alarm", into(out.access_alarm)}});
+}
+
+Result<void> read_caution(const TableReader& reader, Caution& out) {
+  return reader.read({{"name", into(out.name)},
+                      {"value", into(out.value)},
+                      {"text", into(out.text)},
+                      {"text_zh", into(out.text_zh)}});
+}
+
+}  // namespace servoctl::drive

@@ -1,0 +1,126 @@
+#pragma once
+
+#include <fmt/format.h>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#define TOML_HEADER_ONLY 1  // The shared library is built with exceptions.
+#define TOML_EXCEPTIONS 0
+// toml++ 3.3 asserts (or, without assertions, assumes) of a key what its input need not hold: "[=]". The code
+// behind it reports the error in order.
+#undef NDEBUG
+#define TOML_ASSERT(expression) static_cast<void>(0)
+#include <toml++/toml.h>
+
+#include "base/object_address.hpp"
+#include "base/result.hpp"
+
+/// Reads TOML tables whose every key is known. Each get() answers whether the node was of its kind.
+namespace servoctl::drive {
+
+inline bool get(const toml::node& node, std::string& out) {
+  const auto value = node.value_exact<std::string>();
+  if (value) out = *value;
+  return value.has_value();
+}
+
+inline bool get(const toml::node& node, bool& out) {
+  const auto value = node.value_exact<bool>();
+  if (value) out = *value;
+  return value.has_value();
+}
+
+template <class Int>
+bool get_int(const toml::node& node, Int& out) {
+  const auto value = node.value_exact<std::int64_t>();
+  if (!value || !std::in_range<Int>(*value)) return false;
+  out = static_cast<Int>(*value);
+  return true;
+}
+
+inline bool get(const toml::node& node, std::uint8_t& out) { return get_int(node, out); }
+inline bool get(const toml::node& node, std::int8_t& out) { return get_int(node, out); }
+inline bool get(const toml::node& node, std::uint16_t& out) { return get_int(node, out); }
+inline bool get(const toml::node& node, std::uint32_t& out) { return get_int(node, out); }
+inline bool get(const toml::node& node, std::uint64_t& out) { return get_int(node, out); }
+inline bool get(const toml::node& node, std::int64_t& out) { return get_int(node, out); }
+
+inline bool get(const toml::node& node, ObjectAddress& out) {
+  std::string text;
+  const auto address = get(node, text) ? parse_object_address(text) : std::nullopt;
+  if (address) out = *address;
+  return address.has_value();
+}
+
+template <class T>
+bool get(const toml::node& node, std::optional<T>& out) {
+  T value{};
+  if (!get(node, value)) return false;
+  out = std::move(value);
+  return true;
+}
+
+/// Reads a list; the elements' get() is found where the caller stands.
+template <class T, class Get>
+bool get_list(const toml::node& node, std::vector<T>& out, Get get_one) {
+  const auto* array = node.as_array();
+  if (array == nullptr) return false;
+  out.clear();
+  for (const auto& element : *array) {
+    out.emplace_back();
+    if (!get_one(element, out.back())) return false;
+  }
+  return true;
+}
+
+template <class T>
+bool get(const toml::node& node, std::vector<T>& out) {
+  return get_list(node, out, [](const toml::node& n, T& o) { return get(n, o); });
+}
+
+/// Reads one table key by key; remembers the first thing that is wrong.
+class TableReader {
+ public:
+  TableReader(const toml::table& table, std::string_view file) : table_(&table), file_(file) {}
+
+  using Handler = std::function<bool(const toml::node&)>;
+  using Handlers = std::map<std::string_view, Handler>;
+
+  /// Every key must be one of these; a handler answers whether it could use the value.
+  Result<void> read(const Handlers& handlers) const {
+    for (const auto& [key, node] : *table_) {
+      const auto handler = handlers.find(std::string_view(key.str()));
+      if (handler == handlers.end()) return fail_at(node, fmt::format("unknown key '{}'", key.str()));
+      if (!handler->second(node))
+        return fail_at(node, fmt::format("the value of '{}' is of the wrong kind", key.str()));
+    }
+    return {};
+  }
+
+  tl::unexpected<Error> fail_at(const toml::node& node, const std::string& what) const {
+    Error error;
+    error.code = Errc::file;
+    error.line = node.source().begin.line;
+    error.message = fmt::format("{}:{}:{}: {}", file_, *error.line, node.source().begin.column, what);
+    return fail(std::move(error));
+  }
+
+  std::string_view file() const { return file_; }
+
+ private:
+  const toml::table* table_;
+  std::string_view file_;
+};
+
+/// A handler that reads the value into `out`.
+template <class T>
+TableReader::Handler into(T& out) {
+  return [&out](const toml::node& node) { return get(node, out); };
+}
+
+}  // namespace servoctl::drive
