@@ -23,6 +23,11 @@ bool get(const toml::node& node, Condition& out) {
          get_int(at(node, "value"), out.value);
 }
 
+bool get(const toml::node& node, Quotient::When& out) {
+  return has_only(node, {"object", "value"}) && drive::get(at(node, "object"), out.object) &&
+         get_int(at(node, "value"), out.value);
+}
+
 bool get(const toml::node& node, Setting& out) {
   return has_only(node, {"name", "value"}) && drive::get(at(node, "name"), out.name) &&
          get_int(at(node, "value"), out.value);
@@ -67,6 +72,7 @@ TableReader::Handler quotient_into(Quotient& out) {
     return table != nullptr && TableReader(*table, "")
                                    .read({{"multiply", list_into(out.multiply)},
                                           {"divide", list_into(out.divide)},
+                                          {"when", list_into(out.when)},
                                           {"assumed", into(out.assumed)}})
                                    .has_value();
   };

@@ -15,7 +15,12 @@ struct Quotient {
   using Factor = std::variant<double, ObjectAddress>;
   std::vector<Factor> multiply;
   std::vector<Factor> divide;
-  bool assumed = false;  ///< The manual does not state it.
+  struct When {
+    ObjectAddress object;
+    std::uint64_t value = 0;
+  };
+  std::vector<When> when;  ///< All must hold, else the quotient says nothing.
+  bool assumed = false;    ///< The manual does not state it.
 };
 
 /// What counts of a drive can be measured against.

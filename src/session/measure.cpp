@@ -12,6 +12,7 @@ void add_requests(const Quotient& quotient, std::uint8_t node, std::vector<SdoRe
     for (const auto& factor : *factors)
       if (const auto* object = std::get_if<ObjectAddress>(&factor))
         out.push_back({.node = node, .object = *object});
+  for (const auto& condition : quotient.when) out.push_back({.node = node, .object = condition.object});
 }
 
 /// The number an object holds, in its unit.
@@ -32,7 +33,12 @@ class Evaluation {
   std::optional<double> of(const Quotient& quotient) {
     const auto above = product(quotient.multiply);
     const auto below = product(quotient.divide);
-    if (!above || !below || *below == 0) return std::nullopt;
+    bool holds = true;
+    for (const auto& condition : quotient.when) {
+      const auto& answer = answers_[next_++];
+      holds = holds && answer && load_le(*answer) == condition.value;
+    }
+    if (!holds || !above || !below || *below == 0) return std::nullopt;
     return *above / *below;
   }
 
