@@ -1,13 +1,11 @@
 #include <fmt/format.h>
 
 #include "commands/command.hpp"
+#include "commands/fault_records.hpp"
 #include "commands/records.hpp"
 
 namespace servoctl::commands {
 namespace {
-
-using report::Show;
-using report::Value;
 
 constexpr Parameter kParameters[] = {
     {.name = "pattern", .help = "a code (0x8130, AL.28) or a word", .kind = Kind::text},
@@ -24,35 +22,14 @@ bool wanted(const drive::Fault& fault, std::string_view pattern) {
 }
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
-  report::Table table;
-  table.columns = {{"code_text", "code", Show::text},
-                   {"code", "", Show::json},
-                   {"extra", "", Show::json},
-                   {"panel"},
-                   {"kind"},
-                   {"name_text", "name", Show::text},
-                   {"name", "", Show::json},
-                   {"name_zh", "", Show::json},
-                   {"resettable"},
-                   {"check_text", "check", Show::text},
-                   {"check", "", Show::json},
-                   {"check_zh", "", Show::json},
-                   {"assumed", "", Show::json}};
+  std::vector<const drive::Fault*> found;
   const auto pattern = arguments.text("pattern");
-  for (const auto& f : context.profile->faults) {
-    if (!wanted(f, pattern)) continue;
-    const auto shown = context.chinese && !f.name_zh.empty() ? f.name_zh : f.name;
-    const auto check = context.chinese && !f.check_zh.empty() ? f.check_zh : f.check;
-    table.rows.push_back({code_text(f), f.code ? Value(*f.code) : Value(), report::text_or_null(f.extra),
-                          report::text_or_null(f.panel), drive::name(f.kind), shown, f.name,
-                          report::text_or_null(f.name_zh), f.resettable ? Value(*f.resettable) : Value(),
-                          check, report::text_or_null(f.check), report::text_or_null(f.check_zh),
-                          !f.assumed.empty()});
-  }
-  if (table.rows.empty())
+  for (const auto& fault : context.profile->faults)
+    if (wanted(fault, pattern)) found.push_back(&fault);
+  if (found.empty())
     return fail(Errc::negative, fmt::format("no fault of {} fits '{}'", context.profile->family, pattern),
                 "`fault list` shows all");
-  return report::Value(std::move(table));
+  return report::Value(fault_table(found, context.chinese));
 }
 
 }  // namespace

@@ -73,10 +73,12 @@ std::string command_help(const Command& command, std::size_t width) {
 }
 
 std::string command_rows(std::string_view group, std::size_t width) {
+  std::size_t longest = 0;
+  for (const auto* command : registry()) longest = std::max(longest, command->path.size());
   std::string out;
   for (const auto* command : registry())
     if (group.empty() || command->path.starts_with(std::string(group) + " "))
-      out += "  " + pad_right(command->path, 16) + " " + wrapped(command->summary, 19, width) + "\n";
+      out += "  " + pad_right(command->path, longest) + "  " + wrapped(command->summary, longest + 4, width) + "\n";
   return out;
 }
 

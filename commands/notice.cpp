@@ -4,16 +4,10 @@
 
 #include "base/bytes.hpp"
 #include "base/duration.hpp"
+#include "commands/fault_records.hpp"
 
 namespace servoctl::commands {
 namespace {
-
-std::string emergency_words(const canopen::Emergency& e, const drive::Profile* profile, bool chinese) {
-  if (profile != nullptr)
-    for (const auto& fault : profile->faults)
-      if (fault.code == e.code) return chinese && !fault.name_zh.empty() ? fault.name_zh : fault.name;
-  return canopen::emergency_text(e.code);
-}
 
 struct Words {
   const canopen::NodeEvent& event;
@@ -40,8 +34,9 @@ struct Words {
   }
   std::string operator()(const canopen::Emergency& e) const {
     if (e.is_reset()) return "EMCY 0x0000: error reset or no error";
+    if (e.size == 2) return fmt::format("EMCY 0x{:04X} {}", e.code, fault_words(profile, chinese, e.code));
     return fmt::format("EMCY 0x{:04X} {}; error register 0x{:02X} ({}); vendor bytes {}", e.code,
-                       emergency_words(e, profile, chinese), e.error_register,
+                       fault_words(profile, chinese, e.code, e.vendor), e.error_register,
                        canopen::error_register_text(e.error_register), to_hex(e.vendor));
   }
 };

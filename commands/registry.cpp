@@ -15,7 +15,10 @@ extern const Command kParamGet;
 extern const Command kParamSet;
 extern const Command kParamSearch;
 extern const Command kParamExplain;
+extern const Command kFaultShow;
 extern const Command kFaultList;
+extern const Command kFaultReset;
+extern const Command kFaultClearHistory;
 extern const Command kNmtStart;
 extern const Command kNmtStop;
 extern const Command kNmtPreop;
@@ -72,10 +75,12 @@ constexpr Parameter kGlobal[] = {
 
 std::span<const Command* const> registry() {
   static constexpr const Command* kAll[] = {
-      &kScan,      &kInfo,     &kStatus,   &kRead,        &kWrite,        &kObjects,
-      &kParamList, &kParamGet, &kParamSet, &kParamSearch, &kParamExplain, &kFaultList,
-      &kNmtStart,  &kNmtStop,  &kNmtPreop, &kNmtReset,    &kNmtResetComm, &kNmtWatch,
-      &kDecode,    &kDrives,   &kEdsCheck, &kSim,         &kCompletion,   &kHelp,
+      &kScan,         &kInfo,      &kStatus,    &kRead,       &kWrite,
+      &kObjects,      &kParamList, &kParamGet,  &kParamSet,   &kParamSearch,
+      &kParamExplain, &kFaultShow, &kFaultList, &kFaultReset, &kFaultClearHistory,
+      &kNmtStart,     &kNmtStop,   &kNmtPreop,  &kNmtReset,   &kNmtResetComm,
+      &kNmtWatch,     &kDecode,    &kDrives,    &kEdsCheck,   &kSim,
+      &kCompletion,   &kHelp,
   };
   return kAll;
 }

@@ -3,6 +3,7 @@
 
 #include "canopen/emergency.hpp"
 #include "commands/command.hpp"
+#include "commands/fault_records.hpp"
 #include "commands/records.hpp"
 #include "drive/cia402.hpp"
 #include "drive/quantity.hpp"
@@ -52,13 +53,6 @@ Result<void> hear_heartbeats(Context& context, std::span<const Result<Bytes>> an
   return {};
 }
 
-std::string fault_text(const Context& context, std::uint64_t code) {
-  if (context.profile != nullptr)
-    for (const auto& fault : context.profile->faults)
-      if (fault.code == code) return context.chinese && !fault.name_zh.empty() ? fault.name_zh : fault.name;
-  return canopen::emergency_text(static_cast<std::uint16_t>(code));
-}
-
 std::string mode_text(const Context& context, std::int8_t mode) {
   if (context.profile == nullptr) return {};
   const auto meaning = drive::meaning(drive::target_at(context.profile, kModeDisplay), 0);
@@ -92,7 +86,7 @@ void add_mode_and_fault(Record& out, const Context& context, std::span<const Res
     out.push_back({"mode", Record{{"value", value}, {"label", report::text_or_null(text)}}, Show::json});
   }
   if (const auto code = number(answers[2])) {
-    const auto text = fault_text(context, *code);
+    const auto text = fault_words(context.profile, context.chinese, static_cast<std::uint16_t>(*code));
     out.push_back(
         {"fault", *code == 0 ? std::string("none") : fmt::format("0x{:04X} {}", *code, text), Show::text});
     out.push_back(

@@ -41,7 +41,7 @@ _servoctl_scan() {
   case $command in
     '') source='=scan info status read write objects param fault nmt decode drives eds sim completion help' ;;
     param) source='=list get set search explain' ;;
-    fault) source='=list' ;;
+    fault) source='=show list reset clear-history' ;;
     nmt) source='=start stop preop reset reset-comm watch' ;;
     eds) source='=check' ;;
     'read') source='objects' ;;

@@ -71,8 +71,8 @@ std::optional<Emergency> parse_emergency(const can::Frame& frame) {
   Emergency out;
   out.node = static_cast<std::uint8_t>(frame.id - kEmergency);
   out.code = static_cast<std::uint16_t>(frame.data[0] | frame.data[1] << 8U);
-  out.error_register = frame.data[2];
-  std::copy_n(frame.data.begin() + 3, out.vendor.size(), out.vendor.begin());
+  if (frame.size > 2) out.error_register = frame.data[2];
+  if (frame.size > 3) std::copy_n(frame.data.begin() + 3, frame.size - 3, out.vendor.begin());
   out.size = frame.size;
   return out;
 }

@@ -4,6 +4,12 @@
 
 namespace servoctl::canopen {
 
+namespace {
+
+constexpr std::size_t kMostEmergencies = 8;
+
+}  // namespace
+
 TimePoint NodeWatch::Node::deadline() const {
   if (lost || guarded || intervals < 2) return kNever;
   return *last + std::max<Duration>(3 * period, period + std::chrono::milliseconds(100));
@@ -19,6 +25,12 @@ void NodeWatch::on_frame(const can::Frame& frame, TimePoint now) {
 
 /// A node that repeats itself while nobody takes its events is counted, not listed.
 void NodeWatch::on_emergency(const Emergency& emergency, TimePoint now) {
+  auto& recent = nodes_[emergency.node].emergencies;
+  if (emergency.is_reset())
+    recent.clear();
+  else
+    recent.push_back(emergency);
+  if (recent.size() > kMostEmergencies) recent.pop_front();
   const auto last = std::find_if(events_.rbegin(), events_.rend(),
                                  [&](const NodeEvent& event) { return event.node == emergency.node; });
   const auto* same = last == events_.rend() ? nullptr : std::get_if<Emergency>(&last->what);
@@ -36,6 +48,7 @@ void NodeWatch::on_error_control(const ErrorControl& message, TimePoint now) {
     node.last.reset();
     node.intervals = 0;
     node.lost = false;
+    node.emergencies.clear();
     events_.push_back({now, message.node, NodeEvent::BootUp{}});
     return;
   }

@@ -58,6 +58,8 @@ class NodeWatch {
   std::uint32_t heartbeats(std::uint8_t node) const { return nodes_[node].heartbeats; }
   /// The longest interval seen between two heartbeats; zero until two were.
   Duration period(std::uint8_t node) const { return nodes_[node].period; }
+  /// The last emergencies of the node since its boot-up or error reset, oldest first, at most eight.
+  const std::deque<Emergency>& emergencies(std::uint8_t node) const { return nodes_[node].emergencies; }
   /// The node answers a master's questions and sends nothing by itself: its silence means nothing.
   void set_guarded(std::uint8_t node, bool guarded);
   /// Forgets the state and the period of the node, before it is told to reset.
@@ -73,6 +75,7 @@ class NodeWatch {
     std::uint32_t intervals = 0;    ///< Intervals measured.
     bool lost = false;
     bool guarded = false;
+    std::deque<Emergency> emergencies;
     TimePoint deadline() const;
   };
   void on_emergency(const Emergency& emergency, TimePoint now);

@@ -66,7 +66,7 @@ void SdoServer::on_download_initiate(const can::Frame& frame, TimePoint now) {
     const std::size_t size = size_indicated ? 4U - (command >> 2U & 0x03U) : 4U;
     const auto code = store_->write(object, ByteSpan(frame.data).subspan(4, size));
     if (code != 0) return abort(object, code);
-    tx_ = sdo_frame(kSdoAnswer + node_, 0x60, object);
+    tx_ = sdo_frame(kSdoAnswer + node_, 0x60, object, options_.echo ? sdo_data(frame) : 0);
     return;
   }
   if (!options_.segmented) return abort(object, sdo_abort::kCommand);

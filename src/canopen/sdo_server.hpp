@@ -30,6 +30,7 @@ class SdoServer {
     bool block = true;                           ///< False: block requests are aborted with 0504 0001h.
     std::uint8_t block_size = kMaxBlockSize;     ///< Segments of a block the client may send, 1..127.
     bool crc = true;                             ///< Makes and checks the CRC of block transfers.
+    bool echo = false;                           ///< The acknowledge of an expedited write repeats its data.
     Duration timeout = std::chrono::seconds(1);  ///< Silence of the client that ends a segmented transfer.
   };
 

@@ -83,4 +83,62 @@ Result<std::vector<Fault>> parse_faults(std::string_view csv, std::string_view f
   return faults;
 }
 
+namespace {
+
+constexpr std::string_view kMajor = "{major}";
+constexpr std::string_view kMinor = "{minor}";
+
+/// `Er{major}-{minor}` taken apart.
+struct PanelPattern {
+  std::string_view before, between, after;
+};
+std::optional<PanelPattern> pattern_of(std::string_view text) {
+  const auto major = text.find(kMajor);
+  const auto minor = text.find(kMinor);
+  if (major == std::string_view::npos || minor == std::string_view::npos || minor < major)
+    return std::nullopt;
+  const auto middle = major + kMajor.size();
+  return PanelPattern{text.substr(0, major), text.substr(middle, minor - middle),
+                      text.substr(minor + kMinor.size())};
+}
+
+/// Vendor bytes begin with byte 3 of the message.
+std::size_t place(std::uint8_t byte) { return byte - 3U; }
+
+}  // namespace
+
+std::string panel_text(const EmergencyRules& rules, const std::array<std::uint8_t, 5>& vendor) {
+  const auto pattern = pattern_of(rules.panel);
+  if (!pattern) return {};
+  return fmt::format("{}{:02}{}{:x}{}", pattern->before, vendor[place(rules.major_byte)], pattern->between,
+                     vendor[place(rules.minor_byte)], pattern->after);
+}
+
+std::array<std::uint8_t, 5> panel_bytes(const EmergencyRules& rules, std::string_view panel) {
+  std::array<std::uint8_t, 5> out{};
+  const auto pattern = pattern_of(rules.panel);
+  if (!pattern || !panel.starts_with(pattern->before)) return out;
+  panel.remove_prefix(pattern->before.size());
+  const auto split = panel.find(pattern->between);
+  if (split == std::string_view::npos) return out;
+  const auto major = parse_digits(panel.substr(0, split), 10);
+  const auto minor = parse_digits(panel.substr(split + pattern->between.size()), 16);
+  if (!major || !minor || *major > 0xFF || *minor > 0xFF) return out;
+  out[place(rules.major_byte)] = static_cast<std::uint8_t>(*major);
+  out[place(rules.minor_byte)] = static_cast<std::uint8_t>(*minor);
+  return out;
+}
+
+std::vector<const Fault*> faults_of(std::span<const Fault> faults, const EmergencyRules& rules,
+                                    std::uint16_t code, const std::array<std::uint8_t, 5>& vendor) {
+  const auto panel = panel_text(rules, vendor);
+  std::vector<const Fault*> out;
+  for (const auto& fault : faults) {
+    if (fault.code != code) continue;
+    if (!panel.empty() && fault.panel == panel) return {&fault};
+    out.push_back(&fault);
+  }
+  return out;
+}
+
 }  // namespace servoctl::drive

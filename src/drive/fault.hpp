@@ -1,12 +1,15 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/result.hpp"
+#include "drive/rules.hpp"
 
 namespace servoctl::drive {
 
@@ -30,5 +33,17 @@ std::string_view name(Fault::Kind kind);  ///< `fault warning status`
 
 /// Reads `<family>.faults.csv`. Errc::file with file and line for a bad cell or an unknown column.
 Result<std::vector<Fault>> parse_faults(std::string_view csv, std::string_view file);
+
+/// What the panel shows for an emergency, by the family's layout of the vendor bytes (`Er12-2`); empty when
+/// they do not tell.
+std::string panel_text(const EmergencyRules& rules, const std::array<std::uint8_t, 5>& vendor);
+
+/// The vendor bytes of an emergency for this text of the panel; zeros where the layout does not tell.
+std::array<std::uint8_t, 5> panel_bytes(const EmergencyRules& rules, std::string_view panel);
+
+/// All that a code may stand for: the one whose panel text the vendor bytes give, else every fault that
+/// shares the code.
+std::vector<const Fault*> faults_of(std::span<const Fault> faults, const EmergencyRules& rules,
+                                    std::uint16_t code, const std::array<std::uint8_t, 5>& vendor = {});
 
 }  // namespace servoctl::drive

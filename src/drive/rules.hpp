@@ -97,6 +97,7 @@ struct StoreRules {
   std::string unlock;  ///< Parameter that holds the password.
   std::optional<std::int64_t> unlock_open;
   std::optional<std::int64_t> unlock_closed;
+  std::vector<std::string> locked;    ///< Parameters the password guards.
   std::string restore_at_start;       ///< Parameter: 1 restores the defaults at the next start.
   std::string clear_alarms_at_start;  ///< Parameter: 1 clears the alarm records at the next start.
 };

@@ -161,7 +161,8 @@ Result<void> read_store(const TableReader& reader, Rules& rules) {
                       {"wears", into(out.wears)},
                       {"unlock", into(out.unlock)},
                       {"unlock_open", into(out.unlock_open)},
-                      {"unlock_closed", into(out.unlock_closed)}});
+                      {"unlock_closed", into(out.unlock_closed)},
+                      {"locked", into(out.locked)}});
 }
 
 Result<void> read_restart(const TableReader& reader, Rules& rules) {

@@ -43,6 +43,18 @@ void PowerStage::raise_fault(TimePoint now) {
   deadline_ = now + kReaction;
 }
 
+bool PowerStage::reset_fault() {
+  if (state_ != DriveState::fault) return false;
+  state_ = DriveState::switch_on_disabled;
+  return true;
+}
+
+void PowerStage::disable() {
+  if (state_ == DriveState::fault || state_ == DriveState::fault_reaction_active) return;
+  state_ = DriveState::switch_on_disabled;
+  deadline_ = kNever;
+}
+
 void PowerStage::on_time(TimePoint now) {
   if (now < deadline_) return;
   deadline_ = kNever;

@@ -20,6 +20,10 @@ class PowerStage {
   void on_controlword(std::uint16_t controlword, std::int64_t quick_stop_option, bool may_reset,
                       TimePoint now);
   void raise_fault(TimePoint now);
+  /// Resets a fault by other means than the controlword; false when there is none.
+  bool reset_fault();
+  /// De-energises at once, whatever the state; a fault stays.
+  void disable();
   void on_time(TimePoint now);
   TimePoint deadline() const { return deadline_; }
 

@@ -4,12 +4,9 @@
 #include <utility>
 
 #include "canopen/cob_id.hpp"
-#include "canopen/sdo_abort.hpp"
-#include "drive/quantity.hpp"
 #include "sim/known_objects.hpp"
 
 namespace servoctl::sim {
-namespace abort = canopen::sdo_abort;
 using canopen::NmtCommand;
 using canopen::NmtState;
 
@@ -17,7 +14,6 @@ namespace {
 
 /// From a reset to the boot-up message.
 constexpr Duration kBootTime = std::chrono::milliseconds(50);
-constexpr std::size_t kHistorySize = 8;
 /// EMCY of a life guarding or heartbeat error (CiA 301, table 26).
 constexpr std::uint16_t kLifeGuardError = 0x8130;
 
@@ -25,6 +21,7 @@ canopen::SdoServer::Options server_options(const drive::Rules& rules) {
   canopen::SdoServer::Options options;
   options.segmented = rules.sdo.segmented;
   options.block = rules.sdo.segmented && rules.sdo.block;
+  options.echo = rules.sdo.echoes_data;
   return options;
 }
 
@@ -135,6 +132,7 @@ void SimDrive::power_on(TimePoint now) {
       if (p.object && p.effect == od::Effect::restart) at_start_[*p.object] = values_.number(*p.object);
     power_.reset();
     history_.clear();
+    fault_ = nullptr;
   }
   load_mirrors();
   server_ = canopen::SdoServer(node_, *this, server_options(profile_->rules));
@@ -164,6 +162,8 @@ void SimDrive::on_nmt(NmtCommand command, TimePoint now) {
 }
 
 void SimDrive::set_nmt(NmtState state) {
+  const bool leaves = nmt_ == NmtState::operational && state != NmtState::operational;
+  if (leaves && profile_->rules.nmt.disables_outside_operational) power_.disable();
   nmt_ = state;
   error_control_.set_state(state);
 }
@@ -179,100 +179,6 @@ void SimDrive::on_life_lost(TimePoint now) {
   const auto* alarm = parameter(profile_->rules.nmt.guarding_alarm);
   const bool masked = alarm != nullptr && alarm->object && effective(*alarm->object) == 0;
   if (!masked) raise_fault(kLifeGuardError, {}, now);
-}
-
-std::uint32_t SimDrive::read(ObjectAddress object, Bytes& out) {
-  if (const auto code = values_.check_read(object); code != 0) return code;
-  if (object == kStatusword) {
-    out = store_le(power_.statusword(static_cast<std::int8_t>(values_.number(kModeDisplay))), 2);
-    return 0;
-  }
-  if (object.index == kErrorHistory.index) {
-    if (object.sub == 0) out = store_le(history_.size(), 1);
-    if (object.sub > 0 && object.sub > history_.size()) return abort::kNoData;
-    if (object.sub > 0) out = store_le(history_[object.sub - 1U], 4);
-    return 0;
-  }
-  out = values_.get(object);
-  return 0;
-}
-
-std::uint32_t SimDrive::check_state(ObjectAddress object, ByteSpan data) const {
-  const auto target = drive::target_at(profile_, object);
-  const auto effect = drive::meaning(target, node_).effect;
-  if (effect == od::Effect::standstill && drive::is_energised(power_.state())) return abort::kDeviceState;
-  if (object == kModes && target.entry != nullptr && !target.entry->labels.empty()) {
-    const auto value = od::decode(target.entry->type, data);
-    if (!value || drive::label_of(drive::meaning(target, node_), *value) == nullptr) return abort::kRange;
-  }
-  return 0;
-}
-
-std::uint32_t SimDrive::write(ObjectAddress object, ByteSpan data) {
-  if (object == kErrorHistory && data.size() == 1 && data[0] != 0) return abort::kRange;
-  if (const auto code = values_.check_write(object, data, node_); code != 0) return code;
-  if (const auto code = check_state(object, data); code != 0) return code;
-  bool handled = false;
-  if (const auto code = write_command(object, data, handled); code != 0 || handled) return code;
-  values_.set(object, data);
-  after_write(object, data);
-  return 0;
-}
-
-std::uint32_t SimDrive::write_command(ObjectAddress object, ByteSpan data, bool& handled) {
-  handled = true;
-  if (object == kErrorHistory) {
-    history_.clear();
-    return 0;
-  }
-  if (object == kStore) return load_le(data) == kSaveSignature ? save_objects() : abort::kCannotStore;
-  if (object == kRestore) {
-    if (load_le(data) != kLoadSignature) return abort::kCannotStore;
-    memory_->cells(key_).clear();
-    return memory_->save() ? 0 : abort::kCannotStore;
-  }
-  handled = false;
-  return 0;
-}
-
-void SimDrive::after_write(ObjectAddress object, ByteSpan data) {
-  const auto* parameter = profile_->parameter(object);
-  if (parameter != nullptr && parameter->access == od::Access::rw && !parameter->is_volatile) {
-    memory_->cells(key_)[object] = Bytes(data.begin(), data.end());
-    (void)memory_->save();
-  }
-  if (object == kHeartbeatTime || object == kGuardTime || object == kLifeFactor) set_up_error_control(now_);
-  if (object == kModes) values_.set(kModeDisplay, data);
-  if (object == kControlword) {
-    const auto& gate = profile_->rules.fault.reset_enabled_by;
-    const bool may_reset = !gate || effective(gate->object) == gate->value;
-    power_.on_controlword(static_cast<std::uint16_t>(load_le(data)),
-                          static_cast<std::int64_t>(values_.number(kQuickStopOption)), may_reset, now_);
-    if (power_.was_reset()) {
-      values_.set_number(kErrorCode, 0);
-      values_.set_number(kErrorRegister, 0);
-      send_emergency(0, {});
-    }
-  }
-}
-
-void SimDrive::raise_fault(std::uint16_t code, std::array<std::uint8_t, 5> vendor, TimePoint now) {
-  power_.raise_fault(now);
-  values_.set_number(kErrorCode, code);
-  values_.set_number(kErrorRegister, 0x81);  // Generic and manufacturer specific.
-  history_.push_front(static_cast<std::uint32_t>(vendor[0] | vendor[1] << 8U) << 16U | code);
-  if (history_.size() > kHistorySize) history_.pop_back();
-  send_emergency(code, vendor);
-}
-
-void SimDrive::send_emergency(std::uint16_t code, std::array<std::uint8_t, 5> vendor) {
-  if (nmt_ == NmtState::stopped || nmt_ == NmtState::initialising) return;
-  canopen::Emergency emergency;
-  emergency.node = node_;
-  emergency.code = code;
-  emergency.error_register = static_cast<std::uint8_t>(values_.number(kErrorRegister));
-  emergency.vendor = vendor;
-  tx_.push_back(canopen::emergency_frame(emergency));
 }
 
 }  // namespace servoctl::sim

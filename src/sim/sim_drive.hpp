@@ -51,6 +51,8 @@ class SimDrive final : public Device, private canopen::ObjectStore {
 
   std::uint8_t node() const { return node_; }
   canopen::NmtState nmt_state() const { return nmt_; }
+  /// Writes that went to the memory that outlives power-off since the drive was made.
+  std::uint64_t flash_writes() const { return flash_writes_; }
 
  private:
   struct Planned {
@@ -75,6 +77,11 @@ class SimDrive final : public Device, private canopen::ObjectStore {
   void restore_if_asked();
   void on_nmt(canopen::NmtCommand command, TimePoint now);
   void set_nmt(canopen::NmtState state);
+  bool is_locked(ObjectAddress object) const;
+  bool is_kept(ObjectAddress object) const;
+  bool may_reset() const;
+  void clear_fault();
+  void raise_access_alarm(ObjectAddress object, std::uint32_t code);
   void collect_answers(TimePoint now);
   void set_up_error_control(TimePoint now);
   void on_life_lost(TimePoint now);
@@ -98,6 +105,8 @@ class SimDrive final : public Device, private canopen::ObjectStore {
   TimePoint boot_at_ = TimePoint::min();  ///< When the boot-up message is due; kNever once it is sent.
   bool full_restart_ = true;
   std::deque<std::uint32_t> history_;
+  const drive::Fault* fault_ = nullptr;  ///< The present one, when its code tells which it is.
+  std::uint64_t flash_writes_ = 0;
   std::deque<can::Frame> tx_;
   std::deque<Delayed> late_;
   Misbehaviour misbehaviour_;

@@ -54,6 +54,11 @@ TEST(Emergency, IsTakenApart) {
 
 TEST(Emergency, OfTwoBytesIsUnderstoodAndSyncIsNone) {
   EXPECT_EQ(parse_emergency(frame("081#1615"))->code, 0x1516);
+  auto longer = frame("081#1615818283");
+  longer.size = 2;  // What stands behind the end of a frame is no part of it.
+  EXPECT_EQ(parse_emergency(longer)->error_register, 0);
+  EXPECT_EQ(parse_emergency(longer)->vendor, (std::array<std::uint8_t, 5>{}));
+  EXPECT_EQ(parse_emergency(frame("081#1615818283"))->vendor, (std::array<std::uint8_t, 5>{0x82, 0x83}));
   EXPECT_FALSE(parse_emergency(frame("080#")));
   EXPECT_FALSE(parse_emergency(frame("080#01")));
   EXPECT_FALSE(parse_emergency(frame("081#16")));

@@ -1,0 +1,107 @@
+#include <fmt/format.h>
+
+#include "commands/command.hpp"
+#include "commands/records.hpp"
+#include "session/fault_reset.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using report::Show;
+using report::Value;
+
+constexpr ObjectAddress kHistory{0x1003, 0};
+
+report::Table result_table() {
+  report::Table table;
+  table.columns = {{"node"}, {"result"}, {"error", "", Show::json}};
+  return table;
+}
+
+std::string whom(const Context& context) {
+  return context.nodes.size() == 1 ? fmt::format("node {}", context.nodes.front())
+                                   : fmt::format("{} nodes", context.nodes.size());
+}
+
+void add_failure(Context& context, report::Table& table, std::uint8_t node, const Error& error) {
+  table.rows.push_back({node, "failed", error_record(error)});
+  context.errors.push_back(error);
+}
+
+Result<Value> run_reset(Context& context, const Arguments&) {
+  if (context.dry_run) {
+    auto table = result_table();
+    for (const auto node : context.nodes)
+      table.rows.push_back({node, "would be reset if it is in fault", Value()});
+    return Value(std::move(table));
+  }
+  const auto question = fmt::format("Reset the fault of {}? Its cause must be gone.", whom(context));
+  if (const auto answer = context.confirm(question); !answer) return tl::unexpected<Error>(answer.error());
+  auto table = result_table();
+  for (const auto node : context.nodes) {
+    const auto done = session::reset_fault(*context.session, context.profile, node);
+    if (!done)
+      add_failure(context, table, node, done.error());
+    else
+      table.rows.push_back({node, *done == session::FaultReset::done ? "reset" : "no fault", Value()});
+  }
+  return Value(std::move(table));
+}
+
+Result<Value> run_clear(Context& context, const Arguments&) {
+  auto table = result_table();
+  if (!context.dry_run) {
+    const auto question = fmt::format("Clear the fault history of {}?", whom(context));
+    if (const auto answer = context.confirm(question); !answer) return tl::unexpected<Error>(answer.error());
+  }
+  for (const auto node : context.nodes) {
+    if (context.dry_run) {
+      table.rows.push_back({node, "would be cleared", Value()});
+      continue;
+    }
+    const auto written = context.session->download(node, kHistory, {0});
+    const auto left = written ? context.session->upload(node, kHistory) : Result<Bytes>(Bytes{});
+    if (!written) {
+      add_failure(context, table, node, written.error());
+    } else if (!left || load_le(*left) != 0) {
+      Error error;
+      error.code = Errc::negative;
+      error.node = node;
+      error.object = kHistory;
+      error.message = fmt::format("node {}: the drive acknowledged, but its history is not empty", node);
+      add_failure(context, table, node, left ? error : left.error());
+    } else {
+      table.rows.push_back({node, "cleared", Value()});
+    }
+  }
+  return Value(std::move(table));
+}
+
+}  // namespace
+
+extern const Command kFaultReset;
+const Command kFaultReset{
+    .path = "fault reset",
+    .summary = "Reset the fault of a drive",
+    .details =
+        "Writes to a drive in fault only: controlword 0000h, 0080h, 0000h, none of which can enable it, and "
+        "where "
+        "the family has another way, that one after it. Exit code 1 when the fault stays.",
+    .parameters = {},
+    .needs = Needs::node,
+    .effect = Effect::resets,
+    .run = run_reset,
+};
+
+extern const Command kFaultClearHistory;
+const Command kFaultClearHistory{
+    .path = "fault clear-history",
+    .summary = "Clear the fault history of a drive (1003h)",
+    .details = "Writes 0 to 1003h:00 and reads it back.",
+    .parameters = {},
+    .needs = Needs::node,
+    .effect = Effect::resets,
+    .run = run_clear,
+};
+
+}  // namespace servoctl::commands

@@ -1,0 +1,193 @@
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "canopen/emergency.hpp"
+#include "commands/command.hpp"
+#include "commands/fault_records.hpp"
+#include "commands/reading.hpp"
+#include "commands/records.hpp"
+#include "drive/cia402.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using report::List;
+using report::Record;
+using report::Show;
+using report::Value;
+
+constexpr ObjectAddress kErrorCode{0x603F, 0};
+constexpr ObjectAddress kErrorRegister{0x1001, 0};
+constexpr ObjectAddress kStatusword{0x6041, 0};
+constexpr ObjectAddress kHistory{0x1003, 0};
+constexpr std::uint8_t kMostHistory = 254;
+
+std::string code_text(std::uint16_t code, const std::string& words) {
+  return fmt::format("0x{:04X} {}", code, words);
+}
+
+/// An object that is not there is no failure of the command: it is told.
+std::string unavailable(const Error& error) {
+  return error.code == Errc::sdo_abort ? "the drive does not have it" : error.message;
+}
+
+/// Everything one node says of its faults.
+class FaultReport {
+ public:
+  FaultReport(Context& context, std::uint8_t node) : context_(&context), node_(node) {}
+
+  Result<Record> make() {
+    auto& session = *context_->session;
+    const auto statusword = session.upload(node_, kStatusword);
+    if (!statusword && statusword.error().code != Errc::sdo_abort)
+      return tl::unexpected<Error>(statusword.error());
+    out_ = {{"node", node_}};
+    if (statusword) {
+      const auto state = drive::decode_state(static_cast<std::uint16_t>(load_le(*statusword)));
+      out_.push_back({"state", context_->chinese ? drive::name_zh(state) : drive::name(state), Show::text,
+                      "drive state"});
+      out_.push_back({"state", drive::name(state), Show::json});
+    }
+    add_code();
+    add_register();
+    add_alarm();
+    add_emergencies();
+    add_history();
+    if (!candidates_.empty())
+      out_.push_back(
+          {"alarms", fault_table(candidates_, context_->chinese), Show::everywhere, "what it may be"});
+    return std::move(out_);
+  }
+
+ private:
+  std::string words(std::uint16_t code, const std::array<std::uint8_t, 5>& vendor = {}) {
+    if (context_->profile != nullptr)
+      for (const auto* fault :
+           drive::faults_of(context_->profile->faults, context_->profile->rules.emergency, code, vendor))
+        if (std::find(candidates_.begin(), candidates_.end(), fault) == candidates_.end())
+          candidates_.push_back(fault);
+    return fault_words(context_->profile, context_->chinese, code, vendor);
+  }
+
+  void add_code() {
+    const auto answer = context_->session->upload(node_, kErrorCode);
+    if (!answer) {
+      out_.push_back({"code_text", unavailable(answer.error()), Show::text, "error code 603Fh"});
+      out_.push_back({"code", Value(), Show::json});
+      return;
+    }
+    const auto code = static_cast<std::uint16_t>(load_le(*answer));
+    out_.push_back(
+        {"code_text", code == 0 ? "none" : code_text(code, words(code)), Show::text, "error code 603Fh"});
+    out_.push_back({"code", code, Show::json});
+    out_.push_back({"text", code == 0 ? Value() : Value(words(code)), Show::json});
+  }
+
+  void add_register() {
+    const auto answer = context_->session->upload(node_, kErrorRegister);
+    const auto bits = answer ? static_cast<std::uint8_t>(load_le(*answer)) : std::uint8_t{0};
+    out_.push_back({"register_text",
+                    answer ? fmt::format("0x{:02X} {}", bits, canopen::error_register_text(bits))
+                           : unavailable(answer.error()),
+                    Show::text, "error register 1001h"});
+    out_.push_back({"error_register", answer ? Value(bits) : Value(), Show::json});
+  }
+
+  /// The number the family keeps in a parameter of its own.
+  void add_alarm() {
+    if (context_->profile == nullptr || context_->profile->rules.fault.alarm.empty()) return;
+    const auto target = drive::resolve(context_->profile, context_->profile->rules.fault.alarm);
+    if (!target) return;
+    const auto answer = context_->session->upload(node_, target->address);
+    const auto code = answer ? static_cast<std::uint16_t>(load_le(*answer)) : std::uint16_t{0};
+    out_.push_back({"alarm_text",
+                    !answer     ? unavailable(answer.error())
+                    : code == 0 ? std::string("none")
+                                : code_text(code, words(code)),
+                    Show::text, target->label()});
+    out_.push_back({"alarm",
+                    answer ? Value(Record{{"id", target->parameter != nullptr ? target->parameter->id
+                                                                              : to_string(target->address)},
+                                          {"value", code}})
+                           : Value(),
+                    Show::json});
+  }
+
+  void add_emergencies() {
+    List records;
+    List lines;
+    for (const auto& e : context_->session->watch().emergencies(node_)) {
+      const auto text = words(e.code, e.vendor);
+      records.emplace_back(Record{{"code", e.code},
+                                  {"error_register", e.error_register},
+                                  {"vendor", to_hex(e.vendor)},
+                                  {"text", text}});
+      lines.emplace_back(code_text(e.code, text));
+    }
+    if (!lines.empty()) out_.push_back({"emergency_text", std::move(lines), Show::text, "emergencies heard"});
+    out_.push_back({"emergencies", std::move(records), Show::json});
+  }
+
+  void add_history() {
+    auto& session = *context_->session;
+    const auto count = session.upload(node_, kHistory);
+    List records;
+    report::Table table;
+    table.columns = {{"number", ""}, {"code"}, {"vendor"}, {"text", "meaning"}};
+    for (std::uint8_t i = 1; count && i <= std::min<std::uint64_t>(load_le(*count), kMostHistory); ++i) {
+      const auto entry = session.upload(node_, {kHistory.index, i});
+      if (!entry) break;
+      const auto value = static_cast<std::uint32_t>(load_le(*entry));
+      const auto code = static_cast<std::uint16_t>(value & 0xFFFFU);
+      const auto vendor = value >> 16U;
+      const std::array<std::uint8_t, 5> bytes{static_cast<std::uint8_t>(vendor & 0xFFU),
+                                              static_cast<std::uint8_t>(vendor >> 8U)};
+      const auto text = fault_words(context_->profile, context_->chinese, code, bytes);
+      records.emplace_back(Record{{"code", code}, {"vendor", vendor}, {"text", text}});
+      table.rows.push_back({i, report::Hex{code, 4}, report::Hex{vendor, 4}, text});
+    }
+    if (!count)
+      out_.push_back({"history_text", unavailable(count.error()), Show::text, "history 1003h"});
+    else if (table.rows.empty())
+      out_.push_back({"history_text", "empty", Show::text, "history 1003h"});
+    else
+      out_.push_back({"history_table", std::move(table), Show::text, "history 1003h, newest first"});
+    out_.push_back({"history", count ? Value(std::move(records)) : Value(), Show::json});
+  }
+
+  Context* context_;
+  std::uint8_t node_;
+  Record out_;
+  std::vector<const drive::Fault*> candidates_;
+};
+
+Result<Value> run(Context& context, const Arguments&) {
+  List out;
+  for (const auto node : context.nodes) {
+    auto record = FaultReport(context, node).make();
+    if (record)
+      out.emplace_back(std::move(*record));
+    else
+      context.errors.push_back(record.error());
+  }
+  return Value(std::move(out));
+}
+
+}  // namespace
+
+extern const Command kFaultShow;
+const Command kFaultShow{
+    .path = "fault show",
+    .summary = "Show what is wrong with a drive and what to do",
+    .details =
+        "Reads error code (603Fh), error register (1001h), history (1003h) and the family's own alarm "
+        "parameter, and adds the emergencies heard in this session. Where several alarms share a code, all "
+        "are "
+        "shown.",
+    .parameters = {},
+    .needs = Needs::node,
+    .effect = Effect::reads,
+    .run = run,
+};
+
+}  // namespace servoctl::commands

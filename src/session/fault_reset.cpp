@@ -1,0 +1,94 @@
+#include "session/fault_reset.hpp"
+
+#include <fmt/format.h>
+
+#include "drive/cia402.hpp"
+#include "drive/quantity.hpp"
+
+namespace servoctl::session {
+namespace {
+
+using drive::DriveState;
+
+constexpr ObjectAddress kControlword{0x6040, 0};
+constexpr ObjectAddress kStatusword{0x6041, 0};
+constexpr std::uint16_t kResetEdge = 0x0080;
+/// How long a drive may take for the transition; manuals name none.
+constexpr Duration kPatience = std::chrono::milliseconds(500);
+constexpr Duration kPause = std::chrono::milliseconds(20);
+
+Result<DriveState> read_state(Session& session, std::uint8_t node) {
+  const auto answer = session.upload(node, kStatusword);
+  if (!answer) return tl::unexpected<Error>(answer.error());
+  return drive::decode_state(static_cast<std::uint16_t>(load_le(*answer)));
+}
+
+/// Whether the drive is out of "fault" before the time is over.
+Result<bool> left_fault(Session& session, std::uint8_t node) {
+  const auto end = session.now() + kPatience;
+  for (;;) {
+    const auto state = read_state(session, node);
+    if (!state) return tl::unexpected<Error>(state.error());
+    if (*state != DriveState::fault && *state != DriveState::fault_reaction_active) return true;
+    if (session.now() >= end) return false;
+    if (const auto waited = session.wait([] { return false; }, session.now() + kPause); !waited)
+      return tl::unexpected<Error>(waited.error());
+  }
+}
+
+Result<bool> by_controlword(Session& session, std::uint8_t node) {
+  for (const std::uint16_t word : {std::uint16_t{0}, kResetEdge})
+    if (const auto written = session.download(node, kControlword, store_le(word, 2)); !written)
+      return tl::unexpected<Error>(written.error());
+  const auto left = left_fault(session, node);
+  // While bit 7 stays set the drive obeys nothing else.
+  if (const auto released = session.download(node, kControlword, store_le(0, 2)); !released)
+    return tl::unexpected<Error>(released.error());
+  return left;
+}
+
+Result<bool> by_settings(Session& session, const drive::Profile& profile, std::uint8_t node) {
+  for (const auto& setting : profile.rules.fault.reset) {
+    const auto target = drive::resolve(&profile, setting.name);
+    if (!target) return tl::unexpected<Error>(target.error());
+    const auto data = od::encode(drive::meaning(*target, node).type, od::Value(setting.value));
+    if (!data) return tl::unexpected<Error>(data.error());
+    if (const auto written = session.download(node, target->address, *data); !written)
+      return tl::unexpected<Error>(written.error());
+    const auto left = left_fault(session, node);
+    if (!left || *left) return left;
+  }
+  return false;
+}
+
+}  // namespace
+
+Result<FaultReset> reset_fault(Session& session, const drive::Profile* profile, std::uint8_t node) {
+  const auto state = read_state(session, node);
+  if (!state) return tl::unexpected<Error>(state.error());
+  if (*state != DriveState::fault && *state != DriveState::fault_reaction_active) {
+    if (drive::is_energised(*state)) {
+      Error error;
+      error.code = Errc::refused;
+      error.node = node;
+      error.message = fmt::format("node {} is in no fault but {}: a reset would take its power away", node,
+                                  drive::name(*state));
+      error.hint = "stop and disable it first";
+      return fail(std::move(error));
+    }
+    return FaultReset::no_fault;
+  }
+  Result<bool> left = false;
+  if (profile == nullptr || profile->rules.fault.by_controlword) left = by_controlword(session, node);
+  if (left && !*left && profile != nullptr) left = by_settings(session, *profile, node);
+  if (!left) return tl::unexpected<Error>(left.error());
+  if (*left) return FaultReset::done;
+  Error error;
+  error.code = Errc::negative;
+  error.node = node;
+  error.message = fmt::format("node {}: the fault stays", node);
+  error.hint = "remove its cause (`fault show`); some faults need a power cycle";
+  return fail(std::move(error));
+}
+
+}  // namespace servoctl::session

@@ -1,0 +1,78 @@
+// How a simulated drive fails, and what it says of it.
+#include <algorithm>
+
+#include "canopen/sdo_abort.hpp"
+#include "drive/naming.hpp"
+#include "sim/known_objects.hpp"
+#include "sim/pdo_guard.hpp"
+#include "sim/sim_drive.hpp"
+
+namespace servoctl::sim {
+namespace abort = canopen::sdo_abort;
+using canopen::NmtState;
+
+namespace {
+
+constexpr std::size_t kHistorySize = 8;
+constexpr std::uint64_t kGenericAndVendor = 0x81;  ///< Bits of 1001h.
+
+}  // namespace
+
+void SimDrive::raise_fault(std::uint16_t code, std::array<std::uint8_t, 5> vendor, TimePoint now) {
+  const auto found = drive::faults_of(profile_->faults, profile_->rules.emergency, code, vendor);
+  if (!found.empty() && found.front()->kind == drive::Fault::Kind::status)
+    return send_emergency(code, vendor);
+  fault_ = found.size() == 1 ? found.front() : nullptr;
+  power_.raise_fault(now);
+  values_.set_number(kErrorCode, code);
+  values_.set_number(kErrorRegister, kGenericAndVendor);
+  if (const auto alarm = drive::resolve(profile_, profile_->rules.fault.alarm); alarm)
+    values_.set_number(alarm->address, code);
+  history_.push_front(static_cast<std::uint32_t>(vendor[0] | vendor[1] << 8U) << 16U | code);
+  if (history_.size() > kHistorySize) history_.pop_back();
+  send_emergency(code, vendor);
+}
+
+/// Some families take a wrong access for a fault of the drive.
+void SimDrive::raise_access_alarm(ObjectAddress object, std::uint32_t code) {
+  const auto& rules = profile_->rules.fault;
+  std::string_view panel;
+  if (code == abort::kLength || code == abort::kTooLong || code == abort::kTooShort)
+    panel = rules.length_alarm;
+  if (code == abort::kTooHigh || code == abort::kTooLow || code == abort::kRange) panel = rules.range_alarm;
+  if (code == abort::kReadOnly) panel = rules.access_alarm;
+  if (code == abort::kDeviceState && PdoGuard::is_mapping(object)) panel = rules.mapping_alarm;
+  const auto& faults = profile_->faults;
+  const auto found =
+      std::find_if(faults.begin(), faults.end(), [&](const auto& f) { return f.panel == panel; });
+  if (panel.empty() || found == faults.end() || !found->code) return;
+  raise_fault(*found->code, drive::panel_bytes(profile_->rules.emergency, panel), now_);
+}
+
+bool SimDrive::may_reset() const {
+  const auto& gate = profile_->rules.fault.reset_enabled_by;
+  if (gate && effective(gate->object) != gate->value) return false;
+  return fault_ == nullptr || fault_->resettable.value_or(true);
+}
+
+void SimDrive::clear_fault() {
+  fault_ = nullptr;
+  values_.set_number(kErrorCode, 0);
+  values_.set_number(kErrorRegister, 0);
+  if (const auto alarm = drive::resolve(profile_, profile_->rules.fault.alarm); alarm)
+    values_.set_number(alarm->address, 0);
+  send_emergency(0, {});
+}
+
+void SimDrive::send_emergency(std::uint16_t code, std::array<std::uint8_t, 5> vendor) {
+  if (nmt_ == NmtState::stopped || nmt_ == NmtState::initialising) return;
+  canopen::Emergency emergency;
+  emergency.node = node_;
+  emergency.code = code;
+  emergency.error_register = static_cast<std::uint8_t>(values_.number(kErrorRegister));
+  emergency.vendor = vendor;
+  emergency.size = profile_->rules.emergency.size;
+  tx_.push_back(canopen::emergency_frame(emergency));
+}
+
+}  // namespace servoctl::sim

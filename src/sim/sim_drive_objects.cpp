@@ -1,0 +1,124 @@
+// What a simulated drive answers to reads and writes.
+#include <algorithm>
+
+#include "canopen/sdo_abort.hpp"
+#include "drive/quantity.hpp"
+#include "sim/known_objects.hpp"
+#include "sim/pdo_guard.hpp"
+#include "sim/sim_drive.hpp"
+
+namespace servoctl::sim {
+namespace abort = canopen::sdo_abort;
+using canopen::NmtState;
+
+std::uint32_t SimDrive::read(ObjectAddress object, Bytes& out) {
+  if (const auto code = values_.check_read(object); code != 0) return code;
+  if (object == kStatusword) {
+    out = store_le(power_.statusword(static_cast<std::int8_t>(values_.number(kModeDisplay))), 2);
+    return 0;
+  }
+  if (object.index == kErrorHistory.index) {
+    if (object.sub == 0) out = store_le(history_.size(), 1);
+    if (object.sub > 0 && object.sub > history_.size()) return abort::kNoData;
+    if (object.sub > 0) out = store_le(history_[object.sub - 1U], 4);
+    return 0;
+  }
+  out = values_.get(object);
+  return 0;
+}
+
+std::uint32_t SimDrive::check_state(ObjectAddress object, ByteSpan data) const {
+  const auto target = drive::target_at(profile_, object);
+  const auto effect = drive::meaning(target, node_).effect;
+  if (effect == od::Effect::standstill && drive::is_energised(power_.state())) return abort::kDeviceState;
+  if (object == kModes && target.entry != nullptr && !target.entry->labels.empty()) {
+    const auto value = od::decode(target.entry->type, data);
+    if (!value || drive::label_of(drive::meaning(target, node_), *value) == nullptr) return abort::kRange;
+  }
+  if (is_locked(object)) return abort::kLocalControl;
+  return PdoGuard(*profile_, values_).check(object, data, nmt_ == NmtState::operational);
+}
+
+/// Parameters behind a password; the password itself never is.
+bool SimDrive::is_locked(ObjectAddress object) const {
+  const auto& store = profile_->rules.store;
+  const auto* password = parameter(store.unlock);
+  if (password == nullptr || !password->object || !store.unlock_open) return false;
+  const auto guarded = [&](const std::string& id) {
+    const auto* p = parameter(id);
+    return p != nullptr && p->object == object;
+  };
+  return std::any_of(store.locked.begin(), store.locked.end(), guarded) &&
+         static_cast<std::int64_t>(values_.number(*password->object)) != *store.unlock_open;
+}
+
+std::uint32_t SimDrive::write(ObjectAddress object, ByteSpan data) {
+  if (object == kErrorHistory && data.size() == 1 && data[0] != 0) return abort::kRange;
+  auto code = values_.check_write(object, data, node_);
+  if (code == 0) code = check_state(object, data);
+  if (code != 0) {
+    raise_access_alarm(object, code);
+    return code;
+  }
+  bool handled = false;
+  code = write_command(object, data, handled);
+  if (code != 0 || handled) return code;
+  values_.set(object, data);
+  after_write(object, data);
+  return 0;
+}
+
+std::uint32_t SimDrive::write_command(ObjectAddress object, ByteSpan data, bool& handled) {
+  handled = true;
+  if (object == kErrorHistory) {
+    history_.clear();
+    return 0;
+  }
+  if (object == kStore) return load_le(data) == kSaveSignature ? save_objects() : abort::kCannotStore;
+  if (object == kRestore) {
+    if (load_le(data) != kLoadSignature) return abort::kCannotStore;
+    memory_->cells(key_).clear();
+    return memory_->save() ? 0 : abort::kCannotStore;
+  }
+  handled = false;
+  return 0;
+}
+
+/// Whether a write to this object goes to the memory that outlives power-off, at once.
+bool SimDrive::is_kept(ObjectAddress object) const {
+  const auto* parameter = profile_->parameter(object);
+  const auto& rules = profile_->rules.store;
+  if (rules.flash_switch.empty())
+    return parameter != nullptr && parameter->access == od::Access::rw && !parameter->is_volatile;
+  const auto* entry = profile_->dictionary.find(object);
+  const bool setting =
+      entry != nullptr && entry->access == od::Access::rw && !entry->command && !entry->is_volatile;
+  const auto flash = drive::resolve(profile_, rules.flash_switch);
+  const bool of_vendor = object.index >= 0x2000 && object.index < 0x6000;
+  return setting && of_vendor && flash && flash->address != object && rules.to_flash &&
+         static_cast<std::int64_t>(values_.number(flash->address)) == *rules.to_flash;
+}
+
+void SimDrive::after_write(ObjectAddress object, ByteSpan data) {
+  if (is_kept(object)) {
+    memory_->cells(key_)[object] = Bytes(data.begin(), data.end());
+    ++flash_writes_;
+    (void)memory_->save();
+  }
+  if (object == kHeartbeatTime || object == kGuardTime || object == kLifeFactor) set_up_error_control(now_);
+  if (object == kModes) values_.set(kModeDisplay, data);
+  if (object == kControlword) {
+    power_.on_controlword(static_cast<std::uint16_t>(load_le(data)),
+                          static_cast<std::int64_t>(values_.number(kQuickStopOption)), may_reset(), now_);
+    if (power_.was_reset()) clear_fault();
+  }
+  for (const auto& setting : profile_->rules.fault.reset) {
+    const auto target = drive::resolve(profile_, setting.name);
+    if (!target || target->address != object || static_cast<std::int64_t>(load_le(data)) != setting.value)
+      continue;
+    if (may_reset() && power_.reset_fault()) clear_fault();
+    values_.set_number(object, 0);
+  }
+}
+
+}  // namespace servoctl::sim
