@@ -1,9 +1,20 @@
 #include "commands/command.hpp"
+#include "commands/drive_rules.hpp"
 
 namespace servoctl::commands {
 namespace {
 
-Result<report::Value> run(Context& context, const Arguments&) {
+constexpr Parameter kParameters[] = {
+    {.name = "family", .help = "show the rules of this family", .kind = Kind::family},
+};
+
+Result<report::Value> run(Context& context, const Arguments& arguments) {
+  if (arguments.has("family")) {
+    const auto profile = drive::load_profile(arguments.text("family"), context.drive_folders);
+    if (!profile) return tl::unexpected<Error>(profile.error());
+    for (const auto& warning : profile->warnings) context.notices.push_back(warning);
+    return report::Value(rules_record(*profile, context.chinese));
+  }
   report::Table table;
   table.columns = {{"family"},
                    {"vendor"},
@@ -34,11 +45,11 @@ Result<report::Value> run(Context& context, const Arguments&) {
 extern const Command kDrives;
 const Command kDrives{
     .path = "drives",
-    .summary = "List the drive families servoctl knows",
+    .summary = "List the drive families servoctl knows, or the rules of one",
     .details =
         "Families of your own go into ~/.config/servoctl/drives or a folder of $SERVOCTL_DRIVES "
         "(docs/drive-data.md).",
-    .parameters = {},
+    .parameters = kParameters,
     .needs = Needs::nothing,
     .effect = Effect::none,
     .run = run,

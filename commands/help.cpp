@@ -78,7 +78,8 @@ std::string command_rows(std::string_view group, std::size_t width) {
   std::string out;
   for (const auto* command : registry())
     if (group.empty() || command->path.starts_with(std::string(group) + " "))
-      out += "  " + pad_right(command->path, longest) + "  " + wrapped(command->summary, longest + 4, width) + "\n";
+      out += "  " + pad_right(command->path, longest) + "  " + wrapped(command->summary, longest + 4, width) +
+             "\n";
   return out;
 }
 

@@ -45,14 +45,28 @@ Result<const drive::Profile*> profile_of(Cell& cell, const std::string& family,
   return cell.profiles.back().get();
 }
 
+/// A fault by its code, or by what the panel shows: then its code and vendor bytes are looked up.
+std::optional<SimDrive::Alarm> alarm_of(const drive::Profile& profile, std::string_view text) {
+  if (const auto code = parse_integer(text))
+    return code->negative || code->magnitude > 0xFFFF
+               ? std::nullopt
+               : std::optional(SimDrive::Alarm{static_cast<std::uint16_t>(code->magnitude), {}});
+  for (const auto& fault : profile.faults)
+    if (equals_nocase(fault.panel, text) && fault.code)
+      return SimDrive::Alarm{*fault.code, drive::panel_bytes(profile.rules.emergency, fault.panel)};
+  return std::nullopt;
+}
+
 Result<void> plan_fault(Cell& cell, std::string_view text, TimePoint now) {
   const auto at = text.find('@');
-  const auto code = parse_integer(text.substr(0, at));
   const auto delay = parse_duration(at == std::string_view::npos ? "0" : text.substr(at + 1));
-  if (!code || code->negative || code->magnitude > 0xFFFF || !delay)
-    return bad_spec(fmt::format("'fault={}' is not CODE@TIME, such as fault=0xFF00@2s", text));
-  for (const auto& drive : cell.drives)
-    drive->raise_fault_at(static_cast<std::uint16_t>(code->magnitude), now + *delay);
+  for (const auto& drive : cell.drives) {
+    const auto alarm = alarm_of(drive->profile(), text.substr(0, at));
+    if (!alarm || !delay)
+      return bad_spec(
+          fmt::format("'fault={}' is not CODE@TIME or PANEL@TIME, such as fault=0xFF00@2s", text));
+    drive->raise_fault_at(*alarm, now + *delay);
+  }
   return {};
 }
 

@@ -92,8 +92,10 @@ void SimDrive::on_time(TimePoint now) {
   error_control_.on_time(now);
   while (const auto heartbeat = error_control_.take_frame()) tx_.push_back(*heartbeat);
   if (error_control_.take_life_lost()) on_life_lost(now);
-  if (planned_fault_ && now >= planned_fault_->time)
-    raise_fault(std::exchange(planned_fault_, std::nullopt)->code, {}, now);
+  if (planned_fault_ && now >= planned_fault_->time) {
+    const auto alarm = std::exchange(planned_fault_, std::nullopt)->alarm;
+    raise_fault(alarm.code, alarm.vendor, now);
+  }
 }
 
 TimePoint SimDrive::deadline() const {

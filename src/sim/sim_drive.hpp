@@ -45,10 +45,15 @@ class SimDrive final : public Device, private canopen::ObjectStore {
   /// The drive detects an error: emergency, history, fault reaction.
   void raise_fault(std::uint16_t code, std::array<std::uint8_t, 5> vendor, TimePoint now);
   /// Misbehaves or raises a fault later on.
-  void raise_fault_at(std::uint16_t code, TimePoint time) { planned_fault_ = {code, time}; }
+  struct Alarm {
+    std::uint16_t code = 0;
+    std::array<std::uint8_t, 5> vendor{};
+  };
+  void raise_fault_at(Alarm alarm, TimePoint time) { planned_fault_ = {alarm, time}; }
   void fall_silent_at(TimePoint time) { planned_silence_ = time; }
   Misbehaviour& misbehaviour() { return misbehaviour_; }
 
+  const drive::Profile& profile() const { return *profile_; }
   std::uint8_t node() const { return node_; }
   canopen::NmtState nmt_state() const { return nmt_; }
   /// Writes that went to the memory that outlives power-off since the drive was made.
@@ -56,7 +61,7 @@ class SimDrive final : public Device, private canopen::ObjectStore {
 
  private:
   struct Planned {
-    std::uint16_t code;
+    Alarm alarm;
     TimePoint time;
   };
   struct Delayed {

@@ -76,7 +76,9 @@ class Golden : public testing::TestWithParam<Case> {};
 
 TEST_P(Golden, SaysWhatItSaidBefore) {
   fs::current_path(kSource);
-  const auto said = play(GetParam(), false) + play(GetParam(), true);
+  // Whole tables are long enough once.
+  const bool table = GetParam().name.starts_with("table-");
+  const auto said = play(GetParam(), false) + (table ? std::string() : play(GetParam(), true));
   const auto path = kFolder / (GetParam().name + ".txt");
   if (std::getenv("SERVOCTL_REWRITE_GOLDEN") != nullptr) {
     std::ofstream(path) << said;

@@ -192,7 +192,7 @@ TEST_F(SessionTest, TakesTheAnswerOfTheNodeItAskedThoughFramesComeTwice) {
 
 TEST_F(SessionTest, MissesNothingThatNodesTellWhileACommandWaits) {
   open("gsd600@1,gsd600@2");
-  bench->cell.drives[0]->raise_fault_at(0xFF00, session->now() + 50ms);
+  bench->cell.drives[0]->raise_fault_at({0xFF00, {}}, session->now() + 50ms);
   (void)session->upload(9, {0x6041, 0});
   const auto events = session->take_events();
   ASSERT_EQ(events.size(), 1U);

@@ -62,7 +62,8 @@ DriveState start_of(unsigned transition) {
 std::vector<Row> all_rows() {
   std::vector<Row> out;
   for (const auto* family : {"da200", "dm", "gsd600", "ts"})
-    for (auto& row : rows_of(family)) out.push_back(std::move(row));
+    for (auto& row : rows_of(family))
+      if (row.transition != 0) out.push_back(std::move(row));  // That one is over before anybody can ask.
   return out;
 }
 
@@ -132,7 +133,6 @@ class ManualTransitions : public CellTest, public testing::WithParamInterface<Ro
 
 TEST_P(ManualTransitions, EndInTheStatuswordTheManualPrints) {
   const auto& row = GetParam();
-  if (row.transition == 0) GTEST_SKIP() << "over before anybody can ask";
   go_to(start_of(row.transition));
   if (row.transition == 13) fail();
   const bool by_itself = row.transition == 12 || row.transition == 14 || row.transition == 16;
