@@ -79,6 +79,18 @@ std::string effect_text(od::Effect effect) {
   return {};
 }
 
+/// A refusal that the family's password may explain says so.
+Error with_password_hint(const Context& context, const Change& change, Error error) {
+  if (context.profile == nullptr || error.code != Errc::sdo_abort) return error;
+  const auto& store = context.profile->rules.store;
+  const auto* password = context.profile->parameter(store.unlock);
+  const bool vendor_object = change.target.address.index >= 0x2000 && change.target.address.index < 0x6000;
+  if (password == nullptr || !password->object || !store.unlock_open || !vendor_object) return error;
+  error.hint = fmt::format("it may be locked: `param set {} {}` opens", password->id, *store.unlock_open);
+  if (store.unlock_closed) error.hint += fmt::format(", {} closes", *store.unlock_closed);
+  return error;
+}
+
 report::List change_row(const Change& change, const Result<session::Written>& written, bool chinese) {
   const Reading reading{change.node, change.target, change.type, change.data, change.bridge};
   const auto decoded = decode_value(reading, change.data);
@@ -200,7 +212,7 @@ Value write_changes(Context& context, std::span<const Change> changes, bool read
   table.json_only = std::none_of(written.begin(), written.end(), [](const auto& w) { return w.has_value(); });
   for (std::size_t i = 0; i < changes.size(); ++i) {
     table.rows.push_back(change_row(changes[i], written[i], context.chinese));
-    if (!written[i]) context.errors.push_back(written[i].error());
+    if (!written[i]) context.errors.push_back(with_password_hint(context, changes[i], written[i].error()));
     if (written[i] && written[i]->answer_lost)
       context.notices.push_back(fmt::format(
           "node {}, object {}: the answer to the write was lost; the value read back is the one written",

@@ -105,6 +105,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments, NmtComma
     before.push_back({node, context.session->watch().boots(node), context.session->watch().heartbeats(node)});
     if (const auto sent = context.session->send(canopen::nmt_frame(command, node)); !sent)
       return tl::unexpected<Error>(sent.error());
+    context.session->watch().on_command(node);
   }
   if (!wait) return report::Value(result_table(context, before, command, false));
   const auto done = [&] {

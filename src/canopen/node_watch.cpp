@@ -92,6 +92,11 @@ std::optional<NodeEvent> NodeWatch::take_event() {
   return event;
 }
 
+void NodeWatch::on_command(std::uint8_t node) {
+  for (std::size_t i = 0; i < nodes_.size(); ++i)
+    if ((node == 0 || i == node) && !nodes_[i].last) nodes_[i].state.reset();
+}
+
 void NodeWatch::forget(std::uint8_t node) {
   const auto before = nodes_[node];
   nodes_[node] = {};

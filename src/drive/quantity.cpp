@@ -26,8 +26,15 @@ std::optional<NumberWithUnit> split_unit(std::string_view text) {
   return out.unit.empty() ? std::nullopt : std::optional(out);
 }
 
-/// The double nearest to the decimal number with 12 significant digits: takes the noise of 400 × 0.1 away.
-double tidy(double value) { return parse_real(fmt::format("{:.12g}", value)).value_or(value); }
+/// A step is met when the value lies within a thousandth of it: numbers with many digits are rounded on
+/// paper.
+constexpr double kWhole = 1e-3;
+
+/// The double nearest to the decimal number with so many significant digits: takes the noise of 400 × 0.1
+/// away.
+double tidy(double value, int digits = 12) {
+  return parse_real(fmt::format("{:.{}g}", value, digits)).value_or(value);
+}
 
 /// How many of the object's own unit the given unit is; by the drive's own measure where there is one.
 std::optional<double> in_own_unit(const Meaning& meaning, std::string_view unit) {
@@ -58,7 +65,7 @@ Result<od::Value> from_physical(const Meaning& meaning, const NumberWithUnit& gi
   if (od::is_real(meaning.type)) return od::Value(raw);
   if (std::abs(raw) > 9.0e18)
     return fail(Errc::usage, fmt::format("'{}' is too large for this object", text));
-  if (raw != std::nearbyint(raw))
+  if (std::abs(raw - std::nearbyint(raw)) > kWhole)
     return fail(Errc::usage,
                 fmt::format("'{}' is {:g} steps of {:g} {}: not a whole number", text, raw, meaning.scale,
                             meaning.unit),
@@ -208,7 +215,7 @@ double scaled(const Meaning& meaning, const od::Value& value) {
 std::optional<Familiar> familiar(const Meaning& meaning, const od::Value& value) {
   if (std::holds_alternative<std::string>(value) || std::holds_alternative<Bytes>(value)) return std::nullopt;
   const double own = scaled(meaning, value);
-  if (meaning.bridge) return Familiar{tidy(own * meaning.bridge->factor), meaning.bridge->unit};
+  if (meaning.bridge) return Familiar{tidy(own * meaning.bridge->factor, 14), meaning.bridge->unit};
   const auto unit = familiar_unit(meaning.unit);
   if (unit.empty()) return std::nullopt;
   return Familiar{tidy(own * conversion(meaning.unit, unit).value_or(1)), unit};

@@ -88,6 +88,12 @@ Result<FaultReset> reset_fault(Session& session, const drive::Profile* profile, 
   error.node = node;
   error.message = fmt::format("node {}: the fault stays", node);
   error.hint = "remove its cause (`fault show`); some faults need a power cycle";
+  const auto* gate = profile != nullptr && profile->rules.fault.reset_enabled_by
+                         ? &*profile->rules.fault.reset_enabled_by
+                         : nullptr;
+  if (gate != nullptr)
+    error.hint += fmt::format("; this family resets faults only where {} is {}",
+                              drive::target_at(profile, gate->object).label(), gate->value);
   return fail(std::move(error));
 }
 

@@ -224,6 +224,29 @@ TEST_F(NodeWatchTest, DoesNotTakeTheSilenceOfALostNodeForItsPeriod) {
   EXPECT_EQ(watch.deadline(), now + 600ms);
 }
 
+TEST_F(NodeWatchTest, DoesNotKnowTheStateOfASilentNodeAfterACommand) {
+  hear("705#00", 1ms);
+  hear("706#00", 1ms);
+  hear("707#05", 1ms);
+  watch.on_command(5);
+  EXPECT_EQ(watch.state(5), std::nullopt);
+  EXPECT_EQ(watch.state(6), NmtState::pre_operational);
+  watch.on_command(0);
+  EXPECT_EQ(watch.state(6), std::nullopt);
+  EXPECT_EQ(watch.state(7), NmtState::operational) << "its heartbeats tell";
+}
+
+TEST_F(NodeWatchTest, RemembersEmergenciesUntilTheyAreReset) {
+  for (int i = 0; i < 9; ++i) hear("085#308111000000000" + std::to_string(i), 1ms);
+  EXPECT_EQ(watch.emergencies(5).size(), 8U);
+  EXPECT_EQ(watch.emergencies(5).front().vendor[4], 1);
+  hear("085#0000000000000000", 1ms);
+  EXPECT_TRUE(watch.emergencies(5).empty());
+  hear("085#3081110000000000", 1ms);
+  hear("705#00", 1ms);
+  EXPECT_TRUE(watch.emergencies(5).empty());
+}
+
 TEST_F(NodeWatchTest, PassesEmergenciesOn) {
   hear("083#00FF810000000000", 1ms);
   EXPECT_EQ(kinds(), std::vector<std::size_t>{kEmergency});
