@@ -54,6 +54,7 @@ _servoctl_scan() {
     'param explain') source='parameters' ;;
     'fault list') source='none' ;;
     'decode') source='files' ;;
+    'drives') source='families' ;;
     'eds check') source='files' ;;
     'sim') source='none' ;;
     'completion') source='=bash zsh fish objects parameters families' ;;

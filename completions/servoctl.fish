@@ -106,7 +106,8 @@ complete -c servoctl -n '__servoctl_in nmt watch' -l life -x -d 'lost after so m
 complete -c servoctl -n __servoctl_at -a decode -d 'Explain a recording: SDO with names and values, NMT, EMCY'
 complete -c servoctl -n '__servoctl_in decode' -r -F
 complete -c servoctl -n '__servoctl_in decode' -l raw -d 'show the frames as well'
-complete -c servoctl -n __servoctl_at -a drives -d 'List the drive families servoctl knows'
+complete -c servoctl -n __servoctl_at -a drives -d 'List the drive families servoctl knows, or the rules of one'
+complete -c servoctl -n '__servoctl_in drives' -x -a '(servoctl completion families 2>/dev/null)'
 complete -c servoctl -n '__servoctl_at eds' -a check -d 'Check EDS and DCF files against CiA 306'
 complete -c servoctl -n '__servoctl_in eds check' -r -F
 complete -c servoctl -n __servoctl_at -a sim -d 'Put simulated drives on a bus until Ctrl-C'

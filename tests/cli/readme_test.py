@@ -10,24 +10,25 @@ import subprocess
 import sys
 import tempfile
 
-servoctl, source = os.path.abspath(sys.argv[1]), sys.argv[2]
-path = os.path.join(source, "README.md")
-text = open(path, encoding="utf-8").read()
+servoctl, source = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 rewrite = os.environ.get("SERVOCTL_REWRITE_README") == "1"
 
 
-def tour(readme):
-    """The README with the output of every command in its console blocks as it is now."""
-    env = dict(os.environ, SERVOCTL_DRIVES=os.path.join(source, "eds"), LANG="C.UTF-8")
+def tour(document, fewest):
+    """The document with the output of every command in its console blocks as it is now. Blocks with a title are files that
+    are written before the commands below them run, in a home folder of their own."""
     ran = 0
     with tempfile.TemporaryDirectory() as folder:
+        home = os.path.join(folder, "home")
+        os.makedirs(home)
         os.symlink(servoctl, os.path.join(folder, "servoctl"))
-        env["PATH"] = folder + ":" + env["PATH"]
+        env = {k: v for k, v in os.environ.items() if not k.startswith(("SERVOCTL_", "XDG_"))}
+        env.update(LANG="C.UTF-8", HOME=home, PATH=folder + ":" + env["PATH"])
 
-        def block(match):
+        def console(text):
             nonlocal ran
             out = []
-            for line in match.group(1).splitlines():
+            for line in text.splitlines():
                 if not line.startswith("$ "):
                     continue
                 out.append(line)
@@ -35,15 +36,24 @@ def tour(readme):
                 if export:
                     env[export.group(1)] = export.group(2)
                     continue
-                done = subprocess.run(["bash", "-c", line[2:]], env=env, capture_output=True, text=True, timeout=60)
-                out += (done.stdout + done.stderr).splitlines()
+                done = subprocess.run(["bash", "-c", line[2:]], env=env, cwd=home, capture_output=True, text=True, timeout=60)
+                out += (done.stdout + done.stderr).replace(source + "/", "").replace(home + "/", "~/").splitlines()
                 ran += 1
             return "```console\n" + "\n".join(out) + "\n```"
 
-        readme = re.sub(r"```console\n(.*?)\n```", block, readme, flags=re.S)
-    if ran < 8:
-        sys.exit(f"only {ran} commands of the tour were run: the test itself is broken")
-    return readme
+        def block(match):
+            language, title, body = match.groups()
+            if title:
+                file = os.path.join(home, title)
+                os.makedirs(os.path.dirname(file), exist_ok=True)
+                with open(file, "w", encoding="utf-8") as out:
+                    out.write(body + "\n")
+            return console(body) if language == "console" else match.group(0)
+
+        document = re.sub(r"^```(\w+)(?: title=(\S+))?\n(.*?)\n```$", block, document, flags=re.S | re.M)
+    if ran < fewest:
+        sys.exit(f"only {ran} commands were run: the test itself is broken")
+    return document
 
 
 def table(readme):
@@ -56,13 +66,22 @@ def table(readme):
     return re.sub(r"<!-- commands: begin -->.*<!-- commands: end -->", lambda _: body, readme, flags=re.S)
 
 
-fresh = table(tour(text))
-if rewrite:
-    open(path, "w", encoding="utf-8").write(fresh)
-elif fresh != text:
+def check(name, fewest, change=lambda text: text):
+    """Whether the document says what the program says; with SERVOCTL_REWRITE_README=1 it is written anew instead."""
+    path = os.path.join(source, name)
+    text = open(path, encoding="utf-8").read()
+    fresh = change(tour(text, fewest))
+    if rewrite:
+        open(path, "w", encoding="utf-8").write(fresh)
+    if fresh == text or rewrite:
+        print(f"{name} is fresh")
+        return True
     for old, new in zip(text.splitlines(), fresh.splitlines()):
         if old != new:
-            print(f"README.md says: {old}\nthe program says: {new}")
+            print(f"{name}:\n- {old}\n+ {new}")
             break
-    sys.exit("README.md is not fresh: run SERVOCTL_REWRITE_README=1 tests/cli/readme_test.py BINARY SOURCE and read the diff")
-print("README.md is fresh")
+    return False
+
+
+if not all([check("README.md", 8, table), check("docs/adding-a-drive.md", 12)]):
+    sys.exit("`SERVOCTL_REWRITE_README=1` writes the documents anew; read the diff")

@@ -4,7 +4,11 @@
 # usage: no_vendor_names.sh SOURCE_DIR
 set -euo pipefail
 cd "$1"
-names='vmmore|gsd600|gsd-600|invt|da200|syntron|sinsegye|\bsv2\b|\bdm\b|\bts\b|Pn0[0-9]{3}|Fn_[0-9A-F]'
+# Vendors are the folders of eds/, families the files in them; cia/ holds the standard and no vendor.
+names=$(find eds -mindepth 1 -maxdepth 2 \( -type d -o -name '*.eds' \) -not -path 'eds/cia*' -printf '%f\n' |
+  sed 's/\.eds$//' | sort -u | sed 's/.*/\\b&\\b/' | paste -sd '|')
+[ "$(tr '|' '\n' <<<"$names" | wc -l)" -ge 9 ] || { echo "only these names were found in eds/: $names"; exit 1; }
+names="$names|Pn0[0-9]{3}|Fn_[0-9A-F]|Dn_[0-9A-F]|PA-[0-9]"
 bad=0
 while IFS= read -r hit; do
   text=${hit#*:*:}
