@@ -45,11 +45,10 @@ struct Numbering {
   ObjectAddress object(std::uint32_t number) const;
 };
 
-/// Bits 10 to 15 of the statusword at standstill in one mode of operation.
+/// Bits 10 to 15 of the statusword in one mode of operation while the drive is not enabled.
 struct ModeBits {
   std::int8_t mode = 0;
   std::uint16_t disabled = 0;
-  std::uint16_t enabled = 0;
 };
 
 struct SdoRules {
@@ -113,6 +112,7 @@ struct MotionRules {
   std::uint16_t homing_done_mask = 0x3400;  ///< Bits 10, 12, 13 of the statusword.
   std::uint16_t homing_done = 0x1400;
   std::uint16_t homing_error = 0x2000;
+  bool homed_bit = false;                  ///< Bit 15 of the statusword says that the axis is homed.
   bool halt = true;                        ///< Bit 8 of the controlword.
   std::vector<std::int64_t> no_homing;     ///< Values of 6098h that do nothing.
   std::vector<std::string> speed_limit;    ///< What limits the speed in torque mode.

@@ -34,8 +34,8 @@ bool get(const toml::node& node, Setting& out) {
 }
 
 bool get(const toml::node& node, ModeBits& out) {
-  return has_only(node, {"mode", "disabled", "enabled"}) && get_int(at(node, "mode"), out.mode) &&
-         get_int(at(node, "disabled"), out.disabled) && get_int(at(node, "enabled"), out.enabled);
+  return has_only(node, {"mode", "disabled"}) && get_int(at(node, "mode"), out.mode) &&
+         get_int(at(node, "disabled"), out.disabled);
 }
 
 bool get(const toml::node& node, Quotient::Factor& out) {
@@ -202,6 +202,7 @@ Result<void> read_motion(const TableReader& reader, Rules& rules) {
                       {"homing_done_mask", into(out.homing_done_mask)},
                       {"homing_done", into(out.homing_done)},
                       {"homing_error", into(out.homing_error)},
+                      {"homed_bit", into(out.homed_bit)},
                       {"halt", into(out.halt)},
                       {"no_homing", into(out.no_homing)},
                       {"speed_limit", into(out.speed_limit)},

@@ -65,10 +65,8 @@ void PowerStage::on_time(TimePoint now) {
 std::uint16_t PowerStage::statusword(std::int8_t mode) const {
   const auto base = rules_->statusword[static_cast<std::size_t>(state_)];
   const bool disabled = state_ == DriveState::ready_to_switch_on || state_ == DriveState::switched_on;
-  const bool enabled = state_ == DriveState::operation_enabled;
   for (const auto& row : rules_->mode_bits)
-    if (row.mode == mode && (disabled || enabled))
-      return static_cast<std::uint16_t>(base | (enabled ? row.enabled : row.disabled));
+    if (row.mode == mode && disabled) return static_cast<std::uint16_t>(base | row.disabled);
   return base;
 }
 

@@ -34,6 +34,7 @@ SimDrive::SimDrive(const drive::Profile& profile, std::uint8_t node, Memory& mem
       node_(node),
       values_(profile),
       power_(profile.rules),
+      axis_(profile, values_),
       server_(node, *this, server_options(profile.rules)),
       error_control_(node) {
   auto& cells = memory_->cells(key_);
@@ -83,6 +84,7 @@ void SimDrive::on_time(TimePoint now) {
   if (misbehaviour_.silent) return;
   if (now >= boot_at_) power_on(now);
   power_.on_time(now);
+  axis_.advance(is_enabled(), now);
   server_.on_time(now);
   collect_answers(now);
   while (!late_.empty() && now >= late_.front().time) {
@@ -133,6 +135,7 @@ void SimDrive::power_on(TimePoint now) {
     for (const auto& p : profile_->parameters)
       if (p.object && p.effect == od::Effect::restart) at_start_[*p.object] = values_.number(*p.object);
     power_.reset();
+    axis_.reset(now);
     history_.clear();
     fault_ = nullptr;
   }

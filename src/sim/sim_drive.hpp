@@ -10,6 +10,7 @@
 #include "canopen/nmt.hpp"
 #include "canopen/sdo_server.hpp"
 #include "drive/profile.hpp"
+#include "sim/axis.hpp"
 #include "sim/device.hpp"
 #include "sim/memory.hpp"
 #include "sim/object_values.hpp"
@@ -82,6 +83,7 @@ class SimDrive final : public Device, private canopen::ObjectStore {
   void restore_if_asked();
   void on_nmt(canopen::NmtCommand command, TimePoint now);
   void set_nmt(canopen::NmtState state);
+  bool is_enabled() const { return power_.state() == drive::DriveState::operation_enabled; }
   bool is_locked(ObjectAddress object) const;
   bool is_kept(ObjectAddress object) const;
   bool may_reset() const;
@@ -103,6 +105,7 @@ class SimDrive final : public Device, private canopen::ObjectStore {
   ObjectValues values_;
   std::unordered_map<ObjectAddress, std::uint64_t> at_start_;  ///< Parameters that take effect by a restart.
   PowerStage power_;
+  Axis axis_;
   canopen::SdoServer server_;
   canopen::ErrorControlSlave error_control_;
   canopen::NmtState nmt_ = canopen::NmtState::initialising;

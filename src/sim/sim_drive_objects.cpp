@@ -13,8 +13,10 @@ using canopen::NmtState;
 
 std::uint32_t SimDrive::read(ObjectAddress object, Bytes& out) {
   if (const auto code = values_.check_read(object); code != 0) return code;
+  axis_.advance(is_enabled(), now_);
   if (object == kStatusword) {
-    out = store_le(power_.statusword(static_cast<std::int8_t>(values_.number(kModeDisplay))), 2);
+    const auto word = power_.statusword(static_cast<std::int8_t>(values_.number(kModeDisplay)));
+    out = store_le(static_cast<std::uint16_t>(word | axis_.bits(is_enabled())), 2);
     return 0;
   }
   if (object.index == kErrorHistory.index) {
@@ -63,6 +65,7 @@ std::uint32_t SimDrive::write(ObjectAddress object, ByteSpan data) {
   bool handled = false;
   code = write_command(object, data, handled);
   if (code != 0 || handled) return code;
+  axis_.advance(is_enabled(), now_);  // Up to now it moved by the old values.
   values_.set(object, data);
   after_write(object, data);
   return 0;
@@ -111,6 +114,7 @@ void SimDrive::after_write(ObjectAddress object, ByteSpan data) {
     power_.on_controlword(static_cast<std::uint16_t>(load_le(data)),
                           static_cast<std::int64_t>(values_.number(kQuickStopOption)), may_reset(), now_);
     if (power_.was_reset()) clear_fault();
+    axis_.on_controlword(static_cast<std::uint16_t>(load_le(data)), is_enabled(), now_);
   }
   for (const auto& setting : profile_->rules.fault.reset) {
     const auto target = drive::resolve(profile_, setting.name);

@@ -23,7 +23,7 @@ first_sub = 1
 segmented = false
 [statusword]
 fault = 0x0238
-mode_bits = [{ mode = -3, disabled = 0x1000, enabled = 0x0400 }]
+mode_bits = [{ mode = -3, disabled = 0x1000 }]
 [quick_stop]
 stays_enabled = [5, 6]
 [fault]

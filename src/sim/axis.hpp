@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+
+#include "base/time.hpp"
+#include "drive/profile.hpp"
+#include "sim/object_values.hpp"
+
+namespace servoctl::sim {
+
+/// The moving part of a simulated drive: profile position with its set-points, profile velocity, torque and
+/// homing, in the units of the family's own objects. It moves by trapezoid ramps and without load; homing
+/// finds its reference after a fixed time. Positions are in units of 6064h, speeds in those units a second.
+class Axis {
+ public:
+  Axis(const drive::Profile& profile, ObjectValues& values) : profile_(&profile), values_(&values) {}
+
+  /// Power-on: at rest, nothing homed, no set-point.
+  void reset(TimePoint now);
+  /// A controlword, after the power stage has taken it. `enabled`: operation enabled.
+  void on_controlword(std::uint16_t controlword, bool enabled, TimePoint now);
+  /// Lets time pass and puts position, speed and torque into their objects.
+  void advance(bool enabled, TimePoint now);
+
+  /// Bits 10 to 15 of the statusword while the drive is enabled; bit 15 also when it is not.
+  std::uint16_t bits(bool enabled) const;
+
+  bool is_moving() const { return velocity_ != 0; }
+
+ private:
+  enum class Kind : std::uint8_t { none, position, velocity, torque, homing, interpolated };
+
+  Kind kind() const;
+  bool is_full() const;
+  void take_setpoint(bool relative, bool at_once);
+  void start_homing(TimePoint now);
+  bool is_steady() const;
+  void step(double seconds);
+  void approach(double wanted_velocity, double seconds);
+  void step_position(double seconds);
+  void publish();
+  void write(ObjectAddress object, double value);
+  double read(ObjectAddress object) const;
+  double units_per_turn() const;
+  double speed_factor(ObjectAddress object) const;  ///< One of the object's speed unit in units a second.
+  double ramp(ObjectAddress object) const;          ///< Units a second a second.
+  std::uint16_t position_bits() const;
+  std::uint16_t homing_bits() const;
+
+  const drive::Profile* profile_;
+  ObjectValues* values_;
+  TimePoint time_{};
+  std::uint16_t controlword_ = 0;
+  double position_ = 0;
+  double velocity_ = 0;
+  double torque_ = 0;
+  std::optional<double> target_;
+  std::deque<double> waiting_;
+  bool acknowledged_ = false;  ///< Bit 12 in profile position.
+  bool at_once_ = false;       ///< The present set-point gives way to a new one at once.
+  bool homed_ = false;
+  std::optional<TimePoint> homing_ends_;
+};
+
+}  // namespace servoctl::sim

@@ -1,0 +1,174 @@
+// The sequences the manuals print for each mode: controlword in, statusword reached, one after the other on
+// the same drive (tests/vectors/*-states.csv).
+#include <algorithm>
+
+#include "base/csv.hpp"
+#include "base/file.hpp"
+#include "base/number.hpp"
+#include "drive/quantity.hpp"
+#include "sim_support.hpp"
+
+namespace servoctl::sim {
+namespace {
+
+using namespace std::chrono_literals;
+
+struct Row {
+  unsigned line = 0;
+  std::string mode;
+  std::optional<unsigned> controlword;
+  unsigned statusword = 0;
+  unsigned mask = 0;
+};
+
+/// Rows of these lines and this mode that print a statusword.
+std::vector<Row> rows_of(const std::string& family, const std::string& mode, unsigned first, unsigned last) {
+  const std::string path = SERVOCTL_SOURCE_DIR "/tests/vectors/" + family + "-states.csv";
+  const auto table = parse_csv(read_file(path).value(), path).value();
+  std::vector<Row> out;
+  for (const auto& cells : table.rows) {
+    const auto number = [&](const char* column) -> std::optional<unsigned> {
+      const auto value = parse_integer(cells.cells[table.column(column)]);
+      return value ? std::optional(static_cast<unsigned>(value->magnitude)) : std::nullopt;
+    };
+    const auto line = number("line").value_or(0);
+    if (line < first || line > last || cells.cells[table.column("mode")] != mode) continue;
+    out.push_back(
+        {line, mode, number("controlword"), number("statusword").value_or(0), number("mask").value_or(0)});
+  }
+  return out;
+}
+
+class ManualSteps : public CellTest {
+ protected:
+  void boot(const std::string& family) {
+    family_ = family;
+    build(family + "@1");
+    ASSERT_EQ(next(100ms), "701#00");
+  }
+  const drive::Profile& profile() const { return *cell_.profiles.front(); }
+
+  std::string sdo(std::string_view frame) {
+    auto answer = ask(frame);
+    while (answer.substr(0, 3) == "081") answer = next();
+    return answer;
+  }
+  void write(ObjectAddress object, std::string_view value) {
+    const auto target = drive::target_at(&profile(), object);
+    const auto data = od::encode(drive::meaning(target, 1).type,
+                                 drive::parse_quantity(drive::meaning(target, 1), value).value())
+                          .value();
+    const auto command = data.size() == 1 ? 0x2F : data.size() == 2 ? 0x2B : 0x23;
+    char frame[40];
+    std::snprintf(frame, sizeof frame, "601#%02X%02X%02X%02X%08X", unsigned(command), object.index & 0xFFU,
+                  object.index >> 8U, unsigned{object.sub},
+                  static_cast<unsigned>(__builtin_bswap32(static_cast<std::uint32_t>(load_le(data)))));
+    EXPECT_EQ(sdo(frame).substr(0, 6), "581#60") << frame;
+  }
+  unsigned status() {
+    const auto answer = sdo("601#4041600000000000");
+    return static_cast<unsigned>(std::stoul(answer.substr(14, 2) + answer.substr(12, 2), nullptr, 16));
+  }
+  bool reaches(const Row& row) {
+    for (int i = 0; i < 5000; ++i) {
+      if ((status() & row.mask) == (row.statusword & row.mask)) return true;
+      (void)next(1ms);
+    }
+    return false;
+  }
+  /// What stands before the sequence: the steps of CiA 402 it leaves out.
+  void prepare(unsigned first_controlword) {
+    if ((first_controlword & 0x01U) != 0) write({0x6040, 0}, "6");
+    if ((first_controlword & 0x08U) != 0) write({0x6040, 0}, "7");
+  }
+
+  void play(const std::string& mode, int number, unsigned first, unsigned last,
+            std::string_view target = {}) {
+    const auto rows = rows_of(family_, mode, first, last);
+    ASSERT_FALSE(rows.empty());
+    write({0x6040, 0}, "0");
+    write({0x6060, 0}, std::to_string(number));
+    prepare(rows.front().controlword.value_or(0x0F));
+    bool high = false;
+    for (const auto& row : rows) {
+      if (row.controlword) {
+        const bool edge = (*row.controlword & 0x10U) != 0 && !high;
+        if (edge && !target.empty())
+          write({0x607A, 0}, std::to_string(std::stoi(std::string(target)) * ++moves_));
+        high = (*row.controlword & 0x10U) != 0;
+        write({0x6040, 0}, std::to_string(*row.controlword));
+      }
+      EXPECT_TRUE(reaches(row)) << family_ << " line " << row.line << ": " << std::hex << status() << " for "
+                                << row.statusword << " under " << row.mask;
+    }
+  }
+  std::string family_;
+  int moves_ = 0;
+};
+
+TEST_F(ManualSteps, OfTheGsd600AreReachedInTheirOrder) {
+  boot("gsd600");
+  write({0x6081, 0}, "100000");
+  write({0x6083, 0}, "1000000");
+  write({0x60FF, 0}, "100000");
+  play("pv", 3, 6934, 6937);
+  play("pp", 1, 6749, 6758, "50000");
+  play("pp", 1, 6780, 6785, "50000");
+  play("hm", 6, 7384, 7387);
+  play("hm", 6, 7400, 7403);
+  play("pv", 3, 6950, 6953);
+}
+
+TEST_F(ManualSteps, OfTheDmAreReachedInTheirOrder) {
+  boot("dm");
+  play("pt", 6, 184, 189);
+  play("pv", 4, 237, 237);
+  play("pp", 1, 298, 298);
+}
+
+TEST_F(ManualSteps, OfTheDa200AreReachedInTheirOrder) {
+  boot("da200");
+  write({0x6081, 0}, "100");
+  for (const auto& [first, last] : {std::pair{452U, 455U}, {459U, 462U}, {470U, 473U}, {477U, 480U}})
+    play("pp", 1, first, last, "1000");
+  play("ip", 7, 504, 530);
+  play("hm", 6, 572, 573);
+  play("pv", 3, 680, 680);
+  play("pt", 4, 731, 731);
+}
+
+TEST_F(ManualSteps, OfTheTsAreReachedInTheirOrder) {
+  boot("ts");
+  play("pv", 3, 1909, 1911);
+  play("pp", 1, 2042, 2049, "1000");
+  play("pt", 4, 2109, 2111);
+  play("hm", 6, 2172, 2179);
+}
+
+TEST_F(ManualSteps, OfTheSv2AreReachedInTheirOrder) {
+  boot("sv2");
+  write({0x6081, 0}, "10000");
+  play("pp", 1, 1063, 1071, "20000");
+  play("pp", 1, 1085, 1089, "20000");
+  play("hm", 6, 1211, 1215);
+}
+
+class HomingBits : public ManualSteps {
+ protected:
+  void home(const std::string& family, unsigned running, unsigned done) {
+    boot(family);
+    write({0x6060, 0}, "6");
+    for (const auto* word : {"6", "7", "15", "31"}) write({0x6040, 0}, word);
+    EXPECT_EQ(status() & 0x1400U, running);
+    const auto end = bus.now() + 1s;
+    while (bus.now() < end) (void)next(end - bus.now());
+    EXPECT_EQ(status() & 0x1400U, done);
+  }
+};
+
+TEST_F(HomingBits, OfTheSv2AreInvertedBitTwelveIsSetWhileItHomes) { home("sv2", 0x1000, 0x0400); }  // 1220
+TEST_F(HomingBits, OfTheDa200FollowCia402) { home("da200", 0x0000, 0x1400); }                       // 574
+TEST_F(HomingBits, OfTheGsd600FollowCia402) { home("gsd600", 0x0000, 0x1400); }                     // 7071
+
+}  // namespace
+}  // namespace servoctl::sim
