@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <map>
+#include <memory>
 
 #include "canopen/sdo_client.hpp"
 #include "drive/cia402.hpp"
 #include "session/measure.hpp"
+#include "session/storage.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -91,7 +94,66 @@ Error with_password_hint(const Context& context, const Change& change, Error err
   return error;
 }
 
-report::List change_row(const Change& change, const Result<session::Written>& written, bool chinese) {
+/// The storage of every node that is written to.
+class KeepingNodes {
+ public:
+  KeepingNodes(Context& context, std::span<const Change> changes) : context_(&context), changes_(changes) {
+    for (const auto& change : changes)
+      if (nodes_.find(change.node) == nodes_.end())
+        nodes_.emplace(change.node, std::make_unique<session::StorageScope>(*context.session, context.profile,
+                                                                            change.node));
+  }
+
+  Result<void> open(const WriteOptions& options) {
+    for (auto& [node, storage] : nodes_) {
+      const bool choose = std::any_of(changes_.begin(), changes_.end(), [&, n = node](const Change& change) {
+        return change.node == n && goes_to_memory(change);
+      });
+      if (const auto opened = storage->open(options.keep, options.unlock, choose); !opened) return opened;
+    }
+    return {};
+  }
+
+  /// A node of which one write failed stores nothing.
+  void close(std::span<const Result<session::Written>> written) {
+    for (auto& [node, storage] : nodes_) {
+      bool all = true;
+      for (std::size_t i = 0; i < changes_.size(); ++i)
+        all = all && (changes_[i].node != node || written[i].has_value());
+      const auto kept = storage->close(all);
+      if (!kept) context_->errors.push_back(not_kept(node, kept.error()));
+      kept_[node] = kept.value_or(session::Kept::unknown);
+      for (const auto& notice : storage->notices()) context_->notices.push_back(notice);
+    }
+  }
+  session::Kept kept(std::uint8_t node) const { return kept_.at(node); }
+
+ private:
+  /// Not the controlword, not communication objects, and not the switch that chooses the memory.
+  bool goes_to_memory(const Change& change) const {
+    const auto object = change.target.address;
+    if (object.index < 0x2000 || object.index == 0x6040 || context_->profile == nullptr) return false;
+    const auto& name = context_->profile->rules.store.flash_switch;
+    const auto flash = name.empty() ? Result<drive::Target>{} : drive::resolve(context_->profile, name);
+    return !name.empty() && flash && flash->address != object;
+  }
+
+  static Error not_kept(std::uint8_t node, Error error) {
+    error.message = fmt::format("the values are written, but keeping them failed: {}", error.message);
+    if (!error.node) error.node = node;
+    if (error.code == Errc::sdo_abort)
+      error.hint = "whether the drive keeps them by itself is seen after a power cycle";
+    return error;
+  }
+
+  Context* context_;
+  std::span<const Change> changes_;
+  std::map<std::uint8_t, std::unique_ptr<session::StorageScope>> nodes_;
+  std::map<std::uint8_t, session::Kept> kept_;
+};
+
+report::List change_row(const Change& change, const Result<session::Written>& written, session::Kept kept,
+                        bool chinese) {
   const Reading reading{change.node, change.target, change.type, change.data, change.bridge};
   const auto decoded = decode_value(reading, change.data);
   const auto effect = drive::meaning(change.target, change.node).effect;
@@ -118,6 +180,7 @@ report::List change_row(const Change& change, const Result<session::Written>& wr
           state,
           written.has_value(),
           written ? Value(written->read_back.has_value()) : Value(false),
+          written && kept != session::Kept::unknown ? Value(kept == session::Kept::yes) : Value(),
           written ? report::text_or_null(effect_text(effect)) : Value(),
           report::text_or_null(std::string(od::name(effect))),
           written ? Value() : error_record(written.error())};
@@ -185,11 +248,14 @@ Value planned_frames(std::span<const Change> changes) {
   return table;
 }
 
-Value write_changes(Context& context, std::span<const Change> changes, bool read_back) {
+Result<Value> write_changes(Context& context, std::span<const Change> changes, const WriteOptions& options) {
   std::vector<session::SdoRequest> requests;
   for (const auto& change : changes)
     requests.push_back({change.node, change.target.address, change.data, change.transfer});
-  const auto written = session::write_all(*context.session, requests, read_back);
+  KeepingNodes keeping(context, changes);
+  if (const auto opened = keeping.open(options); !opened) return tl::unexpected<Error>(opened.error());
+  const auto written = session::write_all(*context.session, requests, options.read_back || options.keep);
+  keeping.close(written);
   report::Table table;
   table.columns = {{"node"},
                    {"object", "", Show::text},
@@ -206,12 +272,13 @@ Value write_changes(Context& context, std::span<const Change> changes, bool read
                    {"state", "result", Show::text},
                    {"written", "", Show::json},
                    {"read_back", "", Show::json},
+                   {"kept"},
                    {"when", "takes effect", Show::text},
                    {"effect", "", Show::json},
                    {"error", "", Show::json}};
   table.json_only = std::none_of(written.begin(), written.end(), [](const auto& w) { return w.has_value(); });
   for (std::size_t i = 0; i < changes.size(); ++i) {
-    table.rows.push_back(change_row(changes[i], written[i], context.chinese));
+    table.rows.push_back(change_row(changes[i], written[i], keeping.kept(changes[i].node), context.chinese));
     if (!written[i]) context.errors.push_back(with_password_hint(context, changes[i], written[i].error()));
     if (written[i] && written[i]->answer_lost)
       context.notices.push_back(fmt::format(

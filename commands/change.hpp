@@ -36,8 +36,22 @@ Result<void> confirm_changes(Context& context, std::span<const Change> changes);
 /// The frames of these changes, in the order they would be sent.
 report::Value planned_frames(std::span<const Change> changes);
 
-/// Writes the changes and tells of each: written, read back, when it takes effect. Failures go to
+/// What is to be done beside writing.
+struct WriteOptions {
+  bool read_back = false;
+  bool keep = false;    ///< Make the values survive power-off, by the family's way.
+  bool unlock = false;  ///< Give the family's password before, and take it back after.
+};
+
+/// `--keep` and `--unlock`, for the commands that have them.
+inline constexpr Parameter kKeepOption{
+    .name = "--keep", .help = "make the values survive power-off", .kind = Kind::flag};
+inline constexpr Parameter kUnlockOption{
+    .name = "--unlock", .help = "give the family's password before, take it back after", .kind = Kind::flag};
+
+/// Writes the changes and tells of each: written, read back, kept, when it takes effect. Failures go to
 /// `context.errors`.
-report::Value write_changes(Context& context, std::span<const Change> changes, bool read_back);
+Result<report::Value> write_changes(Context& context, std::span<const Change> changes,
+                                    const WriteOptions& options);
 
 }  // namespace servoctl::commands

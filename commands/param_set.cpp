@@ -12,6 +12,8 @@ constexpr Parameter kParameters[] = {
      .kind = Kind::parameter,
      .required = true,
      .many = true},
+    kKeepOption,
+    kUnlockOption,
 };
 
 struct Assignment {
@@ -55,7 +57,9 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   const bool readable = std::all_of(changes.begin(), changes.end(), [](const Change& c) {
     return od::readable(drive::meaning(c.target, c.node).access);
   });
-  return write_changes(context, changes, readable);
+  return write_changes(
+      context, changes,
+      {.read_back = readable, .keep = arguments.has("--keep"), .unlock = arguments.has("--unlock")});
 }
 
 }  // namespace

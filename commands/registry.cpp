@@ -15,6 +15,8 @@ extern const Command kParamGet;
 extern const Command kParamSet;
 extern const Command kParamSearch;
 extern const Command kParamExplain;
+extern const Command kStore;
+extern const Command kDefaults;
 extern const Command kFaultShow;
 extern const Command kFaultList;
 extern const Command kFaultReset;
@@ -75,12 +77,35 @@ constexpr Parameter kGlobal[] = {
 
 std::span<const Command* const> registry() {
   static constexpr const Command* kAll[] = {
-      &kScan,         &kInfo,      &kStatus,    &kRead,       &kWrite,
-      &kObjects,      &kParamList, &kParamGet,  &kParamSet,   &kParamSearch,
-      &kParamExplain, &kFaultShow, &kFaultList, &kFaultReset, &kFaultClearHistory,
-      &kNmtStart,     &kNmtStop,   &kNmtPreop,  &kNmtReset,   &kNmtResetComm,
-      &kNmtWatch,     &kDecode,    &kDrives,    &kEdsCheck,   &kSim,
-      &kCompletion,   &kHelp,
+      &kScan,
+      &kInfo,
+      &kStatus,
+      &kRead,
+      &kWrite,
+      &kObjects,
+      &kParamList,
+      &kParamGet,
+      &kParamSet,
+      &kParamSearch,
+      &kParamExplain,
+      &kStore,
+      &kDefaults,
+      &kFaultShow,
+      &kFaultList,
+      &kFaultReset,
+      &kFaultClearHistory,
+      &kNmtStart,
+      &kNmtStop,
+      &kNmtPreop,
+      &kNmtReset,
+      &kNmtResetComm,
+      &kNmtWatch,
+      &kDecode,
+      &kDrives,
+      &kEdsCheck,
+      &kSim,
+      &kCompletion,
+      &kHelp,
   };
   return kAll;
 }

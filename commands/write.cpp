@@ -18,6 +18,8 @@ constexpr Parameter kParameters[] = {
      .choices = kTypeNames},
     {.name = "--from", .help = "write the bytes of this file instead of a value", .kind = Kind::file},
     kTransferOption,
+    kKeepOption,
+    kUnlockOption,
 };
 
 Result<Change> change_of(Context& context, const Arguments& arguments, std::uint8_t node,
@@ -49,7 +51,9 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   if (const auto confirmed = confirm_changes(context, changes); !confirmed)
     return tl::unexpected<Error>(confirmed.error());
   if (arguments.has("--from")) return write_from_file(context, changes, arguments.text("--from"));
-  return write_changes(context, changes, false);
+  return write_changes(
+      context, changes,
+      {.read_back = false, .keep = arguments.has("--keep"), .unlock = arguments.has("--unlock")});
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ _servoctl_scan() {
     return
   fi
   case $command in
-    '') source='=scan info status read write objects param fault nmt decode drives eds sim completion help' ;;
+    '') source='=scan info status read write objects param store defaults fault nmt decode drives eds sim completion help' ;;
     param) source='=list get set search explain' ;;
     fault) source='=show list reset clear-history' ;;
     nmt) source='=start stop preop reset reset-comm watch' ;;
@@ -52,17 +52,20 @@ _servoctl_scan() {
     'param set') source='parameters' ;;
     'param search') source='none' ;;
     'param explain') source='parameters' ;;
+    'store') source='=all communication application vendor' ;;
+    'defaults') source='=all communication application vendor' ;;
     'fault list') source='none' ;;
     'decode') source='files' ;;
     'drives') source='families' ;;
     'eds check') source='files' ;;
     'sim') source='none' ;;
     'completion') source='=bash zsh fish objects parameters families' ;;
-    'help') source='=scan info status read write objects param fault nmt decode drives eds sim completion help' ;;
+    'help') source='=scan info status read write objects param store defaults fault nmt decode drives eds sim completion help' ;;
   esac
   case $command in
     'read') options+=' --type --to --transfer' ;;
-    'write') options+=' --type --from --transfer' ;;
+    'write') options+=' --type --from --transfer --keep --unlock' ;;
+    'param set') options+=' --keep --unlock' ;;
     'nmt start') options+=' --wait' ;;
     'nmt stop') options+=' --wait' ;;
     'nmt preop') options+=' --wait' ;;

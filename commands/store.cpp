@@ -1,0 +1,98 @@
+#include "session/storage.hpp"
+
+#include <fmt/format.h>
+#include <array>
+
+#include "commands/command.hpp"
+#include "commands/records.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using report::Show;
+using report::Value;
+using session::ParameterGroup;
+
+constexpr std::array<std::string_view, 4> kGroups{"all", "communication", "application", "vendor"};
+
+constexpr Parameter kParameters[] = {
+    {.name = "group", .help = "all (unless said), or a part", .kind = Kind::choice, .choices = kGroups},
+};
+
+Result<ParameterGroup> group_of(const Arguments& arguments) {
+  const auto word = arguments.has("group") ? arguments.text("group") : kGroups.front();
+  for (std::size_t i = 0; i < kGroups.size(); ++i)
+    if (kGroups[i] == word) return static_cast<ParameterGroup>(i + 1);
+  return fail(Errc::usage, fmt::format("'{}' is no group of parameters", word),
+              "there are all, communication, application and vendor");
+}
+
+struct Words {
+  std::string_view question, done, planned;
+};
+
+using Action = Result<void> (*)(session::Session&, const drive::Profile*, std::uint8_t, ParameterGroup);
+
+Result<Value> run(Context& context, const Arguments& arguments, Action action, const Words& words) {
+  const auto group = group_of(arguments);
+  if (!group) return tl::unexpected<Error>(group.error());
+  if (!context.dry_run) {
+    const auto whom = context.nodes.size() == 1 ? fmt::format("node {}", context.nodes.front())
+                                                : fmt::format("{} nodes", context.nodes.size());
+    const auto answer = context.confirm(fmt::format(fmt::runtime(words.question), whom));
+    if (!answer) return tl::unexpected<Error>(answer.error());
+  }
+  report::Table table;
+  table.columns = {{"node"}, {"result"}, {"error", "", Show::json}};
+  for (const auto node : context.nodes) {
+    if (context.dry_run) {
+      table.rows.push_back({node, words.planned, Value()});
+      continue;
+    }
+    const auto done = action(*context.session, context.profile, node, *group);
+    if (!done) context.errors.push_back(done.error());
+    table.rows.push_back({node, done ? words.done : "failed", done ? Value() : error_record(done.error())});
+  }
+  return Value(std::move(table));
+}
+
+Result<Value> run_store(Context& context, const Arguments& arguments) {
+  return run(
+      context, arguments, session::store_parameters,
+      {"Store the present values of {}? They replace what it starts with.", "stored", "would be stored"});
+}
+
+Result<Value> run_defaults(Context& context, const Arguments& arguments) {
+  return run(context, arguments, session::restore_defaults,
+             {"Restore the factory values of {}? What is set now is lost (`backup` keeps it).",
+              "restored; they are in force after a restart of the drive", "would be restored"});
+}
+
+}  // namespace
+
+extern const Command kStore;
+const Command kStore{
+    .path = "store",
+    .summary = "Make a drive keep its present values",
+    .details =
+        "1010h with the signature \"save\", or the family's own way. Waits up to 10 s for the drive. Where "
+        "values are "
+        "kept only while they are written, `param set … --keep` is the way, and store says so.",
+    .parameters = kParameters,
+    .needs = Needs::node,
+    .effect = Effect::stores,
+    .run = run_store,
+};
+
+extern const Command kDefaults;
+const Command kDefaults{
+    .path = "defaults",
+    .summary = "Restore the factory values of a drive",
+    .details = "1011h with the signature \"load\", or the family's own way. In force after a restart.",
+    .parameters = kParameters,
+    .needs = Needs::node,
+    .effect = Effect::resets,
+    .run = run_defaults,
+};
+
+}  // namespace servoctl::commands

@@ -1,0 +1,152 @@
+#include "session/storage.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <utility>
+
+#include "drive/quantity.hpp"
+
+namespace servoctl::session {
+namespace {
+
+constexpr std::uint16_t kStoreIndex = 0x1010;
+constexpr std::uint16_t kRestoreIndex = 0x1011;
+constexpr std::uint32_t kSave = 0x6576'6173;  ///< "save" (CiA 301, 7.5.2.13)
+constexpr std::uint32_t kLoad = 0x6461'6F6C;  ///< "load" (CiA 301, 7.5.2.14)
+
+/// The session with more patience for one answer, and deaf to Ctrl-C: what was begun is put in order first.
+class Patience {
+ public:
+  Patience(Session& session, Duration timeout) : session_(&session), before_(session.options()) {
+    session.options().timeout = std::max(before_.timeout, timeout);
+  }
+  Patience(const Patience&) = delete;
+  Patience& operator=(const Patience&) = delete;
+  ~Patience() { session_->options() = std::move(before_); }
+
+ private:
+  Session* session_;
+  Options before_;
+};
+
+Error about(std::uint8_t node, Errc code, std::string what, std::string hint) {
+  Error error;
+  error.code = code;
+  error.message = fmt::format("node {}: {}", node, what);
+  error.hint = std::move(hint);
+  error.node = node;
+  return error;
+}
+
+Result<void> write_setting(Session& session, const drive::Profile& profile, std::uint8_t node,
+                           const drive::Setting& setting) {
+  const auto target = drive::resolve(&profile, setting.name);
+  if (!target) return tl::unexpected<Error>(target.error());
+  const auto data = od::encode(drive::meaning(*target, node).type, od::Value(setting.value));
+  if (!data) return tl::unexpected<Error>(data.error());
+  return session.download(node, target->address, *data);
+}
+
+Result<void> write_settings(Session& session, const drive::Profile& profile, std::uint8_t node,
+                            const std::vector<drive::Setting>& settings) {
+  for (const auto& setting : settings)
+    if (const auto written = write_setting(session, profile, node, setting); !written) return written;
+  return {};
+}
+
+bool by_objects(const drive::Profile* profile) { return profile == nullptr || profile->rules.store.objects; }
+
+}  // namespace
+
+Result<void> store_parameters(Session& session, const drive::Profile* profile, std::uint8_t node,
+                              ParameterGroup group) {
+  const Patience patience(session, kStorePatience);
+  if (by_objects(profile))
+    return session.download(node, {kStoreIndex, static_cast<std::uint8_t>(group)}, store_le(kSave, 4));
+  const auto& rules = profile->rules.store;
+  if (!rules.store.empty()) return write_settings(session, *profile, node, rules.store);
+  auto hint = rules.flash_switch.empty()
+                  ? std::string("its manual describes no way; look whether values survive a power cycle")
+                  : fmt::format("values are kept while they are written: `param set … --keep` switches {}",
+                                rules.flash_switch);
+  return fail(about(node, Errc::negative, "this family cannot store all values at once", std::move(hint)));
+}
+
+Result<void> restore_defaults(Session& session, const drive::Profile* profile, std::uint8_t node,
+                              ParameterGroup group) {
+  const Patience patience(session, kStorePatience);
+  if (by_objects(profile))
+    return session.download(node, {kRestoreIndex, static_cast<std::uint8_t>(group)}, store_le(kLoad, 4));
+  const auto& rules = profile->rules.store;
+  if (!rules.restore.empty()) return write_settings(session, *profile, node, rules.restore);
+  if (!rules.restore_at_start.empty())
+    return write_setting(session, *profile, node, {rules.restore_at_start, 1});
+  return fail(about(node, Errc::negative, "this family has no way to go back to factory values over the bus",
+                    "use its panel or the vendor's software"));
+}
+
+Result<void> StorageScope::set(const std::string& name, std::int64_t value, std::optional<Changed>& out) {
+  const auto target = drive::resolve(profile_, name);
+  if (!target) return tl::unexpected<Error>(target.error());
+  const auto before = session_->upload(node_, target->address);
+  if (!before) return tl::unexpected<Error>(before.error());
+  const auto data = od::encode(drive::meaning(*target, node_).type, od::Value(value));
+  if (!data) return tl::unexpected<Error>(data.error());
+  if (*before == *data) return {};
+  // Noted first: an answer that is lost may belong to a write that was done.
+  out = Changed{target->address, *before, *data};
+  return session_->download(node_, target->address, *data);
+}
+
+Result<void> StorageScope::put_back(std::optional<Changed>& changed) {
+  if (!changed) return {};
+  const auto object = std::exchange(changed, std::nullopt);
+  return session_->download(node_, object->object, object->before);
+}
+
+/// A trial goes to the RAM where the family has a choice: its flash wears.
+Result<void> StorageScope::choose_memory() {
+  const auto& rules = profile_->rules.store;
+  const auto& value = keep_ ? rules.to_flash : rules.to_ram;
+  if (rules.flash_switch.empty() || !value) return {};
+  if (const auto done = set(rules.flash_switch, *value, memory_); !done) return done;
+  if (memory_ && !keep_)
+    notices_.push_back(
+        fmt::format("node {}: {} is {} now, so that trials go to the RAM and are lost at power-off; --keep "
+                    "makes values stay",
+                    node_, rules.flash_switch, *value));
+  return {};
+}
+
+Result<void> StorageScope::open(bool keep, bool unlock, bool choose) {
+  open_ = true;
+  keep_ = keep;
+  if (profile_ == nullptr) return {};
+  const auto& rules = profile_->rules.store;
+  if (choose)
+    if (const auto chosen = choose_memory(); !chosen) return chosen;
+  if (!unlock) return {};
+  const auto* password = profile_->parameter(rules.unlock);
+  if (password == nullptr || !password->object || !rules.unlock_open)
+    return fail(about(node_, Errc::usage, "this family has no password that the bus can give", {}));
+  return set(rules.unlock, *rules.unlock_open, password_);
+}
+
+Result<Kept> StorageScope::close(bool all_written) {
+  if (!std::exchange(open_, false)) return Kept::unknown;
+  const Patience patience(*session_, kStorePatience);
+  session_->options().cancelled = {};
+  const bool has_switch = profile_ != nullptr && !profile_->rules.store.flash_switch.empty();
+  Result<void> stored;
+  if (keep_ && all_written && !has_switch)
+    stored = store_parameters(*session_, profile_, node_, ParameterGroup::all);
+  const auto locked = put_back(password_);
+  // A switch that chose the RAM stays there: the next trial wants it, and writing it back wears the flash.
+  const auto back = keep_ || !all_written ? put_back(memory_) : Result<void>{};
+  for (const auto* result : {&std::as_const(stored), &locked, &back})
+    if (!*result) return tl::unexpected<Error>(result->error());
+  if (has_switch) return keep_ && all_written ? Kept::yes : Kept::no;
+  return keep_ && all_written ? Kept::yes : Kept::unknown;
+}
+
+}  // namespace servoctl::session

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drive/profile.hpp"
+#include "session/session.hpp"
+
+namespace servoctl::session {
+
+/// Sub-indexes of 1010h and 1011h (CiA 301, 7.5.2.13 and 7.5.2.14).
+enum class ParameterGroup : std::uint8_t { all = 1, communication = 2, application = 3, vendor = 4 };
+
+/// Whether values survive power-off.
+enum class Kept : std::uint8_t { no, yes, unknown };
+
+/// Longest wait for a drive that writes its flash or EEPROM; manuals name no time.
+inline constexpr Duration kStorePatience = std::chrono::seconds(10);
+
+/// Makes the drive keep its present values: 1010h with "save", else the settings of the family's rules.
+/// `profile` may be null. Errc::negative, with what can be done instead, where the family has no such way;
+/// Errc::sdo_abort when the drive refuses.
+Result<void> store_parameters(Session& session, const drive::Profile* profile, std::uint8_t node,
+                              ParameterGroup group);
+
+/// Makes the drive go back to its factory values: 1011h with "load", else the family's way. They are in force
+/// after a restart. Errors as in store_parameters().
+Result<void> restore_defaults(Session& session, const drive::Profile* profile, std::uint8_t node,
+                              ParameterGroup group);
+
+/// Writes to one node between open() and close(): where the family says, the password is given and taken
+/// back, and values go to RAM or to flash as wanted. What was changed for it is put back on every way out.
+class StorageScope {
+ public:
+  /// `profile` may be null: then nothing is known and nothing is done but 1010h.
+  StorageScope(Session& session, const drive::Profile* profile, std::uint8_t node)
+      : session_(&session), profile_(profile), node_(node) {}
+  StorageScope(const StorageScope&) = delete;
+  StorageScope& operator=(const StorageScope&) = delete;
+  ~StorageScope() { (void)close(false); }
+
+  /// Before the writes. `choose` is false for writes that no memory is chosen for: the controlword, the
+  /// communication objects, the switch itself. Errc::usage when `unlock` is wanted and the family has no
+  /// password.
+  Result<void> open(bool keep, bool unlock, bool choose);
+  /// After them. Stores only when `all_written`, and only if open() was told to keep.
+  Result<Kept> close(bool all_written);
+
+  /// What was done beside the writes, in words.
+  const std::vector<std::string>& notices() const { return notices_; }
+
+ private:
+  struct Changed {
+    ObjectAddress object;
+    Bytes before;
+    Bytes now;
+  };
+
+  Result<void> set(const std::string& name, std::int64_t value, std::optional<Changed>& out);
+  Result<void> put_back(std::optional<Changed>& changed);
+  Result<void> choose_memory();
+
+  Session* session_;
+  const drive::Profile* profile_;
+  std::uint8_t node_;
+  bool open_ = false;
+  bool keep_ = false;
+  std::optional<Changed> memory_;
+  std::optional<Changed> password_;
+  std::vector<std::string> notices_;
+};
+
+}  // namespace servoctl::session
