@@ -29,12 +29,10 @@ constexpr std::array kRows{
     Row{0x4000, 0xFF00, "temperature, generic"},
     Row{0x4100, 0xFF00, "ambient temperature"},
     Row{0x4200, 0xFF00, "device temperature"},
-    Row{0x5000, 0xFF00, "device hardware"},
     Row{0x6000, 0xFF00, "device software, generic"},
     Row{0x6100, 0xFF00, "internal software"},
     Row{0x6200, 0xFF00, "user software"},
     Row{0x6300, 0xFF00, "data set"},
-    Row{0x7000, 0xFF00, "additional modules"},
     Row{0x8110, 0xFFFF, "CAN overrun: messages lost"},
     Row{0x8120, 0xFFFF, "CAN in error passive mode"},
     Row{0x8130, 0xFFFF, "life guard or heartbeat error"},
@@ -59,9 +57,9 @@ constexpr std::array kRows{
     Row{0x8000, 0xF000, "monitoring"},
 };
 
-constexpr std::array<std::string_view, 8> kRegisterBits{"generic",     "current",       "voltage",
-                                                        "temperature", "communication", "device profile",
-                                                        "reserved",    "manufacturer"};
+constexpr auto kRegisterBits =
+    std::to_array<std::string_view>({"generic", "current", "voltage", "temperature", "communication",
+                                     "device profile", "reserved", "manufacturer"});
 
 }  // namespace
 
@@ -96,10 +94,12 @@ std::string emergency_text(std::uint16_t code) {
 
 std::string error_register_text(std::uint8_t value) {
   std::string out;
-  for (std::size_t bit = 0; bit < kRegisterBits.size(); ++bit) {
-    if ((value & 1U << bit) == 0) continue;
+  for (const auto bit : kRegisterBits) {
+    const bool is_set = (value & 1U) != 0;
+    value = static_cast<std::uint8_t>(value >> 1U);
+    if (!is_set) continue;
     if (!out.empty()) out += ", ";
-    out += kRegisterBits[bit];
+    out += bit;
   }
   return out.empty() ? "none" : out;
 }

@@ -8,13 +8,13 @@
 namespace servoctl::canopen {
 namespace {
 
-constexpr std::array<std::pair<NmtCommand, std::string_view>, 5> kCommands{{
+constexpr auto kCommands = std::to_array<std::pair<NmtCommand, std::string_view>>({
     {NmtCommand::start, "start"},
     {NmtCommand::stop, "stop"},
     {NmtCommand::enter_pre_operational, "preop"},
     {NmtCommand::reset_node, "reset"},
     {NmtCommand::reset_communication, "reset-comm"},
-}};
+});
 
 }  // namespace
 

@@ -28,8 +28,9 @@ TimePoint NodeGuard::lost_at(const Node& node) const {
 void NodeGuard::on_frame(const can::Frame& frame, TimePoint now) {
   if (deadline_ == kNever) return;  // It guards nobody.
   const auto message = parse_error_control(frame);
-  if (!message || !nodes_[message->node].active) return;
+  if (!message) return;
   auto& node = nodes_[message->node];
+  if (!node.active) return;
   if (message->boot_up) {
     node.toggle.reset();
     return;
@@ -49,10 +50,9 @@ void NodeGuard::on_frame(const can::Frame& frame, TimePoint now) {
 
 void NodeGuard::on_time(TimePoint now) {
   if (now < deadline_) return;
-  for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    auto& node = nodes_[i];
+  for (auto& node : nodes_) {
     if (!node.active) continue;
-    const auto id = static_cast<std::uint8_t>(i);
+    const auto id = static_cast<std::uint8_t>(&node - nodes_.data());
     if (now >= lost_at(node)) {
       node.lost = true;
       node.toggle.reset();

@@ -11,7 +11,7 @@ constexpr std::size_t kMostEmergencies = 8;
 }  // namespace
 
 TimePoint NodeWatch::Node::deadline() const {
-  if (lost || guarded || intervals < 2) return kNever;
+  if (guarded || intervals < 2) return kNever;
   return *last + std::max<Duration>(3 * period, period + std::chrono::milliseconds(100));
 }
 
@@ -64,11 +64,11 @@ void NodeWatch::on_error_control(const ErrorControl& message, TimePoint now) {
 
 void NodeWatch::on_time(TimePoint now) {
   if (now < deadline_) return;
-  for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    auto& node = nodes_[i];
+  for (auto& node : nodes_) {
     if (now < node.deadline()) continue;
     node.lost = true;
-    events_.push_back({now, static_cast<std::uint8_t>(i), NodeEvent::HeartbeatLost{now - *node.last}});
+    const auto id = static_cast<std::uint8_t>(&node - nodes_.data());
+    events_.push_back({now, id, NodeEvent::HeartbeatLost{now - *node.last}});
     node.last.reset();
     node.intervals = 0;
   }

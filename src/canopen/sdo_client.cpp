@@ -125,9 +125,8 @@ void SdoClient::on_upload_initiate(const can::Frame& frame, TimePoint now) {
   const bool expedited = (frame.data[0] & 0x02U) != 0;
   const bool size_indicated = (frame.data[0] & 0x01U) != 0;
   if (expedited) {
-    const std::size_t size = size_indicated           ? 4U - (frame.data[0] >> 2U & 0x03U)
-                             : size_ > 0 && size_ < 4 ? size_
-                                                      : 4U;
+    const std::size_t known = size_ == 0 ? 4 : std::min<std::size_t>(size_, 4);
+    const std::size_t size = size_indicated ? 4U - (frame.data[0] >> 2U & 0x03U) : known;
     finish(Bytes(frame.data.begin() + 4, frame.data.begin() + 4 + static_cast<std::ptrdiff_t>(size)));
     return;
   }
@@ -137,12 +136,12 @@ void SdoClient::on_upload_initiate(const can::Frame& frame, TimePoint now) {
     return;
   }
   if (size_indicated) announced_ = sdo_data(frame);
-  if (announced_.value_or(0) > kMaxSdoUpload) {
+  if (announced_ > kMaxSdoUpload) {
     abort(sdo_abort::kOutOfMemory, Errc::protocol,
           fmt::format("it announces {} bytes for this object", *announced_));
     return;
   }
-  data_.reserve(announced_.value_or(0));
+  if (announced_) data_.reserve(*announced_);
   request_segment(now);
 }
 

@@ -37,7 +37,7 @@ void SdoClient::on_block_upload_initiate(const can::Frame& frame, TimePoint now)
   }
   crc_ = (command & kCrcSupported) != 0;
   if ((command & 0x02U) != 0) announced_ = sdo_data(frame);
-  if (announced_.value_or(0) > kMaxSdoUpload) {
+  if (announced_ > kMaxSdoUpload) {
     abort(sdo_abort::kOutOfMemory, Errc::protocol,
           fmt::format("it announces {} bytes for this object", *announced_));
     return;

@@ -71,7 +71,7 @@ void SdoServer::on_download_initiate(const can::Frame& frame, TimePoint now) {
   }
   if (!options_.segmented) return abort(object, sdo_abort::kCommand);
   if (size_indicated) announced_ = sdo_data(frame);
-  if (announced_.value_or(0) > kMaxSdoDownload) return abort(object, sdo_abort::kOutOfMemory);
+  if (announced_ > kMaxSdoDownload) return abort(object, sdo_abort::kOutOfMemory);
   state_ = State::download;
   deadline_ = now + options_.timeout;
   tx_ = sdo_frame(kSdoAnswer + node_, 0x60, object);

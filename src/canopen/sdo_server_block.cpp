@@ -68,7 +68,7 @@ void SdoServer::on_block_download_initiate(const can::Frame& frame, TimePoint no
   object_ = sdo_object(frame);
   if (!options_.block) return abort(object_, sdo_abort::kCommand);
   if ((frame.data[0] & kSizeIndicated) != 0) announced_ = sdo_data(frame);
-  if (announced_.value_or(0) > kMaxSdoDownload) return abort(object_, sdo_abort::kOutOfMemory);
+  if (announced_ > kMaxSdoDownload) return abort(object_, sdo_abort::kOutOfMemory);
   crc_ = options_.crc && (frame.data[0] & kCrcSupported) != 0;
   receiver_.start(options_.block_size, frame.data);
   nudged_ = false;

@@ -22,9 +22,9 @@ enum Column : std::size_t {
   kNote,
   kLine
 };
-constexpr std::array<std::string_view, 12> kColumns{"object", "unit",    "scale",   "encoding",
-                                                    "effect", "enum",    "enum_zh", "name_zh",
-                                                    "flags",  "assumed", "note",    "line"};
+constexpr auto kColumns =
+    std::to_array<std::string_view>({"object", "unit", "scale", "encoding", "effect", "enum", "enum_zh",
+                                     "name_zh", "flags", "assumed", "note", "line"});
 
 void read_flags(TableRow& row, Entry& entry) {
   bool rpdo = false;

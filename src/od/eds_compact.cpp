@@ -123,8 +123,9 @@ void add_compact_subs(const IniSection& section, const CompactLists& lists, Obje
                    "with this one, CompactSubObj makes more entries than a device has; left out",
                    "lower the numbers");
   }
-  const auto pattern =
-      count == 0 || count > lists.most ? std::nullopt : eds_entry(section, {object.index, 1}, findings);
+  const auto pattern = count == 0 || count > lists.most
+                           ? std::nullopt
+                           : eds_entry(section, ObjectAddress{object.index}, findings);
   if (!pattern) return;
   const auto names = by_sub(lists.names, count, findings);
   const auto values = by_sub(lists.values, count, findings);
@@ -145,8 +146,7 @@ void add_compact_subs(const IniSection& section, const CompactLists& lists, Obje
       notes.push_back({entry.address, std::string(denotations[sub]->value), {}, {}});
     object.entries.push_back(std::move(entry));
   }
-  std::sort(object.entries.begin(), object.entries.end(),
-            [](const Entry& a, const Entry& b) { return a.address.sub < b.address.sub; });
+  std::ranges::sort(object.entries, {}, [](const Entry& entry) { return entry.address.sub; });
 }
 
 void add_compact_pdos(const IniSection& device_info, Dictionary& dictionary, Findings& findings) {

@@ -58,9 +58,7 @@ constexpr std::array kTypeCodes{
 template <std::size_t N>
 std::optional<std::uint64_t> number_or_name(const IniKey& key, const std::array<NamedCode, N>& names,
                                             std::uint64_t max, Findings& findings) {
-  const bool is_number = key.value.front() >= '0' && key.value.front() <= '9';
   for (const auto& row : names) {
-    if (is_number) break;
     if (!equals_nocase(row.name, key.value)) continue;
     findings.warn(key, "name-for-number",
                   fmt::format("{}: '{}' is taken as 0x{:04X}", key.key, key.value, row.code),

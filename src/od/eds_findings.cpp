@@ -33,7 +33,8 @@ bool Findings::enough_of(std::string_view rule) {
 std::vector<Diagnostic> Findings::take() {
   std::stable_sort(all_.begin(), all_.end(),
                    [](const Diagnostic& a, const Diagnostic& b) { return a.line < b.line; });
-  const auto last_line = all_.empty() ? 1 : all_.back().line;
+  if (all_.empty()) return {};
+  const auto last_line = all_.back().line;
   for (const auto& entry : rules_) {
     const auto& rule = entry.second;
     if (rule.count <= kMostOfARule) continue;

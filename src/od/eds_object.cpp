@@ -21,11 +21,7 @@ void tell_duplicate_key(const IniKey& key, Findings& findings) {
 }
 
 struct NocaseHash {
-  std::size_t operator()(std::string_view text) const {
-    std::size_t hash = 14695981039346656037U;  // FNV-1a
-    for (const char c : text) hash = (hash ^ static_cast<std::size_t>(c | 0x20)) * 1099511628211U;
-    return hash;
-  }
+  std::size_t operator()(std::string_view text) const { return std::hash<std::string>{}(lower(text)); }
 };
 
 struct NocaseEqual {

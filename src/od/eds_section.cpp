@@ -37,8 +37,8 @@ constexpr std::array kEndings{KnownName{"name", SectionKind::names}, KnownName{"
                               KnownName{"subobjlinks", SectionKind::other}};
 
 /// After `M` and the number of a module; the last two are followed by an index (CiA 306-1, 4.7).
-constexpr std::array<std::string_view, 6> kOfModule{"moduleinfo", "comments", "fixedobjects",
-                                                    "subextends", "subext",   "fixed"};
+constexpr auto kOfModule = std::to_array<std::string_view>(
+    {"moduleinfo", "comments", "fixedobjects", "subextends", "subext", "fixed"});
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 

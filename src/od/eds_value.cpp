@@ -43,12 +43,12 @@ std::optional<Value> wider_complement(const IniKey& key, DataType type, std::str
                                       Findings& findings) {
   for (const auto wider : {DataType::i16, DataType::i32, DataType::i64}) {
     auto value = parse_value(wider, text);
-    const auto* number = value ? std::get_if<std::int64_t>(&*value) : nullptr;
-    if (number == nullptr || *number >= 0 || !encode(type, *value)) continue;
+    if (!value || !encode(type, *value)) continue;
+    const auto number = to_string(*value);
     findings.warn(
         key, "wide-value",
-        fmt::format("{}: {} has more digits than {}; taken as {}", key.key, text, name(type), *number),
-        fmt::format("write {}", *number));
+        fmt::format("{}: {} has more digits than {}; taken as {}", key.key, shown(text), name(type), number),
+        fmt::format("write {}", number));
     return std::move(*value);
   }
   return std::nullopt;
@@ -126,8 +126,7 @@ std::optional<NodeValue> eds_value(const IniKey* key, DataType type, Findings& f
                    "only integers can contain the node-ID");
     return std::nullopt;
   }
-  constexpr std::size_t kLongestNumber = 100;
-  auto value = value_of(*key, type, numeric ? text.substr(0, kLongestNumber) : text, findings);
+  auto value = value_of(*key, type, text, findings);
   if (!value) {
     findings.error(*key, "bad-value", fmt::format("{}: {}", key->key, clip(value.error().message, 200)),
                    fmt::format("write a value of {}, or leave it empty", name(type)));

@@ -33,9 +33,10 @@ enum Column : std::size_t {
   kNoteZh,
   kLine
 };
-constexpr std::array<std::string_view, 21> kColumns{
-    "id",   "object",  "type", "access",  "unit",  "scale", "encoding", "default", "min",     "max", "effect",
-    "enum", "enum_zh", "name", "name_zh", "group", "flags", "assumed",  "note",    "note_zh", "line"};
+constexpr auto kColumns =
+    std::to_array<std::string_view>({"id",      "object", "type",  "access",  "unit", "scale",   "encoding",
+                                     "default", "min",    "max",   "effect",  "enum", "enum_zh", "name",
+                                     "name_zh", "group",  "flags", "assumed", "note", "note_zh", "line"});
 
 std::optional<Access> parse_access(std::string_view text) {
   for (const auto access : {Access::ro, Access::rw, Access::wo, Access::constant})

@@ -71,8 +71,9 @@ double TableRow::scale(std::size_t column) {
   const auto text = cell(column);
   if (text.empty()) return 1;
   const auto number = parse_real(text);
-  if (!number || *number == 0) refuse(column, "a number other than zero");
-  return number.value_or(1);
+  if (number && *number != 0) return *number;
+  refuse(column, "a number other than zero");
+  return {};
 }
 
 Encoding TableRow::encoding(std::size_t column) {
@@ -123,8 +124,9 @@ std::uint32_t TableRow::number(std::size_t column) {
   const auto text = cell(column);
   if (text.empty()) return 0;
   const auto number = parse_digits(text, 10);
-  if (!number || *number > 0xFFFF'FFFFU) refuse(column, "a line number");
-  return static_cast<std::uint32_t>(number.value_or(0));
+  if (number && *number <= 0xFFFF'FFFFU) return static_cast<std::uint32_t>(*number);
+  refuse(column, "a line number");
+  return {};
 }
 
 }  // namespace servoctl::od

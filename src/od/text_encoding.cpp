@@ -6,6 +6,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <optional>
 
 namespace servoctl::od {
 namespace {
@@ -20,9 +21,9 @@ bool is_ascii_letter(unsigned char c) { return (c >= 'a' && c <= 'z') || (c >= '
 
 /// The first byte at or after `from` above 0x7F; the length when there is none.
 std::size_t next_high(std::string_view bytes, std::size_t from) {
-  for (; from + 8 <= bytes.size(); from += 8) {
-    std::uint64_t eight = 0;
-    std::memcpy(&eight, bytes.data() + from, 8);
+  std::uint64_t eight{};
+  for (; from + sizeof eight <= bytes.size(); from += sizeof eight) {
+    std::memcpy(&eight, bytes.data() + from, sizeof eight);
     if ((eight & 0x8080'8080'8080'8080U) != 0) break;
   }
   while (from < bytes.size() && at(bytes, from) < 0x80) ++from;
@@ -79,12 +80,12 @@ bool looks_like_dos(std::string_view bytes) {
   std::size_t high = 0;
   for (auto i = next_high(bytes, 0); i < bytes.size(); i = next_high(bytes, i + 1)) {
     const auto c = at(bytes, i);
-    const unsigned char before = i > 0 ? at(bytes, i - 1) : 0;
-    const unsigned char after = i + 1 < bytes.size() ? at(bytes, i + 1) : 0;
+    const auto after = bytes.substr(i + 1);
+    const bool behind_letter = i > 0 && is_ascii_letter(at(bytes, i - 1));
+    const bool before_letter = !after.empty() && is_ascii_letter(at(after, 0));
     const bool quote_or_dash = c >= 0x91 && c <= 0x97 && c != 0x94;
-    const bool in_word = is_ascii_letter(before) || is_ascii_letter(after);
-    const bool degree = c == 0xF8 && !is_ascii_letter(before) && (after == 'C' || !is_ascii_letter(after));
-    if (degree || (c < 0xA0 && in_word && !quote_or_dash))
+    const bool degree = c == 0xF8 && !behind_letter && (!before_letter || after.front() == 'C');
+    if (degree || (c < 0xA0 && (behind_letter || before_letter) && !quote_or_dash))
       ++low;
     else if (c >= 0xA0)
       ++high;
@@ -93,10 +94,17 @@ bool looks_like_dos(std::string_view bytes) {
 }
 
 /// UTF-16 of mostly ASCII has its NULs all on one side of the pairs.
-bool has_nuls_at(std::string_view sample, std::size_t side) {
-  std::array<std::size_t, 2> nuls{};
-  for (std::size_t i = 0; i < sample.size(); ++i) nuls[i % 2] += sample[i] == '\0' ? 1U : 0U;
-  return 5 * nuls[side] > sample.size() && 20 * nuls[1 - side] < nuls[side];
+std::optional<TextEncoding> utf16_of(std::string_view sample) {
+  std::size_t first = 0;
+  std::size_t second = 0;
+  for (std::size_t i = 0; i < sample.size(); ++i)
+    if (sample[i] == '\0') ++(i % 2 == 0 ? first : second);
+  const auto is_side = [&](std::size_t nuls, std::size_t others) {
+    return 5 * nuls > sample.size() && 20 * others < nuls;
+  };
+  if (is_side(second, first)) return TextEncoding::utf16le;
+  if (is_side(first, second)) return TextEncoding::utf16be;
+  return std::nullopt;
 }
 
 std::size_t mark_of(std::string_view bytes, TextEncoding encoding) {
@@ -162,10 +170,8 @@ TextEncoding guess_encoding(std::string_view bytes) {
   if (bytes.starts_with("\xFF\xFE")) return TextEncoding::utf16le;
   if (bytes.starts_with("\xFE\xFF")) return TextEncoding::utf16be;
   const auto sample = bytes.substr(0, kSample);
-  if (sample.find('\0') != std::string_view::npos) {
-    if (has_nuls_at(sample, 1)) return TextEncoding::utf16le;
-    if (has_nuls_at(sample, 0)) return TextEncoding::utf16be;
-  }
+  if (sample.find('\0') != std::string_view::npos)
+    if (const auto utf16 = utf16_of(sample)) return *utf16;
   if (is_utf8(bytes)) return TextEncoding::utf8;
   if (looks_chinese(bytes)) return TextEncoding::gbk;
   return looks_like_dos(bytes) ? TextEncoding::cp850 : TextEncoding::cp1252;

@@ -92,6 +92,74 @@ TEST_F(NodeGuardTest, IgnoresRemoteFramesAndNodesItDoesNotGuard) {
   EXPECT_NE(event<NodeEvent::GuardingLost>(), nullptr);
 }
 
+TEST_F(NodeGuardTest, NeverLosesANodeWhoseToggleBitAlternates) {
+  for (const bool begins_high : {false, true}) {
+    start();
+    play(guard, now, {"> 702#R1"});
+    bool high = begins_high;
+    for (int i = 0; i < 20; ++i, high = !high)
+      play(guard, now, {high ? "< 702#FF" : "< 702#7F", "+ 99ms", "> 702#R1"});
+    EXPECT_FALSE(guard.take_event());
+  }
+}
+
+TEST_F(NodeGuardTest, TakesTheSameToggleBitAgainAfterABootUp) {
+  start();
+  play(guard, now,
+       {"> 702#R1", "< 702#7F", "< 702#00", "+ 98ms", "> 702#R1", "< 702#7F", "+ 99ms", "> 702#R1"});
+  EXPECT_EQ(guard.deadline(), now + 100ms);
+  play(guard, now, {"+ 100ms", "> 702#R1", "+ 100ms", "> 702#R1", "+ 99ms"});
+  EXPECT_FALSE(guard.take_event());
+  play(guard, now, {"+ 1ms", "> 702#R1"});
+  EXPECT_NE(event<NodeEvent::GuardingLost>(), nullptr);
+}
+
+TEST_F(NodeGuardTest, ForgetsAWrongToggleBitWithTheNextGoodAnswer) {
+  start();
+  play(guard, now, {"> 702#R1", "< 702#7F", "+ 99ms", "> 702#R1", "< 702#7F", "< 702#FF"});
+  play(guard, now,
+       {"+ 98ms", "> 702#R1", "+ 100ms", "> 702#R1", "+ 100ms", "> 702#R1", "+ 100ms", "> 702#R1"});
+  const auto* lost = event<NodeEvent::GuardingLost>();
+  ASSERT_NE(lost, nullptr);
+  EXPECT_FALSE(lost->wrong_toggle);
+}
+
+TEST_F(NodeGuardTest, TakesEitherToggleBitOfANodeThatWasLost) {
+  start();
+  play(guard, now, {"> 702#R1", "< 702#7F"});
+  now += 99ms;
+  for (int i = 0; i < 4; ++i, now += 100ms) {
+    guard.on_time(now);
+    EXPECT_EQ(guard.deadline(), now + 100ms);
+    play(guard, now, {"> 702#R1"});
+  }
+  ASSERT_NE(event<NodeEvent::GuardingLost>(), nullptr);
+  play(guard, now, {"< 702#7F"});
+  EXPECT_NE(event<NodeEvent::GuardingBack>(), nullptr);
+}
+
+TEST_F(NodeGuardTest, AsksAPeriodAfterItHasAskedLate) {
+  start();
+  play(guard, now, {"> 702#R1", "+ 130ms", "> 702#R1", "+ 100ms", "> 702#R1"});
+  EXPECT_EQ(guard.deadline(), now + 70ms);
+  play(guard, now, {"< 702#7F"});
+  EXPECT_EQ(guard.deadline(), now + 99ms);
+}
+
+TEST_F(NodeGuardTest, BeginsAnewWhenItIsStartedAgain) {
+  start();
+  play(guard, now, {"> 702#R1", "+ 100ms", "> 702#R1", "+ 100ms", "> 702#R1"});
+  start();
+  play(guard, now, {"> 702#R1", "+ 100ms", "> 702#R1", "+ 100ms", "> 702#R1", "+ 99ms"});
+  EXPECT_FALSE(guard.take_event());
+  play(guard, now, {"+ 1ms", "> 702#R1"});
+  EXPECT_NE(event<NodeEvent::GuardingLost>(), nullptr);
+  EXPECT_TRUE(guard.guards(2));
+  guard.stop(2);
+  EXPECT_FALSE(guard.guards(2));
+  play(guard, now, {"+ 1s", "< 702#7F"});
+}
+
 class ErrorControlTest : public testing::Test {
  protected:
   void boot() {

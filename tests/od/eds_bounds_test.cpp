@@ -30,6 +30,12 @@ TEST(EdsBounds, RefuseAFileAboveTheLimitUnread) {
   EXPECT_EQ(file.error().message, "x.eds: 32 MiB are too many for an EDS");
 }
 
+TEST(EdsBounds, ReadAFileAtTheLimit) {
+  auto text = variable("2000", "7", "") + ";";
+  text.resize(kMostEdsBytes, 'x');
+  EXPECT_TRUE(read_in_time(text));
+}
+
 TEST(EdsBounds, RefuseBytesThatAreNoText) {
   std::mt19937 random(1);
   std::string text(kSome, '\0');
@@ -71,6 +77,27 @@ TEST(EdsBounds, CountWhatTheyLeaveOut) {
   EXPECT_EQ(file.error_count(), 1000U);
   EXPECT_EQ(file.warning_count(), 0U);
   EXPECT_EQ(file.diagnostics.back().message, "800 more of this rule are left out");
+}
+
+TEST(EdsBounds, CountEveryFindingOfARuleOnce) {
+  struct Row {
+    const char* rule;
+    const char* first;
+    const char* unit;
+  };
+  for (const auto& row :
+       {Row{"stray-line", "", "?\n"}, Row{"foreign-comment", "", "# c\n"},
+        Row{"merge-marker", "", "=======\n"}, Row{"unknown-section", "", "[Parameters]\n"},
+        Row{"misspelt-section", "", "[Coments]\n"}, Row{"unclosed-section", "", "[Comments\n"},
+        Row{"duplicate-section", "[DeviceInfo]\n", "[DeviceInfo]\n"}, Row{"duplicate-key", "a=\n", "a=\n"},
+        Row{"listed-but-absent", "[OptionalObjects]\n1=0x2FFF\n", "[OptionalObjects]\n1=0x3000\n"}}) {
+    std::string text = variable("2FFF", "7", "") + row.first;
+    for (int i = 0; i < 203; ++i) text += row.unit;
+    const auto file = read(text);
+    EXPECT_EQ(file.diagnostics.size(), 201U) << row.rule;
+    EXPECT_EQ(file.error_count() + file.warning_count(), 203U) << row.rule;
+    for (const auto& d : file.diagnostics) EXPECT_EQ(d.rule, row.rule);
+  }
 }
 
 TEST(EdsBounds, HoldForValuesOfAnyLengthInMessages) {

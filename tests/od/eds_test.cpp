@@ -186,28 +186,5 @@ TEST(Diagnostic, IsShownAsCompilersDo) {
             "x.eds:12:9: error: no good [bad-value]");
 }
 
-TEST(Identifier, KeepsLettersAndDigits) {
-  EXPECT_EQ(identifier("Position actual value"), "position_actual_value");
-  EXPECT_EQ(identifier(" COB-ID used by RPDO (1) "), "cob_id_used_by_rpdo_1");
-  EXPECT_EQ(identifier("—"), "");
-}
-
-TEST(Dictionary, FindsWhatWasAddedInAnyOrder) {
-  Dictionary d;
-  for (const auto index : std::initializer_list<std::uint16_t>{0x3000, 0x1000, 0x2000}) {
-    Entry entry;
-    entry.address = {index, 0};
-    d.add({index, "o", ObjectCode::var, {entry}});
-  }
-  EXPECT_EQ(d.objects().front().index, 0x1000);
-  for (const auto index : std::initializer_list<std::uint16_t>{0x1000, 0x2000, 0x3000})
-    EXPECT_NE(d.find({index, 0}), nullptr);
-  EXPECT_EQ(d.find({0x2000, 1}), nullptr);
-  EXPECT_EQ(d.object(0x2001), nullptr);
-  d.add({0x2000, "again", ObjectCode::var, {}});
-  EXPECT_EQ(d.objects().size(), 3U);
-  EXPECT_EQ(d.object(0x2000)->name, "again");
-}
-
 }  // namespace
 }  // namespace servoctl::od

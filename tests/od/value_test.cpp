@@ -112,19 +112,5 @@ RC_GTEST_PROP(Value, OfAnyFloatSurvivesTheWayToTextAndBack, (std::uint32_t raw))
   RC_ASSERT(encode(DataType::f32, *again).value() == bytes || raw == 0x8000'0000U);
 }
 
-TEST(DataTypeTable, GoesFromNamesAndCodesAndBack) {
-  for (std::uint16_t code = 0; code < 0x30; ++code) {
-    const auto type = data_type_from_cia(code);
-    if (!type) continue;
-    EXPECT_EQ(parse_data_type(name(*type)), *type);
-    if (code != 0x0B && code != 0x0D) {
-      EXPECT_EQ(cia_code(*type), code);
-    }
-  }
-  EXPECT_EQ(data_type_from_cia(7), DataType::u32);
-  EXPECT_EQ(data_type_from_cia(0), std::nullopt);
-  EXPECT_EQ(data_type_from_cia(0x40), std::nullopt);
-}
-
 }  // namespace
 }  // namespace servoctl::od
