@@ -9,7 +9,7 @@ _servoctl_scan() {
       continue
     fi
     case $word in
-      --bus|-b|--node|-n|--drive|-d|--timeout|--retries|--output|-o|--lang|--trace|--type|--to|--transfer|--from|--for|--guard|--life) skip=$word ;;
+      --bus|-b|--node|-n|--drive|-d|--timeout|--retries|--output|-o|--lang|--trace|--type|--to|--transfer|--from|--only|--for|--guard|--life) skip=$word ;;
       -*) ;;
       *)
         case $command in
@@ -32,6 +32,7 @@ _servoctl_scan() {
       --to) source='files' ;;
       --transfer) source='=auto expedited segmented block' ;;
       --from) source='files' ;;
+      --only) source='none' ;;
       --for) source='none' ;;
       --guard) source='none' ;;
       --life) source='none' ;;
@@ -39,7 +40,7 @@ _servoctl_scan() {
     return
   fi
   case $command in
-    '') source='=scan info status read write objects param store defaults fault nmt decode drives eds sim completion help' ;;
+    '') source='=scan info status read write objects param backup diff verify store defaults fault nmt decode drives eds sim completion help' ;;
     param) source='=list get set search explain' ;;
     fault) source='=show list reset clear-history' ;;
     nmt) source='=start stop preop reset reset-comm watch' ;;
@@ -52,6 +53,9 @@ _servoctl_scan() {
     'param set') source='parameters' ;;
     'param search') source='none' ;;
     'param explain') source='parameters' ;;
+    'backup') source='files' ;;
+    'diff') source='files' ;;
+    'verify') source='files' ;;
     'store') source='=all communication application vendor' ;;
     'defaults') source='=all communication application vendor' ;;
     'fault list') source='none' ;;
@@ -60,12 +64,13 @@ _servoctl_scan() {
     'eds check') source='files' ;;
     'sim') source='none' ;;
     'completion') source='=bash zsh fish objects parameters families' ;;
-    'help') source='=scan info status read write objects param store defaults fault nmt decode drives eds sim completion help' ;;
+    'help') source='=scan info status read write objects param backup diff verify store defaults fault nmt decode drives eds sim completion help' ;;
   esac
   case $command in
     'read') options+=' --type --to --transfer' ;;
     'write') options+=' --type --from --transfer --keep --unlock' ;;
     'param set') options+=' --keep --unlock' ;;
+    'backup') options+=' --only' ;;
     'nmt start') options+=' --wait' ;;
     'nmt stop') options+=' --wait' ;;
     'nmt preop') options+=' --wait' ;;

@@ -16,7 +16,7 @@ function __servoctl_path # the words that are neither options nor their values
     for word in (commandline -opc)[2..]
         if test $skip = 1
             set skip 0
-        else if contains -- $word --bus -b --node -n --drive -d --timeout --retries --output -o --lang --trace --type --to --transfer --from --for --guard --life
+        else if contains -- $word --bus -b --node -n --drive -d --timeout --retries --output -o --lang --trace --type --to --transfer --from --only --for --guard --life
             set skip 1
         else if not string match -q -- '-*' $word
             set path $path $word
@@ -89,6 +89,14 @@ complete -c servoctl -n '__servoctl_in param set' -l unlock -d 'give the family'
 complete -c servoctl -n '__servoctl_at param' -a search -d 'Find panel parameters by words, in English or Chinese'
 complete -c servoctl -n '__servoctl_at param' -a explain -d 'Tell all that is known of a panel parameter'
 complete -c servoctl -n '__servoctl_in param explain' -x -a '(__servoctl_names parameters)'
+complete -c servoctl -n __servoctl_at -a backup -d 'Save the settings of a drive into a file'
+complete -c servoctl -n '__servoctl_in backup' -r -F
+complete -c servoctl -n '__servoctl_in backup' -l only -x -d 'communication, pdo, params, or a group of parameters'
+complete -c servoctl -n __servoctl_at -a diff -d 'Compare two backups, or one with the factory values'
+complete -c servoctl -n '__servoctl_in diff' -r -F
+complete -c servoctl -n '__servoctl_in diff' -r -F
+complete -c servoctl -n __servoctl_at -a verify -d 'Compare a drive with a backup or the factory values'
+complete -c servoctl -n '__servoctl_in verify' -r -F
 complete -c servoctl -n __servoctl_at -a store -d 'Make a drive keep its present values'
 complete -c servoctl -n '__servoctl_in store' -x -a 'all communication application vendor'
 complete -c servoctl -n __servoctl_at -a defaults -d 'Restore the factory values of a drive'
@@ -122,7 +130,7 @@ complete -c servoctl -n __servoctl_at -a sim -d 'Put simulated drives on a bus u
 complete -c servoctl -n __servoctl_at -a completion -d 'Print the completion script of a shell'
 complete -c servoctl -n '__servoctl_in completion' -x -a 'bash zsh fish objects parameters families'
 complete -c servoctl -n __servoctl_at -a help -d 'Show the commands, or how one is used'
-complete -c servoctl -n '__servoctl_in help' -x -a 'scan info status read write objects param store defaults fault nmt decode drives eds sim completion help'
+complete -c servoctl -n '__servoctl_in help' -x -a 'scan info status read write objects param backup diff verify store defaults fault nmt decode drives eds sim completion help'
 complete -c servoctl -n __servoctl_at -a param
 complete -c servoctl -n __servoctl_at -a fault
 complete -c servoctl -n __servoctl_at -a nmt

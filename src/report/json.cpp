@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -52,6 +54,57 @@ Json json(const Value& value) { return std::visit(ToJson{}, value.data()); }
 std::string to_json(const Value& value) {
   // Names come from files and drives: a byte that is no UTF-8 becomes U+FFFD instead of an exception.
   return json(value).dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+namespace {
+
+struct FromJson {
+  static Value value(const Json& j) {
+    switch (j.type()) {
+      case Json::value_t::boolean: return j.get<bool>();
+      case Json::value_t::number_integer: return j.get<std::int64_t>();
+      case Json::value_t::number_unsigned: return j.get<std::uint64_t>();
+      case Json::value_t::number_float: return j.get<double>();
+      case Json::value_t::string: return j.get<std::string>();
+      case Json::value_t::array: {
+        List out;
+        for (const auto& element : j) out.push_back(value(element));
+        return out;
+      }
+      case Json::value_t::object: {
+        Record out;
+        for (const auto& [key, element] : j.items()) out.push_back({key, value(element)});
+        return out;
+      }
+      default: return {};
+    }
+  }
+};
+
+}  // namespace
+
+Result<Value> parse_json(std::string_view text, std::string_view file) {
+  try {
+    return FromJson::value(Json::parse(text));
+  } catch (const Json::parse_error& problem) {
+    Error error;
+    error.code = Errc::file;
+    const auto end = std::min(text.size(), problem.byte);
+    error.line = static_cast<std::uint32_t>(
+        1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n'));
+    error.message = fmt::format("{}:{}: this is no JSON, or it ends too early", file, *error.line);
+    return fail(std::move(error));
+  } catch (const Json::exception& problem) {
+    return fail(Errc::file, fmt::format("{}: {}", file, problem.what()));
+  }
+}
+
+const Value* find(const Value& record, std::string_view key) {
+  const auto* fields = std::get_if<Record>(&record.data());
+  if (fields == nullptr) return nullptr;
+  for (const auto& field : *fields)
+    if (field.key == key) return &field.value;
+  return nullptr;
 }
 
 }  // namespace servoctl::report

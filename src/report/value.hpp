@@ -9,6 +9,8 @@
 #include <variant>
 #include <vector>
 
+#include "base/result.hpp"
+
 namespace servoctl::report {
 
 /// A number shown in hexadecimal as text and as a plain number in JSON.
@@ -97,5 +99,11 @@ std::string to_text(const Value& value, std::size_t width = 0);
 
 /// The value as one JSON document in one line, without line break.
 std::string to_json(const Value& value);
+
+/// Reads one JSON document. Errc::file with the line where it goes wrong; `file` is used in messages.
+Result<Value> parse_json(std::string_view text, std::string_view file);
+
+/// The field of a record, or null.
+const Value* find(const Value& record, std::string_view key);
 
 }  // namespace servoctl::report

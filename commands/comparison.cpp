@@ -1,0 +1,98 @@
+#include "commands/comparison.hpp"
+
+#include <fmt/format.h>
+
+#include "commands/reading.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using report::Record;
+using report::Show;
+using report::Value;
+
+struct Shown {
+  std::string text = "-";
+  Value record;
+};
+
+Shown show(const drive::Profile* profile, const Side& side, ObjectAddress object) {
+  const auto found = side.values.find(object);
+  if (found == side.values.end()) return {};
+  const Reading reading{side.node, drive::target_at(profile, object), {}, found->second};
+  const auto decoded = decode_value(reading, found->second);
+  // COB-IDs, mappings and heartbeat entries are made of fields: decimal says nothing.
+  const bool fields = object.index < 0x2000 && found->second.size() == 4 && decoded.unit.empty();
+  auto text = fields ? fmt::format("0x{:08X}", load_le(found->second)) : decoded.text;
+  if (const auto* label = std::get_if<std::string>(&decoded.label.data())) text += " " + *label;
+  return {std::move(text), Record{{"value", decoded.value},
+                                  {"raw", decoded.raw},
+                                  {"unit", report::text_or_null(decoded.unit)},
+                                  {"label", decoded.label},
+                                  {"bytes", to_hex(found->second)}}};
+}
+
+}  // namespace
+
+Side side_of(const Backup& backup, std::string title) {
+  Side out{std::move(title), backup.identity.node, {}};
+  for (const auto& entry : backup.entries)
+    if (entry.bytes) out.values.emplace(entry.object, *entry.bytes);
+  return out;
+}
+
+Side factory_side(const drive::Profile& profile, std::uint8_t node) {
+  Side out{"factory", node, {}};
+  for (const auto& setting : drive::settings_of(profile)) {
+    const auto& entry = *setting.entry;
+    if (!setting.left_out.empty() || !entry.default_value) continue;
+    if (const auto bytes = od::encode(entry.type, entry.default_value->for_node(node)))
+      out.values.emplace(entry.address, *bytes);
+  }
+  return out;
+}
+
+Comparison compare(const drive::Profile* profile, const Side& a, const Side& b, bool whole, bool chinese) {
+  Comparison out;
+  report::Table table;
+  table.columns = {{"object", "", Show::text},
+                   {"index", "", Show::json},
+                   {"sub", "", Show::json},
+                   {"id", "", Show::json},
+                   {"name"},
+                   {"a_text", a.title, Show::text},
+                   {"a", "", Show::json},
+                   {"b_text", b.title, Show::text},
+                   {"b", "", Show::json}};
+  std::map<ObjectAddress, int> objects;
+  for (const auto* side : {&a, &b})
+    for (const auto& value : side->values) ++objects[value.first];
+  for (const auto& [object, sides] : objects) {
+    if (sides < 2 && !whole) continue;
+    ++out.compared;
+    if (sides == 2 && a.values.at(object) == b.values.at(object)) continue;
+    ++out.different;
+    const auto target = drive::target_at(profile, object);
+    auto left = show(profile, a, object);
+    auto right = show(profile, b, object);
+    table.rows.push_back({to_string(object), object.index, object.sub,
+                          target.parameter != nullptr ? Value(target.parameter->id) : Value(),
+                          report::text_or_null(chinese ? target.label_zh() : target.label()), left.text,
+                          std::move(left.record), right.text, std::move(right.record)});
+  }
+  out.record = {{"compared", out.compared},
+                {"different", out.different},
+                {"differences", table, Show::json},
+                {"table", out.different == 0 ? Value() : Value(std::move(table)), Show::text, "differences"}};
+  return out;
+}
+
+Error differences_error(const Comparison& comparison, const Side& a, const Side& b) {
+  Error error;
+  error.code = Errc::negative;
+  error.message = fmt::format("{} of {} values differ between {} and {}", comparison.different,
+                              comparison.compared, a.title, b.title);
+  return error;
+}
+
+}  // namespace servoctl::commands

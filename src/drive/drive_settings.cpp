@@ -1,0 +1,38 @@
+#include "drive/drive_settings.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace servoctl::drive {
+namespace {
+
+/// Objects of CiA 301 and CiA 402-2 that command the drive instead of setting it up: error history, store and
+/// restore, program control, controlword, targets, offsets, outputs.
+constexpr std::array<std::uint16_t, 16> kProcess{0x1003, 0x1010, 0x1011, 0x1F51, 0x6040, 0x6042,
+                                                 0x6060, 0x6071, 0x607A, 0x60B0, 0x60B1, 0x60B2,
+                                                 0x60C1, 0x60FE, 0x60FF, 0x1F50};
+
+std::string_view reason(const od::Entry& entry, const od::Parameter* parameter) {
+  if (entry.access == od::Access::wo) return "write-only";
+  if (entry.command || (parameter != nullptr && parameter->command)) return "command";
+  if (entry.is_volatile || (parameter != nullptr && parameter->is_volatile)) return "volatile";
+  if (std::find(kProcess.begin(), kProcess.end(), entry.address.index) != kProcess.end())
+    return "process data";
+  if (entry.type == od::DataType::domain) return "domain";
+  return {};
+}
+
+}  // namespace
+
+std::vector<DriveSetting> settings_of(const Profile& profile) {
+  std::vector<DriveSetting> out;
+  for (const auto& object : profile.dictionary.objects())
+    for (const auto& entry : object.entries) {
+      if (!od::writable(entry.access)) continue;
+      const auto* parameter = profile.parameter(entry.address);
+      out.push_back({&entry, parameter, reason(entry, parameter)});
+    }
+  return out;
+}
+
+}  // namespace servoctl::drive

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "drive/profile.hpp"
+
+namespace servoctl::drive {
+
+/// One entry that can be written, and why it is no setting to be kept; `left_out` is empty when it is one.
+struct DriveSetting {
+  const od::Entry* entry = nullptr;
+  const od::Parameter* parameter = nullptr;
+  std::string_view left_out;  ///< `write-only`, `command`, `volatile`, `process data`, `domain`
+};
+
+/// Everything of a drive that can be written, in rising address. What moves the drive (controlword, targets,
+/// offsets, outputs), what is read off it, and what starts an action are no settings.
+std::vector<DriveSetting> settings_of(const Profile& profile);
+
+}  // namespace servoctl::drive

@@ -1,0 +1,74 @@
+#include "session/snapshot.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "canopen/sdo_abort.hpp"
+
+namespace servoctl::session {
+namespace {
+
+SdoRequest read_request(std::uint8_t node, ObjectAddress object, std::size_t size) {
+  return {.node = node, .object = object, .size = size};
+}
+
+/// Puts an answer into an entry; a refusal becomes the reason, any other failure is one of the node.
+Result<void> take_answer(const Result<Bytes>& answer, SnapshotEntry& entry) {
+  if (answer) {
+    entry.bytes = *answer;
+    return {};
+  }
+  if (answer.error().code != Errc::sdo_abort) return tl::unexpected<Error>(answer.error());
+  entry.left_out = fmt::format("refused: {}", canopen::sdo_abort_text(answer.error().abort_code.value_or(0)));
+  return {};
+}
+
+}  // namespace
+
+std::vector<Result<Snapshot>> take_snapshots(Session& session, const drive::Profile& profile,
+                                             std::span<const std::uint8_t> nodes,
+                                             const SettingFilter& wanted) {
+  auto settings = drive::settings_of(profile);
+  if (wanted) std::erase_if(settings, [&](const auto& s) { return !wanted(s); });
+  const auto identities = scan(session, nodes);
+  std::vector<SdoRequest> requests;
+  for (const auto node : nodes)
+    for (const auto& setting : settings)
+      if (setting.left_out.empty())
+        requests.push_back(
+            read_request(node, setting.entry->address, od::size_of(setting.entry->type).value_or(0)));
+  const auto answers = session.transfer(requests);
+  std::vector<Result<Snapshot>> out;
+  std::size_t next = 0;
+  for (const auto node : nodes) {
+    Result<Snapshot> snapshot = Snapshot{};
+    snapshot->identity.node = node;
+    if (identities)
+      for (const auto& identity : *identities)
+        if (identity.node == node) snapshot->identity = identity;
+    for (const auto& setting : settings) {
+      SnapshotEntry entry{setting.entry->address, {}, std::string(setting.left_out)};
+      const auto taken = setting.left_out.empty() ? take_answer(answers[next++], entry) : Result<void>{};
+      if (!taken && snapshot) snapshot = tl::unexpected<Error>(taken.error());
+      if (snapshot) snapshot->entries.push_back(std::move(entry));
+    }
+    out.push_back(std::move(snapshot));
+  }
+  return out;
+}
+
+Result<std::vector<SnapshotEntry>> read_objects(Session& session, std::uint8_t node,
+                                                std::span<const ObjectAddress> objects) {
+  std::vector<SdoRequest> requests;
+  for (const auto object : objects) requests.push_back(read_request(node, object, 0));
+  const auto answers = session.transfer(requests);
+  std::vector<SnapshotEntry> out;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    out.push_back({objects[i], {}, {}});
+    if (const auto taken = take_answer(answers[i], out.back()); !taken)
+      return tl::unexpected<Error>(taken.error());
+  }
+  return out;
+}
+
+}  // namespace servoctl::session
