@@ -18,6 +18,7 @@ extern const Command kParamExplain;
 extern const Command kBackup;
 extern const Command kDiff;
 extern const Command kVerify;
+extern const Command kRestore;
 extern const Command kStore;
 extern const Command kDefaults;
 extern const Command kFaultShow;
@@ -80,13 +81,17 @@ constexpr Parameter kGlobal[] = {
 
 std::span<const Command* const> registry() {
   static constexpr const Command* kAll[] = {
-      &kScan,         &kInfo,      &kStatus,    &kRead,       &kWrite,
-      &kObjects,      &kParamList, &kParamGet,  &kParamSet,   &kParamSearch,
-      &kParamExplain, &kBackup,    &kDiff,      &kVerify,     &kStore,
-      &kDefaults,     &kFaultShow, &kFaultList, &kFaultReset, &kFaultClearHistory,
-      &kNmtStart,     &kNmtStop,   &kNmtPreop,  &kNmtReset,   &kNmtResetComm,
-      &kNmtWatch,     &kDecode,    &kDrives,    &kEdsCheck,   &kSim,
-      &kCompletion,   &kHelp,
+      &kScan,        &kInfo,         &kStatus,
+      &kRead,        &kWrite,        &kObjects,
+      &kParamList,   &kParamGet,     &kParamSet,
+      &kParamSearch, &kParamExplain, &kBackup,
+      &kDiff,        &kVerify,       &kRestore,
+      &kStore,       &kDefaults,     &kFaultShow,
+      &kFaultList,   &kFaultReset,   &kFaultClearHistory,
+      &kNmtStart,    &kNmtStop,      &kNmtPreop,
+      &kNmtReset,    &kNmtResetComm, &kNmtWatch,
+      &kDecode,      &kDrives,       &kEdsCheck,
+      &kSim,         &kCompletion,   &kHelp,
   };
   return kAll;
 }

@@ -62,7 +62,8 @@ class NodeWatch {
   const std::deque<Emergency>& emergencies(std::uint8_t node) const { return nodes_[node].emergencies; }
   /// The node answers a master's questions and sends nothing by itself: its silence means nothing.
   void set_guarded(std::uint8_t node, bool guarded);
-  /// The node (0: every node) was sent an NMT command: the state of one that sends no heartbeat is unknown now.
+  /// The node (0: every node) was sent an NMT command: the state of one that sends no heartbeat is unknown
+  /// now.
   void on_command(std::uint8_t node);
   /// Forgets the state and the period of the node, before it is told to reset.
   void forget(std::uint8_t node);

@@ -4,7 +4,7 @@
 set -u
 servoctl=$1
 work=$(mktemp -d)
-trap 'kill $(jobs -p) 2>/dev/null; rm -rf "$work"' EXIT
+trap 'jobs -p | xargs -r kill 2>/dev/null; rm -rf "$work"' EXIT
 export SERVOCTL_BUS=vcan0
 failures=0
 checks=0
@@ -117,7 +117,7 @@ if [ "${VCAN_GUEST:-}" = uml ]; then
 fi
 
 # 7. Objects of any size over the kernel's queue of ten frames, with frames of others in between.
-kill $(jobs -p) 2>/dev/null
+jobs -p | xargs -r kill 2>/dev/null
 wait 2>/dev/null
 ip link set vcan0 txqueuelen 10
 head -c 20000 /dev/urandom >"$work/blob"
