@@ -1,36 +1,100 @@
 #include "cli/words.hpp"
 
-namespace servoctl::cli {
+#include <algorithm>
 
-Result<std::vector<std::string>> split_words(std::string_view line) {
-  std::vector<std::string> words;
-  bool in_word = false;
-  char quote = '\0';
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    const char c = line[i];
-    if (quote == '\0' && (c == ' ' || c == '\t' || c == '\r' || c == '\n')) {
-      in_word = false;
+namespace servoctl::cli {
+namespace {
+
+class Splitter {
+ public:
+  Splitter(std::string_view line, const VariableLookup& variables) : line_(line), variables_(&variables) {}
+
+  Result<std::vector<std::string>> split() {
+    for (at_ = 0; at_ < line_.size() && !comment_; ++at_)
+      if (const auto taken = take(line_[at_]); !taken) return tl::unexpected<Error>(taken.error());
+    if (quote_ == '\0') return std::move(words_);
+    return fail(Errc::usage, std::string("the quote ") + quote_ + " is not closed",
+                "close it, or write \\" + std::string(1, quote_));
+  }
+
+ private:
+  Result<void> take(char c) {
+    if (quote_ == '\0' && (c == ' ' || c == '\t' || c == '\r' || c == '\n')) {
+      in_word_ = false;
+      return {};
+    }
+    if (!in_word_ && quote_ == '\0') {
+      comment_ = c == '#';
+      if (comment_) return {};
+      words_.emplace_back();
+      in_word_ = true;
+    }
+    return take_in_word(c);
+  }
+
+  Result<void> take_in_word(char c) {
+    const bool more = at_ + 1 < line_.size();
+    if (c == quote_) {
+      quote_ = '\0';
+    } else if (quote_ == '\0' && (c == '"' || c == '\'')) {
+      quote_ = c;
+    } else if (c == '\\' && quote_ != '\'' && more) {
+      words_.back() += line_[++at_];
+    } else if (c == '$' && quote_ != '\'' && more && line_[at_ + 1] == '{' && *variables_) {
+      const auto value = expand_variable(line_, at_, *variables_);
+      if (!value) return tl::unexpected<Error>(value.error());
+      words_.back() += *value;
+    } else {
+      words_.back() += c;
+    }
+    return {};
+  }
+
+  std::string_view line_;
+  const VariableLookup* variables_;
+  std::vector<std::string> words_;
+  std::size_t at_ = 0;
+  bool in_word_ = false;
+  bool comment_ = false;
+  char quote_ = '\0';
+};
+
+bool needs_quotes(const std::string& word) {
+  return word.empty() || word.front() == '#' || word.find_first_of(" \t\r\n\"'\\") != std::string::npos ||
+         word.find("${") != std::string::npos;
+}
+
+}  // namespace
+
+Result<std::vector<std::string>> split_words(std::string_view line, const VariableLookup& variables) {
+  return Splitter(line, variables).split();
+}
+
+Result<std::string> expand_variable(std::string_view line, std::size_t& at, const VariableLookup& variables) {
+  const auto end = line.find('}', at);
+  if (end == std::string_view::npos)
+    return fail(Errc::usage, "the brace of ${ is not closed", "write ${NAME}, or \\${ for the characters");
+  const auto name = line.substr(at + 2, end - at - 2);
+  at = end;
+  return variables(name);
+}
+
+std::string join_words(std::span<const std::string> words) {
+  std::string out;
+  for (const auto& word : words) {
+    if (&word != &words.front()) out += ' ';
+    if (!needs_quotes(word)) {
+      out += word;
       continue;
     }
-    if (!in_word && quote == '\0') {
-      if (c == '#') break;
-      words.emplace_back();
-      in_word = true;
+    out += '"';
+    for (const char c : word) {
+      if (c == '"' || c == '\\' || c == '$') out += '\\';
+      out += c;
     }
-    if (c == quote) {
-      quote = '\0';
-    } else if (quote == '\0' && (c == '"' || c == '\'')) {
-      quote = c;
-    } else if (c == '\\' && quote != '\'' && i + 1 < line.size()) {
-      words.back() += line[++i];
-    } else {
-      words.back() += c;
-    }
+    out += '"';
   }
-  if (quote != '\0')
-    return fail(Errc::usage, std::string("the quote ") + quote + " is not closed",
-                "close it, or write \\" + std::string(1, quote));
-  return words;
+  return out;
 }
 
 }  // namespace servoctl::cli

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -8,9 +10,19 @@
 
 namespace servoctl::cli {
 
+/// What stands for `${NAME}`, or why nothing does.
+using VariableLookup = std::function<Result<std::string>(std::string_view name)>;
+
 /// Splits a command line into words as a shell does: blanks separate, 'single' and "double" quotes keep them
 /// together, a backslash takes the next character as it is (not in single quotes), `#` at the start of a word
-/// begins a comment. Errc::usage when a quote is not closed.
-Result<std::vector<std::string>> split_words(std::string_view line);
+/// begins a comment. With `variables`, `${NAME}` is replaced (not in single quotes); a value stays one word,
+/// whatever stands in it. Errc::usage when a quote or a brace is not closed; errors of `variables`.
+Result<std::vector<std::string>> split_words(std::string_view line, const VariableLookup& variables = {});
+
+/// The value of the variable whose `${` stands at `at`; `at` is moved to its `}`.
+Result<std::string> expand_variable(std::string_view line, std::size_t& at, const VariableLookup& variables);
+
+/// A line that split_words() takes apart into these words.
+std::string join_words(std::span<const std::string> words);
 
 }  // namespace servoctl::cli
