@@ -40,13 +40,49 @@ Result<drive::Meaning> learn_size(Context& context, std::uint8_t node, const dri
   return learned;
 }
 
+/// Whether only the drive's own gear and ratings tell what the unit in the text is.
+bool asks_measure(const Context& context, const drive::Meaning& meaning, std::string_view text) {
+  return meaning.measure && context.profile != nullptr && drive::needs_bridge(meaning, text);
+}
+
 /// What the drive's gear makes of the unit in the text, where only the drive can tell.
 void add_bridge(Context& context, std::uint8_t node, const drive::Target& target, std::string_view text,
                 drive::Meaning& meaning) {
-  if (!meaning.measure || context.profile == nullptr || !drive::needs_bridge(meaning, text)) return;
+  if (!asks_measure(context, meaning, text)) return;
   const session::MeasureQuestion question[] = {{node, *meaning.measure}};
   const auto measure = session::read_measures(*context.session, *context.profile, question).front();
   if (measure) meaning.bridge = drive::bridge(meaning.unit, target.address, *measure);
+}
+
+tl::unexpected<Error> named(Error error, std::uint8_t node, const drive::Target& target,
+                            std::string_view separator = ": ") {
+  error.message = name_of(target) + std::string(separator) + error.message;
+  return tl::unexpected<Error>(located(std::move(error), node, target.address));
+}
+
+Result<drive::Meaning> writable_meaning(std::uint8_t node, const drive::Target& target,
+                                        std::optional<od::DataType> type) {
+  auto meaning = drive::meaning(target, node);
+  if (!od::writable(meaning.access)) {
+    Error error;
+    error.code = Errc::usage;
+    error.message = "is read-only";
+    error.hint = "it can be read, not written";
+    return named(std::move(error), node, target, " ");
+  }
+  if (type) meaning.type = *type;
+  return meaning;
+}
+
+Result<Change> change_to(std::uint8_t node, const drive::Target& target, const drive::Meaning& meaning,
+                         std::string_view value) {
+  const auto parsed = drive::parse_quantity(meaning, value);
+  if (!parsed) return named(parsed.error(), node, target);
+  const auto data = od::encode(meaning.type, *parsed);
+  if (!data) return named(data.error(), node, target);
+  Change out{node, target, meaning.type, *data};
+  out.bridge = meaning.bridge;
+  return out;
 }
 
 bool is_parameter(const drive::Profile& profile, const Change& change, const std::string& id) {
@@ -195,33 +231,25 @@ std::string name_of(const drive::Target& target) {
 
 Result<Change> make_change(Context& context, std::uint8_t node, const drive::Target& target,
                            std::string_view value, std::optional<od::DataType> type) {
-  auto meaning = drive::meaning(target, node);
-  const auto named = [&](Error error, std::string_view separator = ": ") {
-    error.message = name_of(target) + std::string(separator) + error.message;
-    return tl::unexpected<Error>(located(std::move(error), node, target.address));
-  };
-  if (!od::writable(meaning.access)) {
-    Error error;
-    error.code = Errc::usage;
-    error.message = "is read-only";
-    error.hint = "it can be read, not written";
-    return named(std::move(error), " ");
+  auto meaning = writable_meaning(node, target, type);
+  if (!meaning) return tl::unexpected<Error>(meaning.error());
+  if (!type && (!meaning->type_known || !meaning->size_known)) {
+    meaning = learn_size(context, node, target, *meaning);
+    if (!meaning) return tl::unexpected<Error>(meaning.error());
   }
-  if (type) {
-    meaning.type = *type;
-  } else if (!meaning.type_known || !meaning.size_known) {
-    const auto learned = learn_size(context, node, target, meaning);
-    if (!learned) return tl::unexpected<Error>(learned.error());
-    meaning = *learned;
-  }
-  add_bridge(context, node, target, value, meaning);
-  const auto parsed = drive::parse_quantity(meaning, value);
-  if (!parsed) return named(parsed.error());
-  const auto data = od::encode(meaning.type, *parsed);
-  if (!data) return named(data.error());
-  Change out{node, target, meaning.type, *data};
-  out.bridge = meaning.bridge;
-  return out;
+  add_bridge(context, node, target, value, *meaning);
+  return change_to(node, target, *meaning, value);
+}
+
+Result<void> check_change(const Context& context, std::uint8_t node, const drive::Target& target,
+                          std::string_view value, std::optional<od::DataType> type) {
+  const auto meaning = writable_meaning(node, target, type);
+  if (!meaning) return tl::unexpected<Error>(meaning.error());
+  const bool asks_size = !type && (!meaning->type_known || !meaning->size_known);
+  if (asks_size || asks_measure(context, *meaning, value)) return {};
+  if (const auto change = change_to(node, target, *meaning, value); !change)
+    return tl::unexpected<Error>(change.error());
+  return {};
 }
 
 Result<void> confirm_changes(Context& context, std::span<const Change> changes) {

@@ -30,6 +30,10 @@ std::string name_of(const drive::Target& target);
 Result<Change> make_change(Context& context, std::uint8_t node, const drive::Target& target,
                            std::string_view value, std::optional<od::DataType> type);
 
+/// Whether make_change() would take the value, as far as the dictionary alone can tell.
+Result<void> check_change(const Context& context, std::uint8_t node, const drive::Target& target,
+                          std::string_view value, std::optional<od::DataType> type);
+
 /// Asks before changes that do more than change a value: store or restore commands, node-ID, bitrate.
 Result<void> confirm_changes(Context& context, std::span<const Change> changes);
 

@@ -44,6 +44,7 @@ struct Parameter {
   bool many = false;  ///< Takes all words that follow.
   std::span<const std::string_view> choices = {};
   std::string_view short_name = {};  ///< `-n`
+  bool repeats = false;              ///< An option that may be given several times, one value each.
 };
 
 /// What must be there before the command runs; the front end sees to it, not the command. Combined with `|`.
@@ -106,6 +107,10 @@ struct Command {
   Needs needs = Needs::nothing;
   Effect effect = Effect::none;
   Result<report::Value> (*run)(Context&, const Arguments&) = nullptr;
+  /// Checks names and values by the dictionary alone (no session in the context), for lines that are to be
+  /// run later; null: there is nothing to check.
+  Result<void> (*check)(Context&, const Arguments&) = nullptr;
+  bool of_front_end = false;  ///< It runs other command lines: the front end does it, `run` is null.
 };
 
 /// All commands in the order of `help`.

@@ -86,7 +86,8 @@ std::string command_rows(std::string_view group, std::size_t width) {
 std::string program_help(std::size_t width) {
   return "servoctl: commissions CANopen servo drives from a terminal\n\n"
          "  servoctl [OPTIONS] COMMAND …    run one command\n"
-         "  servoctl [OPTIONS]              the prompt; command lines from a pipe likewise\n\n"
+         "  servoctl [OPTIONS]              the prompt; command lines from a pipe likewise\n"
+         "  servoctl [OPTIONS] -            a batch file from standard input (see `help run`)\n\n"
          "Commands:\n" +
          command_rows({}, width) +
          "\nAt the prompt also: use NODE, drive FAMILY, bus BUS choose for the lines that follow; exit.\n"

@@ -37,6 +37,12 @@ Result<std::vector<drive::Target>> wanted(const drive::Profile& profile, std::sp
   return out;
 }
 
+Result<void> check(Context& context, const Arguments& arguments) {
+  if (const auto targets = wanted(*context.profile, arguments.all("id")); !targets)
+    return tl::unexpected<Error>(targets.error());
+  return {};
+}
+
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   const auto targets = wanted(*context.profile, arguments.all("id"));
   if (!targets) return tl::unexpected<Error>(targets.error());
@@ -67,6 +73,7 @@ const Command kParamGet{
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::reads,
     .run = run,
+    .check = check,
 };
 
 }  // namespace servoctl::commands

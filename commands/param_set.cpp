@@ -37,6 +37,18 @@ Result<std::vector<Assignment>> parse_assignments(std::span<const std::string> w
   return out;
 }
 
+Result<void> check(Context& context, const Arguments& arguments) {
+  const auto assignments = parse_assignments(arguments.all("assignment"));
+  if (!assignments) return tl::unexpected<Error>(assignments.error());
+  for (const auto& assignment : *assignments) {
+    const auto target = drive::resolve_panel(*context.profile, assignment.id);
+    if (!target) return tl::unexpected<Error>(target.error());
+    for (const auto node : context.nodes)
+      if (const auto fits = check_change(context, node, *target, assignment.value, {}); !fits) return fits;
+  }
+  return {};
+}
+
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   const auto assignments = parse_assignments(arguments.all("assignment"));
   if (!assignments) return tl::unexpected<Error>(assignments.error());
@@ -78,6 +90,7 @@ const Command kParamSet{
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::writes,
     .run = run,
+    .check = check,
 };
 
 }  // namespace servoctl::commands

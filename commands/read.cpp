@@ -22,6 +22,22 @@ constexpr Parameter kParameters[] = {
     kTransferOption,
 };
 
+Result<drive::Target> readable_target(const Context& context, std::uint8_t node, const std::string& word) {
+  auto target = drive::resolve(context.profile, word);
+  if (target && !od::readable(drive::meaning(*target, node).access))
+    return fail(Errc::usage, "'" + word + "' is write-only", "it can be written, not read");
+  return target;
+}
+
+Result<void> check(Context& context, const Arguments& arguments) {
+  if (const auto type = parse_type_option(arguments); !type) return tl::unexpected<Error>(type.error());
+  for (const auto node : context.nodes)
+    for (const auto& word : arguments.all("object"))
+      if (const auto target = readable_target(context, node, word); !target)
+        return tl::unexpected<Error>(target.error());
+  return {};
+}
+
 /// `--to` takes the bytes of one object of one node.
 Result<report::Value> run_to_file(Context& context, const Arguments& arguments) {
   if (arguments.all("object").size() != 1 || context.nodes.size() != 1)
@@ -41,10 +57,8 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   std::vector<session::SdoRequest> requests;
   for (const auto node : context.nodes) {
     for (const auto& word : arguments.all("object")) {
-      const auto target = drive::resolve(context.profile, word);
+      const auto target = readable_target(context, node, word);
       if (!target) return tl::unexpected<Error>(target.error());
-      if (!od::readable(drive::meaning(*target, node).access))
-        return fail(Errc::usage, "'" + word + "' is write-only", "it can be written, not read");
       readings.push_back({node, *target, *type, Bytes{}});
       const auto fixed_size = size_of(readings.back());
       const bool large = drive::meaning(*target, node).type == od::DataType::domain;
@@ -71,6 +85,7 @@ const Command kRead{
     .needs = Needs::node,
     .effect = Effect::reads,
     .run = run,
+    .check = check,
 };
 
 }  // namespace servoctl::commands

@@ -34,6 +34,7 @@ extern const Command kNmtWatch;
 extern const Command kDecode;
 extern const Command kDrives;
 extern const Command kEdsCheck;
+extern const Command kRun;
 extern const Command kSim;
 extern const Command kHelp;
 extern const Command kCompletion;
@@ -91,7 +92,8 @@ std::span<const Command* const> registry() {
       &kNmtStart,    &kNmtStop,      &kNmtPreop,
       &kNmtReset,    &kNmtResetComm, &kNmtWatch,
       &kDecode,      &kDrives,       &kEdsCheck,
-      &kSim,         &kCompletion,   &kHelp,
+      &kRun,         &kSim,          &kCompletion,
+      &kHelp,
   };
   return kAll;
 }

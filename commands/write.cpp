@@ -22,6 +22,12 @@ constexpr Parameter kParameters[] = {
     kUnlockOption,
 };
 
+Result<void> check_one_source(const Arguments& arguments) {
+  if (arguments.has("value") != arguments.has("--from")) return {};
+  return fail(Errc::usage, "'write' needs a value, or a file with --from",
+              "write OBJECT VALUE, or write OBJECT --from FILE");
+}
+
 Result<Change> change_of(Context& context, const Arguments& arguments, std::uint8_t node,
                          const drive::Target& target, std::optional<od::DataType> type) {
   auto change = arguments.has("--from") ? change_from_file(node, target, arguments.text("--from"))
@@ -33,12 +39,23 @@ Result<Change> change_of(Context& context, const Arguments& arguments, std::uint
   return change;
 }
 
+Result<void> check(Context& context, const Arguments& arguments) {
+  const auto type = parse_type_option(arguments);
+  if (!type) return tl::unexpected<Error>(type.error());
+  if (const auto one = check_one_source(arguments); !one) return one;
+  const auto target = drive::resolve(context.profile, arguments.text("object"));
+  if (!target) return tl::unexpected<Error>(target.error());
+  if (arguments.has("--from")) return {};
+  for (const auto node : context.nodes)
+    if (const auto fits = check_change(context, node, *target, arguments.text("value"), *type); !fits)
+      return fits;
+  return {};
+}
+
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   const auto type = parse_type_option(arguments);
   if (!type) return tl::unexpected<Error>(type.error());
-  if (arguments.has("value") == arguments.has("--from"))
-    return fail(Errc::usage, "'write' needs a value, or a file with --from",
-                "write OBJECT VALUE, or write OBJECT --from FILE");
+  if (const auto one = check_one_source(arguments); !one) return tl::unexpected<Error>(one.error());
   const auto target = drive::resolve(context.profile, arguments.text("object"));
   if (!target) return tl::unexpected<Error>(target.error());
   std::vector<Change> changes;
@@ -73,6 +90,7 @@ const Command kWrite{
     .needs = Needs::node,
     .effect = Effect::writes,
     .run = run,
+    .check = check,
 };
 
 }  // namespace servoctl::commands

@@ -9,7 +9,7 @@ _servoctl_scan() {
       continue
     fi
     case $word in
-      --bus|-b|--node|-n|--drive|-d|--timeout|--retries|--output|-o|--lang|--trace|--type|--to|--transfer|--from|--only|--for|--guard|--life) skip=$word ;;
+      --bus|-b|--node|-n|--drive|-d|--timeout|--retries|--output|-o|--lang|--trace|--type|--to|--transfer|--from|--only|--for|--guard|--life|--var) skip=$word ;;
       -*) ;;
       *)
         case $command in
@@ -36,11 +36,12 @@ _servoctl_scan() {
       --for) source='none' ;;
       --guard) source='none' ;;
       --life) source='none' ;;
+      --var) source='none' ;;
     esac
     return
   fi
   case $command in
-    '') source='=scan info status read write objects param backup diff verify store defaults fault nmt decode drives eds sim completion help' ;;
+    '') source='=scan info status read write objects param backup diff verify restore store defaults fault nmt decode drives eds run sim completion help' ;;
     param) source='=list get set search explain' ;;
     fault) source='=show list reset clear-history' ;;
     nmt) source='=start stop preop reset reset-comm watch' ;;
@@ -56,21 +57,24 @@ _servoctl_scan() {
     'backup') source='files' ;;
     'diff') source='files' ;;
     'verify') source='files' ;;
+    'restore') source='files' ;;
     'store') source='=all communication application vendor' ;;
     'defaults') source='=all communication application vendor' ;;
     'fault list') source='none' ;;
     'decode') source='files' ;;
     'drives') source='families' ;;
     'eds check') source='files' ;;
+    'run') source='files' ;;
     'sim') source='none' ;;
     'completion') source='=bash zsh fish objects parameters families' ;;
-    'help') source='=scan info status read write objects param backup diff verify store defaults fault nmt decode drives eds sim completion help' ;;
+    'help') source='=scan info status read write objects param backup diff verify restore store defaults fault nmt decode drives eds run sim completion help' ;;
   esac
   case $command in
     'read') options+=' --type --to --transfer' ;;
     'write') options+=' --type --from --transfer --keep --unlock' ;;
     'param set') options+=' --keep --unlock' ;;
     'backup') options+=' --only' ;;
+    'restore') options+=' --with-address --no-rollback --force --keep --unlock' ;;
     'nmt start') options+=' --wait' ;;
     'nmt stop') options+=' --wait' ;;
     'nmt preop') options+=' --wait' ;;
@@ -78,6 +82,7 @@ _servoctl_scan() {
     'nmt reset-comm') options+=' --wait' ;;
     'nmt watch') options+=' --for --guard --life' ;;
     'decode') options+=' --raw' ;;
+    'run') options+=' --var --check' ;;
   esac
 }
 

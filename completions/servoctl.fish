@@ -16,7 +16,7 @@ function __servoctl_path # the words that are neither options nor their values
     for word in (commandline -opc)[2..]
         if test $skip = 1
             set skip 0
-        else if contains -- $word --bus -b --node -n --drive -d --timeout --retries --output -o --lang --trace --type --to --transfer --from --only --for --guard --life
+        else if contains -- $word --bus -b --node -n --drive -d --timeout --retries --output -o --lang --trace --type --to --transfer --from --only --for --guard --life --var
             set skip 1
         else if not string match -q -- '-*' $word
             set path $path $word
@@ -97,6 +97,13 @@ complete -c servoctl -n '__servoctl_in diff' -r -F
 complete -c servoctl -n '__servoctl_in diff' -r -F
 complete -c servoctl -n __servoctl_at -a verify -d 'Compare a drive with a backup or the factory values'
 complete -c servoctl -n '__servoctl_in verify' -r -F
+complete -c servoctl -n __servoctl_at -a restore -d 'Put a backup into a drive: all of it or nothing'
+complete -c servoctl -n '__servoctl_in restore' -r -F
+complete -c servoctl -n '__servoctl_in restore' -l with-address -d 'node-ID and bitrate as well'
+complete -c servoctl -n '__servoctl_in restore' -l no-rollback -d 'leave things as they are when a write fails'
+complete -c servoctl -n '__servoctl_in restore' -l force -d 'although identity or family are others'
+complete -c servoctl -n '__servoctl_in restore' -l keep -d 'make the values survive power-off'
+complete -c servoctl -n '__servoctl_in restore' -l unlock -d 'give the family'\''s password before, take it back after'
 complete -c servoctl -n __servoctl_at -a store -d 'Make a drive keep its present values'
 complete -c servoctl -n '__servoctl_in store' -x -a 'all communication application vendor'
 complete -c servoctl -n __servoctl_at -a defaults -d 'Restore the factory values of a drive'
@@ -126,11 +133,15 @@ complete -c servoctl -n __servoctl_at -a drives -d 'List the drive families serv
 complete -c servoctl -n '__servoctl_in drives' -x -a '(servoctl completion families 2>/dev/null)'
 complete -c servoctl -n '__servoctl_at eds' -a check -d 'Check EDS and DCF files against CiA 306'
 complete -c servoctl -n '__servoctl_in eds check' -r -F
+complete -c servoctl -n __servoctl_at -a run -d 'Run the command lines of a file'
+complete -c servoctl -n '__servoctl_in run' -r -F
+complete -c servoctl -n '__servoctl_in run' -l var -x -d 'NAME=VALUE: a variable of the file, over its own `set`; may be repeated'
+complete -c servoctl -n '__servoctl_in run' -l check -d 'check all lines without a bus, run none'
 complete -c servoctl -n __servoctl_at -a sim -d 'Put simulated drives on a bus until Ctrl-C'
 complete -c servoctl -n __servoctl_at -a completion -d 'Print the completion script of a shell'
 complete -c servoctl -n '__servoctl_in completion' -x -a 'bash zsh fish objects parameters families'
 complete -c servoctl -n __servoctl_at -a help -d 'Show the commands, or how one is used'
-complete -c servoctl -n '__servoctl_in help' -x -a 'scan info status read write objects param backup diff verify store defaults fault nmt decode drives eds sim completion help'
+complete -c servoctl -n '__servoctl_in help' -x -a 'scan info status read write objects param backup diff verify restore store defaults fault nmt decode drives eds run sim completion help'
 complete -c servoctl -n __servoctl_at -a param
 complete -c servoctl -n __servoctl_at -a fault
 complete -c servoctl -n __servoctl_at -a nmt

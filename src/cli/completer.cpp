@@ -5,7 +5,7 @@
 
 #include "base/text.hpp"
 #include "can/socketcan.hpp"
-#include "cli/line_runner.hpp"
+#include "cli/prompt_words.hpp"
 #include "drive/naming.hpp"
 
 namespace servoctl::cli {

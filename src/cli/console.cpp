@@ -8,6 +8,17 @@
 #include <string>
 
 namespace servoctl::cli {
+namespace {
+
+/// Up to Enter, the end of the input, or a signal.
+std::string typed_line() {
+  std::string out;
+  for (int c = std::getchar(); c != EOF && c != '\n'; c = std::getchar()) out += static_cast<char>(c);
+  if (std::feof(stdin) != 0 || std::ferror(stdin) != 0) std::clearerr(stdin);
+  return out;
+}
+
+}  // namespace
 
 void StandardConsole::out(std::string_view text) {
   const bool written =
@@ -24,9 +35,13 @@ void StandardConsole::show_progress(std::string_view line) {
 bool StandardConsole::ask(std::string_view question) {
   if (!can_ask()) return false;
   err(std::string(question) + " [y/N] ");
-  std::string answer;
-  for (int c = std::getchar(); c != EOF && c != '\n'; c = std::getchar()) answer += static_cast<char>(c);
+  const auto answer = typed_line();
   return answer == "y" || answer == "Y" || answer == "yes";
+}
+
+void StandardConsole::pause(std::string_view text) {
+  err(std::string(text) + " [Enter] ");
+  typed_line();
 }
 
 bool StandardConsole::can_ask() const { return ::isatty(STDIN_FILENO) == 1 && ::isatty(STDERR_FILENO) == 1; }

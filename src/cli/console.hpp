@@ -19,6 +19,8 @@ class Console {
   virtual void show_progress(std::string_view line) = 0;
   /// Asks a yes-or-no question; false when there is nobody to ask or the answer is no.
   virtual bool ask(std::string_view question) = 0;
+  /// Shows the text and waits for Enter; only where can_ask().
+  virtual void pause(std::string_view text) = 0;
   virtual bool can_ask() const = 0;       ///< Whether there is a person at a terminal.
   virtual std::size_t width() const = 0;  ///< Columns of the terminal text goes to; 0: no terminal.
 };
@@ -30,6 +32,7 @@ class StandardConsole final : public Console {
   void err(std::string_view text) override;
   void show_progress(std::string_view line) override;
   bool ask(std::string_view question) override;
+  void pause(std::string_view text) override;
   bool can_ask() const override;
   std::size_t width() const override;
 

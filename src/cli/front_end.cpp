@@ -8,6 +8,7 @@
 #include <exception>
 #include <iostream>
 
+#include "cli/batch_command.hpp"
 #include "cli/console.hpp"
 #include "cli/line_runner.hpp"
 #include "cli/parse.hpp"
@@ -36,6 +37,12 @@ Result<Settings> settings_for_lines(const Settings& defaults, std::vector<std::s
   return apply_options(defaults, parsed->arguments);
 }
 
+/// `servoctl -` is `servoctl run -`.
+std::vector<std::string> as_run(std::vector<std::string> words, std::size_t at) {
+  words.insert(words.begin() + static_cast<std::ptrdiff_t>(at), "run");
+  return words;
+}
+
 int run(const std::vector<std::string>& words, StandardConsole& console) {
   Shell::Options options;
   options.defaults = settings_from_environment();
@@ -47,7 +54,10 @@ int run(const std::vector<std::string>& words, StandardConsole& console) {
     return 0;
   }
   install_signal_handlers();
-  if (match_command(words).first < words.size() || asks_for_help(words)) return shell.run(words);
+  const auto first = match_command(words).first;
+  if (first < words.size() && words[first] == "-") return run_batch(shell, as_run(words, first), &std::cin);
+  if (is_batch(words)) return run_batch(shell, words, &std::cin);
+  if (first < words.size() || asks_for_help(words)) return shell.run(words);
   auto settings = settings_for_lines(shell.defaults(), words);
   if (!settings) return shell.report_error(settings.error(), false);
   shell.defaults() = std::move(*settings);

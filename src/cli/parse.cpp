@@ -83,11 +83,12 @@ class Parser {
     if (parameter.kind == Kind::flag)
       option = app_.add_flag(names);
     else
-      option = app_.add_option(names, values)
-                   ->expected(1, parameter.many ? CLI::detail::expected_max_vector_size : 1)
-                   ->multi_option_policy(parameter.many ? CLI::MultiOptionPolicy::TakeAll
-                                                        : CLI::MultiOptionPolicy::TakeLast)
-                   ->allow_extra_args(parameter.many);
+      option =
+          app_.add_option(names, values)
+              ->expected(1, parameter.many ? CLI::detail::expected_max_vector_size : 1)
+              ->multi_option_policy(parameter.many || parameter.repeats ? CLI::MultiOptionPolicy::TakeAll
+                                                                        : CLI::MultiOptionPolicy::TakeLast)
+              ->allow_extra_args(parameter.many);
     bound_.push_back({&parameter, option, &values});
   }
 

@@ -10,7 +10,6 @@
 #include "canopen/cob_id.hpp"
 #include "commands/help.hpp"
 #include "commands/notice.hpp"
-#include "commands/records.hpp"
 #include "session/open_bus.hpp"
 #include "session/scan.hpp"
 
@@ -32,19 +31,6 @@ Error no_bus() {
   return error;
 }
 
-/// Errors as people read them: what happened, then what to do. The same advice for several errors is given
-/// once.
-std::string errors_text(std::span<const Error> errors) {
-  std::string out;
-  for (std::size_t i = 0; i < errors.size(); ++i) {
-    if (i > 0 && errors[i].message == errors[i - 1].message) continue;
-    out += "error: " + errors[i].message + "\n";
-    const bool again = i + 1 < errors.size() && errors[i + 1].hint == errors[i].hint;
-    if (!errors[i].hint.empty() && !again) out += "  hint: " + errors[i].hint + "\n";
-  }
-  return out;
-}
-
 bool wants_json(const std::vector<std::string>& words) {
   for (std::size_t i = 0; i < words.size(); ++i) {
     if (words[i] == "--json" || words[i] == "--output=json" || words[i] == "--output=jsonl" ||
@@ -59,29 +45,52 @@ bool wants_json(const std::vector<std::string>& words) {
 
 }  // namespace
 
-int Shell::run(const std::vector<std::string>& words) {
-  if (asks_for_help(words)) {
-    const auto match = match_command(words);
-    const std::string path = match.command != nullptr     ? std::string(match.command->path)
-                             : match.first < words.size() ? words[match.first]
-                                                          : std::string();
-    const auto text = commands::help_text(path, console_->width());
-    if (!text) return report_error(text.error(), wants_json(words));
-    console_->out(*text);
-    return 0;
-  }
+Result<void> check_allowed(const commands::Command& command, const Settings& settings) {
+  if (command.of_front_end)
+    return fail(Errc::usage, fmt::format("'{}' cannot be a line of a batch file", command.path),
+                "`for` repeats lines; a script runs several files");
+  // A command that asks for more than reading is refused as a whole, before anything is opened.
+  if (settings.read_only && command.effect >= Effect::writes && !settings.dry_run)
+    return fail(Errc::refused, fmt::format("'{}' changes a drive, and --read-only forbids it", command.path),
+                "leave --read-only out when you mean it");
+  return {};
+}
+
+Error no_node(const commands::Command& command) {
+  return fail(Errc::usage, fmt::format("'{}' needs a node", command.path),
+              "add -n 1 (or a list, or all); `scan` shows who is there")
+      .value();
+}
+
+int Shell::run(const std::vector<std::string>& words) { return show(*console_, perform(words)); }
+
+Outcome Shell::perform(const std::vector<std::string>& words) {
+  const auto match = match_command(words);
+  const auto path = match.command != nullptr ? match.command->path : std::string_view();
+  auto settings = options_.defaults;
+  settings.json = settings.json || wants_json(words);
+  if (asks_for_help(words)) return help(words, std::move(settings));
   auto parsed = parse_line(words);
-  if (!parsed) {
-    const auto match = match_command(words);
-    return report_error(parsed.error(), wants_json(words),
-                        match.command != nullptr ? match.command->path : std::string_view());
-  }
-  auto settings = apply_options(options_.defaults, parsed->arguments);
-  if (!settings) return report_error(settings.error(), wants_json(words), parsed->command->path);
-  Run run{parsed->command, std::move(*settings), {}};
+  if (!parsed) return failed(parsed.error(), std::move(settings), path);
+  auto applied = apply_options(options_.defaults, parsed->arguments);
+  if (!applied) return failed(applied.error(), std::move(settings), path);
+  Run run{parsed->command, std::move(*applied), {}};
   const auto result = execute(run, parsed->arguments);
   progress_.end();
   return finish(run, result);
+}
+
+/// Help is text for a person, whatever form results have.
+Outcome Shell::help(const std::vector<std::string>& words, Settings settings) {
+  const auto match = match_command(words);
+  const std::string path = match.command != nullptr     ? std::string(match.command->path)
+                           : match.first < words.size() ? words[match.first]
+                                                        : std::string();
+  auto text = commands::help_text(path, console_->width());
+  if (!text) return failed(text.error(), std::move(settings));
+  settings.json = false;
+  if (!text->empty() && text->back() == '\n') text->pop_back();
+  return {.command = "help", .settings = std::move(settings), .result = std::move(*text)};
 }
 
 Result<Value> Shell::execute(Run& run, const commands::Arguments& arguments) {
@@ -110,17 +119,12 @@ Result<Value> Shell::execute(Run& run, const commands::Arguments& arguments) {
 
 Result<void> Shell::prepare(Run& run) {
   const auto& command = *run.command;
-  // A command that asks for more than reading is refused as a whole, before anything is opened.
-  if (run.settings.read_only && command.effect >= Effect::writes && !run.settings.dry_run)
-    return fail(Errc::refused, fmt::format("'{}' changes a drive, and --read-only forbids it", command.path),
-                "leave --read-only out when you mean it");
+  if (const auto allowed = check_allowed(command, run.settings); !allowed) return allowed;
   if (!run.settings.drive.empty() || includes(command.needs, Needs::dictionary))
     if (const auto ready = prepare_profile(run); !ready) return ready;
   if (!includes(command.needs, Needs::bus)) return name_nodes(run);
   // What is wrong in the line itself is told before a bus is opened.
-  if (includes(command.needs, Needs::node) && run.settings.nodes.empty())
-    return fail(Errc::usage, fmt::format("'{}' needs a node", command.path),
-                "add -n 1 (or a list, or all); `scan` shows who is there");
+  if (includes(command.needs, Needs::node) && run.settings.nodes.empty()) return fail(no_node(command));
   if (!run.settings.nodes.empty())
     if (const auto nodes = parse_nodes(run.settings.nodes); !nodes)
       return tl::unexpected<Error>(nodes.error());
@@ -241,7 +245,7 @@ std::vector<std::string> Shell::take_notices(const drive::Profile* profile, bool
   return out;
 }
 
-int Shell::finish(Run& run, const Result<Value>& result) {
+Outcome Shell::finish(Run& run, const Result<Value>& result) {
   auto& errors = run.context.errors;
   if (!result) errors.insert(errors.begin(), result.error());
   for (auto& notice : take_notices(run.context.profile, run.settings.chinese))
@@ -252,48 +256,20 @@ int Shell::finish(Run& run, const Result<Value>& result) {
       const auto text = error.abort_code ? texts.find(*error.abort_code) : texts.end();
       if (text != texts.end()) error.message += " — " + text->second;
     }
-  const int code = errors.empty() ? 0 : exit_code(errors.front().code);
-  const auto& value = result ? *result : Value();
   // A lost interface does not come back by itself: the next line opens it again.
   if (!errors.empty() && errors.front().code == Errc::bus) close_bus();
-  return run.settings.json ? finish_json(run, value, code) : finish_text(run, value, code);
-}
-
-int Shell::finish_json(Run& run, const Value& value, int code) {
-  report::Record out{{"servoctl", 1}, {"command", run.command->path}, {"ok", code == 0}};
-  out.push_back(
-      {"bus", includes(run.command->needs, Needs::bus) ? report::text_or_null(run.settings.bus) : Value()});
-  if (code != 0) out.push_back({"error", commands::error_record(run.context.errors.front())});
-  out.push_back({"result", value});
-  report::List notices;
-  for (const auto& notice : run.context.notices) notices.emplace_back(notice);
-  out.push_back({"notices", std::move(notices)});
-  console_->out(report::to_json(out) + "\n");
-  return code;
-}
-
-int Shell::finish_text(Run& run, const Value& value, int code) {
-  console_->out(report::to_text(value, console_->width()));
-  for (const auto& notice : run.context.notices) console_->err("notice: " + notice + "\n");
-  console_->err(errors_text(run.context.errors));
-  return code;
+  return {.command = std::string(run.command->path),
+          .settings = std::move(run.settings),
+          .uses_bus = includes(run.command->needs, Needs::bus),
+          .result = result ? *result : Value(),
+          .errors = std::move(errors),
+          .notices = std::move(run.context.notices)};
 }
 
 int Shell::report_error(const Error& error, bool json, std::string_view command) {
-  const int code = exit_code(error.code);
-  if (!json) {
-    console_->err(errors_text(std::span(&error, 1)));
-    return code;
-  }
-  report::Record out{{"servoctl", 1},
-                     {"command", command.empty() ? Value() : Value(command)},
-                     {"ok", false},
-                     {"bus", Value()},
-                     {"error", commands::error_record(error)},
-                     {"result", Value()},
-                     {"notices", report::List{}}};
-  console_->out(report::to_json(out) + "\n");
-  return code;
+  Settings settings;
+  settings.json = json;
+  return show(*console_, failed(error, std::move(settings), command));
 }
 
 }  // namespace servoctl::cli

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/console.hpp"
+#include "cli/outcome.hpp"
 #include "cli/parse.hpp"
 #include "cli/progress.hpp"
 #include "cli/settings.hpp"
@@ -15,6 +16,11 @@
 #include "sim/sim_bus.hpp"
 
 namespace servoctl::cli {
+
+/// Whether the command may run at all: --read-only refuses what changes a drive, and a line is no batch file.
+Result<void> check_allowed(const commands::Command& command, const Settings& settings);
+/// The command was given no node.
+Error no_node(const commands::Command& command);
 
 /// Runs command lines, one after the other: opens what a command needs, runs it, renders its result. Keeps
 /// the bus and the drive data open from one line to the next. Every front end runs its lines here.
@@ -33,8 +39,15 @@ class Shell {
   /// Runs one command line; the answer is the exit code.
   int run(const std::vector<std::string>& words);
 
+  /// Runs one command line and shows nothing but the samples of a command that goes on.
+  Outcome perform(const std::vector<std::string>& words);
+
   /// Shows an error as `run` would; for front ends that fail before a command is known.
   int report_error(const Error& error, bool json, std::string_view command = {});
+
+  Console& console() { return *console_; }
+  /// Whether the user wants what is running to end.
+  bool cancelled() const { return options_.cancelled && options_.cancelled(); }
 
   Settings& defaults() { return options_.defaults; }
   /// The bus as it is open now; null when none is.
@@ -62,9 +75,8 @@ class Shell {
   Result<void> prepare_nodes(Run& run);
   static Result<void> name_nodes(Run& run);
   tl::unexpected<Error> ask_for_family(Run& run);
-  int finish(Run& run, const Result<report::Value>& result);
-  int finish_json(Run& run, const report::Value& value, int code);
-  int finish_text(Run& run, const report::Value& value, int code);
+  Outcome help(const std::vector<std::string>& words, Settings settings);
+  Outcome finish(Run& run, const Result<report::Value>& result);
 
   Console* console_;
   Options options_;

@@ -34,6 +34,22 @@ check "the environment names bus, node and drive" 600 "$(SERVOCTL_NODE=1 SERVOCT
 check "--version" "servoctl" "$("$servoctl" --version | cut -d' ' -f1)"
 check "one document a command" 1 "$("$servoctl" scan --json | wc -l)"
 
+# Batch files, from standard input and from a file.
+batch=$(mktemp)
+printf 'for N in 1\n  read 0x6041 -n ${N}\nend\nexpect .value == 624\n' >"$batch"
+check "- is a batch file on standard input" 2 "$("$servoctl" - --json <"$batch" | jq .result.summary.done)"
+check "with options before it" 2 "$("$servoctl" -o json - --var X=1 <"$batch" | jq .result.summary.done)"
+check "a file may be run from a pipe" 2 "$(echo "run $batch" | "$servoctl" --json | jq .result.summary.done)"
+printf 'on-error continue\nread 0x6041 -n 1\nwait 1min\nread 0x6061 -n 1\n' >"$batch"
+"$servoctl" run "$batch" >"$batch.out" 2>&1 &
+run=$!
+for _ in $(seq 100); do grep -q 0x6041 "$batch.out" && break; sleep 0.05; done
+kill -INT $run
+wait $run
+check "Ctrl-C ends a batch file with 130" 130 $?
+check "no line is run after it" 0 "$(grep -c 0x6061 "$batch.out")"
+rm -f "$batch" "$batch.out"
+
 # Objects of any size go through files.
 lab=$(cd "$(dirname "$0")" && pwd)/data/drives
 work=$(mktemp -d)

@@ -17,12 +17,14 @@ class RecordingConsole final : public Console {
     questions.emplace_back(question);
     return answer;
   }
+  void pause(std::string_view text) override { pauses.emplace_back(text); }
   bool can_ask() const override { return person; }
   std::size_t width() const override { return columns; }
 
   std::string out_text;
   std::string err_text;
   std::vector<std::string> questions;
+  std::vector<std::string> pauses;
   std::vector<std::string> progress;
   bool answer = false;
   bool person = false;

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/result.hpp"
+#include "cli/console.hpp"
+#include "cli/settings.hpp"
+#include "report/value.hpp"
+
+namespace servoctl::cli {
+
+/// What became of one command line, before it is shown.
+struct Outcome {
+  std::string command = {};  ///< Path in the registry; empty when the line names none.
+  Settings settings = {};    ///< What held for the line.
+  bool uses_bus = false;
+  report::Value result = {};
+  std::vector<Error> errors = {};  ///< The first one makes the exit code.
+  std::vector<std::string> notices = {};
+
+  /// Exit code; 0 without errors.
+  int code() const;
+};
+
+/// An outcome that is nothing but an error.
+Outcome failed(Error error, Settings settings, std::string_view command = {});
+
+/// Shows the outcome as its settings say, as text or as one JSON document; the answer is the exit code.
+int show(Console& console, const Outcome& outcome);
+
+/// The notices and errors of an outcome, as they stand on stderr.
+void show_remarks(Console& console, const Outcome& outcome);
+
+}  // namespace servoctl::cli

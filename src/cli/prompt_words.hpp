@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cli/shell.hpp"
+
+namespace servoctl::cli {
+
+/// One of the words that only make sense where several lines follow each other: `use`, `drive`, `bus`,
+/// `exit`.
+struct PromptWord {
+  std::string_view name;
+  std::string_view argument;  ///< `NODE`; empty: takes none.
+  std::string_view help;
+};
+std::vector<PromptWord> prompt_words();
+
+/// Whether the line is `exit` or `quit`.
+bool is_exit(const std::vector<std::string>& words);
+
+/// Whether the line begins with `use`, `drive` or `bus`.
+bool is_choice(const std::vector<std::string>& words);
+
+/// Does what `use`, `drive` and `bus` say: they change the defaults of the shell. Empty for any other line.
+std::optional<Outcome> choose(Shell& shell, const std::vector<std::string>& words);
+
+/// The defaults after such a line, nothing opened; unchanged after any other one. Errors as choose().
+Result<Settings> chosen(Shell& shell, Settings defaults, const std::vector<std::string>& words);
+
+}  // namespace servoctl::cli
