@@ -134,7 +134,7 @@ Result<void> StorageScope::open(bool keep, bool unlock, bool choose) {
 
 Result<Kept> StorageScope::close(bool all_written) {
   if (!std::exchange(open_, false)) return Kept::unknown;
-  const Patience patience(*session_, kStorePatience);
+  const Patience deaf(*session_, Duration::zero());
   session_->options().cancelled = {};
   const bool has_switch = profile_ != nullptr && !profile_->rules.store.flash_switch.empty();
   Result<void> stored;
