@@ -38,6 +38,26 @@ check "first contact: one drive too many" 1 $?
 check "first contact: what was expected" 1 "$(grep -c 'first-contact.servoctl:9: count is 2, expected == 1' "$work/errors")"
 run first-contact.servoctl -b 'sim:gsd600@1?fault=0xFF00@0s' -d gsd600 >/dev/null 2>"$work/errors"
 check "first contact: a fault" 1 $?
+one="sim:gsd600@1?state=$work/one"
+echo 'param set Pn0214 20Hz -n 1' | "$servoctl" - -b "$one" -d gsd600 >/dev/null
+check "commission: all lines are done" true "$(run commission-gsd600.servoctl -b "$one" --yes --json | jq .ok)"
+check "commission: it asks" 8 "$(run commission-gsd600.servoctl -b "$one" --json | jq .error.exit)"
+check "commission: the values stay" '[450,0]' \
+  "$(echo 'param get Pn0214 Pn0603 -n 1' | "$servoctl" - -b "$one" -d gsd600 --json | jq -c '[.result.lines[0].result[].raw]')"
+check "commission: a drive in fault is left alone" 1 \
+  "$(run commission-gsd600.servoctl -b 'sim:gsd600@1?fault=0xFF00@0s' --yes --json | jq .error.exit)"
+
+cabinet="sim:gsd600@1,gsd600@2?state=$work/cabinet-drives"
+echo 'param set Pn0214=31Hz Pn0202=12Hz -n 2' | "$servoctl" - -b "$cabinet" -d gsd600 >/dev/null
+check "nightly backup: done" true \
+  "$(run nightly-backup.servoctl -b "$cabinet" -d gsd600 --read-only --var FOLDER="$work/cabinet" --json | jq .ok)"
+check "nightly backup: a file for each drive" 2 "$(find "$work/cabinet" -name 'node-*.json' | wc -l)"
+new="sim:gsd600@2?state=$work/new-drive"
+replace() { run replace-drive.servoctl -b "$new" -d gsd600 --var NODE=2 --var FILE="$work/cabinet/node-2.json" "$@"; }
+check "replacement: the plan writes nothing" 0 "$(replace --dry-run >/dev/null; echo $?)"
+check "replacement: is the old drive now" true "$(replace --yes --json | jq .ok)"
+check "replacement: with its values" '[310,120]' \
+  "$(echo 'param get Pn0214 Pn0202 -n 2' | "$servoctl" - -b "$new" -d gsd600 --json | jq -c '[.result.lines[0].result[].raw]')"
 for file in "$examples"/*.servoctl; do
   check "$file begins with the program" '#!/usr/bin/env -S servoctl run' "$(head -1 "$file")"
   [ -x "$file" ] || check "$file is executable" yes no
