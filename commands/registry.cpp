@@ -19,6 +19,7 @@ extern const Command kBackup;
 extern const Command kDiff;
 extern const Command kVerify;
 extern const Command kRestore;
+extern const Command kClone;
 extern const Command kStore;
 extern const Command kDefaults;
 extern const Command kFaultShow;
@@ -82,17 +83,23 @@ constexpr Parameter kGlobal[] = {
 
 std::span<const Command* const> registry() {
   static constexpr const Command* kAll[] = {
-      &kScan,        &kInfo,         &kStatus,
-      &kRead,        &kWrite,        &kObjects,
-      &kParamList,   &kParamGet,     &kParamSet,
-      &kParamSearch, &kParamExplain, &kBackup,
-      &kDiff,        &kVerify,       &kRestore,
-      &kStore,       &kDefaults,     &kFaultShow,
-      &kFaultList,   &kFaultReset,   &kFaultClearHistory,
-      &kNmtStart,    &kNmtStop,      &kNmtPreop,
-      &kNmtReset,    &kNmtResetComm, &kNmtWatch,
-      &kDecode,      &kDrives,       &kEdsCheck,
-      &kRun,         &kSim,          &kCompletion,
+      &kScan,         &kInfo,
+      &kStatus,       &kRead,
+      &kWrite,        &kObjects,
+      &kParamList,    &kParamGet,
+      &kParamSet,     &kParamSearch,
+      &kParamExplain, &kBackup,
+      &kDiff,         &kVerify,
+      &kRestore,      &kClone,
+      &kStore,        &kDefaults,
+      &kFaultShow,    &kFaultList,
+      &kFaultReset,   &kFaultClearHistory,
+      &kNmtStart,     &kNmtStop,
+      &kNmtPreop,     &kNmtReset,
+      &kNmtResetComm, &kNmtWatch,
+      &kDecode,       &kDrives,
+      &kEdsCheck,     &kRun,
+      &kSim,          &kCompletion,
       &kHelp,
   };
   return kAll;

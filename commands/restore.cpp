@@ -1,19 +1,12 @@
-#include "session/restore.hpp"
-
 #include <fmt/format.h>
 
-#include "base/file.hpp"
-#include "commands/backup_file.hpp"
 #include "commands/change.hpp"
 #include "commands/command.hpp"
-#include "commands/comparison.hpp"
-#include "drive/cia402.hpp"
+#include "commands/restoring.hpp"
 
 namespace servoctl::commands {
 namespace {
 
-using report::Record;
-using report::Show;
 using report::Value;
 
 constexpr Parameter kParameters[] = {
@@ -25,216 +18,19 @@ constexpr Parameter kParameters[] = {
     kUnlockOption,
 };
 
-/// What of the identity speaks against the backup being this drive's, or one of its kind.
-std::string misfit(const session::Identity& file, const session::Identity& drive) {
-  const auto other = [](const auto& a, const auto& b) { return a && b && *a != *b; };
-  if (other(file.device_type, drive.device_type)) return "its device type (1000h)";
-  if (other(file.vendor_id, drive.vendor_id)) return "its vendor (1018h:01)";
-  if (other(file.product_code, drive.product_code)) return "its product code (1018h:02)";
-  return {};
-}
-
-/// One restore, from file to outcome.
-class Restore {
- public:
-  Restore(Context& context, const Arguments& arguments, std::uint8_t node)
-      : context_(&context), arguments_(&arguments), node_(node), file_(arguments.text("file")) {}
-
-  Result<Value> run() {
-    auto backup = read_backup(file_);
-    if (!backup) return tl::unexpected<Error>(backup.error());
-    backup_ = std::move(*backup);
-    if (const auto fits = check_identity(); !fits) return tl::unexpected<Error>(fits.error());
-    if (const auto still = check_standstill(); !still) return tl::unexpected<Error>(still.error());
-    if (const auto read = read_present(); !read) return tl::unexpected<Error>(read.error());
-    if (const auto valid = check_values(); !valid) return tl::unexpected<Error>(valid.error());
-    auto comparison = compare(context_->profile, {fmt::format("node {}", node_), node_, present_},
-                              {file_.string(), node_, wanted_}, true, context_->chinese);
-    if (comparison.different == 0) return result(std::move(comparison.record), "nothing differs", {});
-    if (context_->dry_run) return planned();
-    const auto question =
-        fmt::format("Write {} values of {} to node {}?", comparison.different, file_.string(), node_);
-    if (const auto answer = context_->confirm(question); !answer)
-      return tl::unexpected<Error>(answer.error());
-    if (const auto saved = save_present(); !saved) return tl::unexpected<Error>(saved.error());
-    return carry_out(std::move(comparison.record));
-  }
-
- private:
-  Result<void> check_identity() {
-    const bool force = arguments_->has("--force");
-    if (backup_.family != context_->profile->family && !force)
-      return fail(
-          Errc::refused,
-          fmt::format("{} is of {}, not of {}", file_.string(), backup_.family, context_->profile->family),
-          "--force restores what fits all the same");
-    const std::uint8_t nodes[] = {node_};
-    const auto found = session::scan(*context_->session, nodes);
-    if (!found) return tl::unexpected<Error>(found.error());
-    if (found->empty())
-      return fail(Errc::timeout, fmt::format("node {} does not answer", node_), "`scan` shows who does");
-    identity_ = found->front();
-    const auto& drive = identity_;
-    if (const auto what = misfit(backup_.identity, drive); !what.empty() && !force)
-      return fail(
-          Errc::refused,
-          fmt::format("node {} is another drive than that of {}: {} differs", node_, file_.string(), what),
-          "--force restores what fits all the same");
-    if (backup_.identity.revision != drive.revision ||
-        backup_.identity.software_version != drive.software_version)
-      context_->notices.push_back(fmt::format(
-          "node {}: the firmware differs from that of the backup: compare the values that matter", node_));
-    return {};
-  }
-
-  /// Gains and limits are no things to change under a drive that holds a load.
-  Result<void> check_standstill() {
-    const auto word = context_->session->upload(node_, {0x6041, 0});
-    if (!word && word.error().code != Errc::sdo_abort) return tl::unexpected<Error>(word.error());
-    if (!word || !drive::is_energised(drive::decode_state(static_cast<std::uint16_t>(load_le(*word)))))
-      return {};
-    return fail(Errc::refused, fmt::format("node {} is energised: {}", node_, "nothing is restored into it"),
-                "disable it first");
-  }
-
-  bool is_address(ObjectAddress object) const {
-    const auto& rules = context_->profile->rules.nmt;
-    const auto* parameter = context_->profile->parameter(object);
-    return parameter != nullptr && (parameter == context_->profile->parameter(rules.node_id) ||
-                                    parameter == context_->profile->parameter(rules.bitrate));
-  }
-
-  /// A COB-ID that contains the node-ID of the drive it was read from contains that of this one here.
-  Bytes for_this_node(ObjectAddress object, Bytes bytes) const {
-    const auto* entry = context_->profile->dictionary.find(object);
-    const bool with_node = entry != nullptr && entry->default_value && entry->default_value->plus_node_id;
-    const auto number = load_le(bytes);
-    if (!with_node || bytes.size() != 4 || (number & 0x7FU) != backup_.identity.node) return bytes;
-    return store_le(number - backup_.identity.node + node_, 4);
-  }
-
-  Result<void> read_present() {
-    std::vector<ObjectAddress> objects;
-    for (const auto& entry : backup_.entries) {
-      if (!entry.bytes || (is_address(entry.object) && !arguments_->has("--with-address"))) continue;
-      wanted_.emplace(entry.object, for_this_node(entry.object, *entry.bytes));
-      objects.push_back(entry.object);
-    }
-    const auto read = session::read_objects(*context_->session, node_, objects);
-    if (!read) return tl::unexpected<Error>(read.error());
-    for (const auto& entry : *read) {
-      if (entry.bytes && entry.bytes->size() == wanted_.at(entry.object).size()) {
-        present_.emplace(entry.object, *entry.bytes);
-        continue;
-      }
-      if (!arguments_->has("--force"))
-        return fail(Errc::negative,
-                    fmt::format("{}:{}: {} of the backup: {}", file_.string(), line_of(entry.object),
-                                to_string(entry.object),
-                                entry.bytes ? "the drive's has another length" : entry.left_out),
-                    "nothing was written; --force restores the rest");
-      wanted_.erase(entry.object);
-    }
-    return {};
-  }
-
-  std::uint32_t line_of(ObjectAddress object) const {
-    for (const auto& entry : backup_.entries)
-      if (entry.object == object) return entry.line;
-    return 0;
-  }
-
-  /// Nothing is written unless everything can be.
-  Result<void> check_values() const {
-    for (const auto& [object, data] : wanted_) {
-      if (present_.at(object) == data) continue;
-      const auto target = drive::target_at(context_->profile, object);
-      auto meaning = drive::fitted(drive::meaning(target, node_), data.size());
-      const auto value = meaning.type_known ? od::decode(meaning.type, data)
-                                            : Result<od::Value>(od::Value(std::uint64_t{0}));
-      const bool writable = od::writable(meaning.access);
-      const auto limits = value && meaning.type_known ? drive::check_limits(meaning, *value) : Result<void>{};
-      if (writable && value && limits) continue;
-      return fail(Errc::negative,
-                  fmt::format("{}:{}: {}: {}", file_.string(), line_of(object), name_of(target),
-                              !writable ? "is read-only"
-                              : !value  ? value.error().message
-                                        : limits.error().message),
-                  "nothing was written");
-    }
-    return {};
-  }
-
-  Value planned() const {
-    std::vector<Change> changes;
-    for (const auto& step : session::plan_writes(context_->profile, present_, wanted_))
-      changes.push_back({node_, drive::target_at(context_->profile, step.object), {}, step.data});
-    return planned_frames(changes);
-  }
-
-  /// What the drive holds now, beside the backup: the way back when everything else fails.
-  Result<void> save_present() {
-    session::Snapshot snapshot;
-    snapshot.identity = identity_;
-    for (const auto& [object, data] : present_) snapshot.entries.push_back({object, data, {}});
-    before_ = file_.string() + fmt::format(".before-node-{}.json", node_);
-    return write_file_atomically(before_, backup_text(*context_, make_backup(*context_, snapshot)));
-  }
-
-  Result<Value> carry_out(Record record) {
-    const auto outcome = session::restore(*context_->session, context_->profile, node_, present_, wanted_,
-                                          {.roll_back = !arguments_->has("--no-rollback"),
-                                           .keep = arguments_->has("--keep"),
-                                           .unlock = arguments_->has("--unlock")});
-    for (const auto& notice : outcome.notices) context_->notices.push_back(notice);
-    context_->notices.push_back(fmt::format("what node {} held before is in {}", node_, before_.string()));
-    if (!outcome.failure) return result(std::move(record), "restored", outcome);
-    context_->errors.push_back(*outcome.failure);
-    if (outcome.rolled_back)
-      return result(std::move(record), "failed; every value is as it was before", outcome);
-    for (const auto object : outcome.astray) {
-      Error error;
-      error.code = Errc::negative;
-      error.node = node_;
-      error.object = object;
-      error.message = fmt::format(
-          "node {}, object {}: neither the value of the backup nor the one from before is certain", node_,
-          to_string(object));
-      context_->errors.push_back(std::move(error));
-    }
-    return result(
-        std::move(record),
-        outcome.astray.empty() ? "failed; what was written stays written" : "failed; see the errors",
-        outcome);
-  }
-
-  static Value kept_value(const std::optional<session::RestoreOutcome>& outcome) {
-    if (!outcome || outcome->kept == session::Kept::unknown) return {};
-    return outcome->kept == session::Kept::yes;
-  }
-
-  Value result(Record record, std::string_view state,
-               const std::optional<session::RestoreOutcome>& outcome) const {
-    Record out{{"node", node_}, {"result", state}, {"kept", kept_value(outcome)}};
-    for (auto& field : record) out.push_back(std::move(field));
-    return out;
-  }
-
-  Context* context_;
-  const Arguments* arguments_;
-  std::uint8_t node_;
-  std::filesystem::path file_;
-  std::filesystem::path before_;
-  Backup backup_;
-  session::Identity identity_;
-  session::Values wanted_;
-  session::Values present_;
-};
-
 Result<Value> run(Context& context, const Arguments& arguments) {
   if (context.nodes.size() != 1 || context.nodes.front() == 0)
     return fail(Errc::usage, "restore takes one node: each drive has a backup of its own", "-n 1");
-  return Restore(context, arguments, context.nodes.front()).run();
+  const std::string file(arguments.text("file"));
+  const auto backup = read_backup(file);
+  if (!backup) return tl::unexpected<Error>(backup.error());
+  const auto node = context.nodes.front();
+  return put_into(context, *backup, file, node, fmt::format("{}.before-node-{}.json", file, node),
+                  {.with_address = arguments.has("--with-address"),
+                   .roll_back = !arguments.has("--no-rollback"),
+                   .force = arguments.has("--force"),
+                   .keep = arguments.has("--keep"),
+                   .unlock = arguments.has("--unlock")});
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ _servoctl_scan() {
     return
   fi
   case $command in
-    '') source='=scan info status read write objects param backup diff verify restore store defaults fault nmt decode drives eds run sim completion help' ;;
+    '') source='=scan info status read write objects param backup diff verify restore clone store defaults fault nmt decode drives eds run sim completion help' ;;
     param) source='=list get set search explain' ;;
     fault) source='=show list reset clear-history' ;;
     nmt) source='=start stop preop reset reset-comm watch' ;;
@@ -67,7 +67,7 @@ _servoctl_scan() {
     'run') source='files' ;;
     'sim') source='none' ;;
     'completion') source='=bash zsh fish objects parameters families' ;;
-    'help') source='=scan info status read write objects param backup diff verify restore store defaults fault nmt decode drives eds run sim completion help' ;;
+    'help') source='=scan info status read write objects param backup diff verify restore clone store defaults fault nmt decode drives eds run sim completion help' ;;
   esac
   case $command in
     'read') options+=' --type --to --transfer' ;;
@@ -75,6 +75,7 @@ _servoctl_scan() {
     'param set') options+=' --keep --unlock' ;;
     'backup') options+=' --only' ;;
     'restore') options+=' --with-address --no-rollback --force --keep --unlock' ;;
+    'clone') options+=' --from --to --force --keep --unlock' ;;
     'nmt start') options+=' --wait' ;;
     'nmt stop') options+=' --wait' ;;
     'nmt preop') options+=' --wait' ;;

@@ -104,6 +104,12 @@ complete -c servoctl -n '__servoctl_in restore' -l no-rollback -d 'leave things 
 complete -c servoctl -n '__servoctl_in restore' -l force -d 'although identity or family are others'
 complete -c servoctl -n '__servoctl_in restore' -l keep -d 'make the values survive power-off'
 complete -c servoctl -n '__servoctl_in restore' -l unlock -d 'give the family'\''s password before, take it back after'
+complete -c servoctl -n __servoctl_at -a clone -d 'Put the settings of one drive into others'
+complete -c servoctl -n '__servoctl_in clone' -l from -x -d 'node whose settings are taken'
+complete -c servoctl -n '__servoctl_in clone' -l to -x -d 'nodes that get them: 2,3'
+complete -c servoctl -n '__servoctl_in clone' -l force -d 'although identities differ'
+complete -c servoctl -n '__servoctl_in clone' -l keep -d 'make the values survive power-off'
+complete -c servoctl -n '__servoctl_in clone' -l unlock -d 'give the family'\''s password before, take it back after'
 complete -c servoctl -n __servoctl_at -a store -d 'Make a drive keep its present values'
 complete -c servoctl -n '__servoctl_in store' -x -a 'all communication application vendor'
 complete -c servoctl -n __servoctl_at -a defaults -d 'Restore the factory values of a drive'
@@ -141,7 +147,7 @@ complete -c servoctl -n __servoctl_at -a sim -d 'Put simulated drives on a bus u
 complete -c servoctl -n __servoctl_at -a completion -d 'Print the completion script of a shell'
 complete -c servoctl -n '__servoctl_in completion' -x -a 'bash zsh fish objects parameters families'
 complete -c servoctl -n __servoctl_at -a help -d 'Show the commands, or how one is used'
-complete -c servoctl -n '__servoctl_in help' -x -a 'scan info status read write objects param backup diff verify restore store defaults fault nmt decode drives eds run sim completion help'
+complete -c servoctl -n '__servoctl_in help' -x -a 'scan info status read write objects param backup diff verify restore clone store defaults fault nmt decode drives eds run sim completion help'
 complete -c servoctl -n __servoctl_at -a param
 complete -c servoctl -n __servoctl_at -a fault
 complete -c servoctl -n __servoctl_at -a nmt

@@ -241,6 +241,24 @@ TEST_F(BackupTest, GoesIntoAnotherNodeWithItsOwnAddresses) {
   EXPECT_NE(console.out_text.find("\"raw\":5,"), std::string::npos);
 }
 
+TEST_F(BackupTest, GoesFromOneDriveIntoOthersWithoutAFile) {
+  use("sim:gsd600@1,gsd600@2,gsd600@3", "gsd600");
+  const auto here = fs::current_path();
+  fs::current_path(folder);
+  ASSERT_EQ(run("param set Pn0214=450 Pn0202=321"), 0);
+  EXPECT_EQ(run("clone --from 1 --to 2,3"), 8) << "it asks";
+  EXPECT_EQ(run("clone --from 1 --to 2,1 --yes"), 2);
+  EXPECT_EQ(run("clone --from 1 --to 200 --yes"), 2);
+  EXPECT_EQ(run("clone --from 9 --to 2 --yes --timeout 20ms"), 4);
+  EXPECT_EQ(run("clone --from 1 --to 2,3 --yes"), 0) << console.err_text;
+  EXPECT_EQ(run("param get Pn0214 -n 3 --json"), 0);
+  EXPECT_NE(console.out_text.find("\"raw\":450"), std::string::npos);
+  EXPECT_EQ(run("clone --from 1 --to 2,3 --yes"), 0);
+  EXPECT_NE(console.out_text.find("nothing differs"), std::string::npos);
+  EXPECT_TRUE(fs::exists("before-clone-node-3.json"));
+  fs::current_path(here);
+}
+
 TEST_F(BackupTest, IsNotPutIntoAnEnergisedDriveNorAnotherKind) {
   ASSERT_EQ(run("backup %drive.json"), 0);
   for (const auto* word : {"6", "7", "15"}) ASSERT_EQ(run(std::string("write 0x6040 --yes ") + word), 0);

@@ -1,0 +1,84 @@
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "base/number.hpp"
+#include "base/text.hpp"
+#include "canopen/cob_id.hpp"
+#include "commands/change.hpp"
+#include "commands/command.hpp"
+#include "commands/restoring.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using report::Value;
+
+constexpr Parameter kParameters[] = {
+    {.name = "--from", .help = "node whose settings are taken", .kind = Kind::number, .required = true},
+    {.name = "--to", .help = "nodes that get them: 2,3", .kind = Kind::text, .required = true},
+    {.name = "--force", .help = "although identities differ", .kind = Kind::flag},
+    kKeepOption,
+    kUnlockOption,
+};
+
+Result<std::vector<std::uint8_t>> nodes_of(std::string_view text) {
+  std::vector<std::uint8_t> out;
+  for (const auto part : split(text, ',')) {
+    const auto number = parse_digits(part, 10);
+    if (!number || *number < canopen::kFirstNode || *number > canopen::kLastNode)
+      return fail(Errc::usage, fmt::format("'{}' is no node-ID (1..127)", part), "write 2 or 2,3,4");
+    const auto node = static_cast<std::uint8_t>(*number);
+    if (std::find(out.begin(), out.end(), node) == out.end()) out.push_back(node);
+  }
+  return out;
+}
+
+Result<Value> run(Context& context, const Arguments& arguments) {
+  const auto from = nodes_of(arguments.text("--from"));
+  if (!from) return tl::unexpected<Error>(from.error());
+  const auto to = nodes_of(arguments.text("--to"));
+  if (!to) return tl::unexpected<Error>(to.error());
+  if (from->size() != 1) return fail(Errc::usage, "--from takes one node");
+  if (std::find(to->begin(), to->end(), from->front()) != to->end())
+    return fail(Errc::usage, fmt::format("node {} cannot be cloned into itself", from->front()));
+  const auto snapshot = session::take_snapshots(*context.session, *context.profile, *from, {}).front();
+  if (!snapshot) return tl::unexpected<Error>(snapshot.error());
+  const auto backup = make_backup(context, *snapshot);
+  report::List out;
+  for (const auto node : *to) {
+    auto done = put_into(context, backup, fmt::format("node {}", from->front()), node,
+                         fmt::format("before-clone-node-{}.json", node),
+                         {.force = arguments.has("--force"),
+                          .keep = arguments.has("--keep"),
+                          .unlock = arguments.has("--unlock")});
+    // One that went wrong ends the work: the others stay as they are.
+    if (!done && out.empty()) return done;
+    if (!done) {
+      context.errors.push_back(done.error());
+      break;
+    }
+    out.push_back(std::move(*done));
+    if (!context.errors.empty()) break;
+  }
+  return Value(std::move(out));
+}
+
+}  // namespace
+
+extern const Command kClone;
+const Command kClone{
+    .path = "clone",
+    .summary = "Put the settings of one drive into others",
+    .details =
+        "As backup and restore in one, with the same care: each target is checked, what differs is shown and "
+        "asked, "
+        "what it held goes into before-clone-node-N.json in the present folder, and a failure puts "
+        "everything back and "
+        "ends the work. Node-ID and bitrate stay; COB-IDs follow the node they go to.",
+    .parameters = kParameters,
+    .needs = Needs::bus | Needs::dictionary,
+    .effect = Effect::stores,
+    .run = run,
+};
+
+}  // namespace servoctl::commands
