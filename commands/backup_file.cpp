@@ -1,6 +1,5 @@
 #include "commands/backup_file.hpp"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <algorithm>
 #include <cstdlib>
@@ -25,7 +24,10 @@ std::string now_text() {
   const char* fixed = std::getenv("SOURCE_DATE_EPOCH");
   const auto seconds = fixed != nullptr ? parse_digits(fixed, 10) : std::nullopt;
   const auto time = seconds ? static_cast<std::time_t>(*seconds) : std::time(nullptr);
-  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(time));
+  std::tm utc{};
+  ::gmtime_r(&time, &utc);
+  char text[32];
+  return {text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc)};
 }
 
 /// FNV-1a of everything a restore would use: an edited or cut file is noticed.
