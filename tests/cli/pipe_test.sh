@@ -36,6 +36,7 @@ check "one document a command" 1 "$("$servoctl" scan --json | wc -l)"
 
 # Batch files, from standard input and from a file.
 batch=$(mktemp)
+# shellcheck disable=SC2016  # The program fills the variable in, not the shell.
 printf 'for N in 1\n  read 0x6041 -n ${N}\nend\nexpect .value == 624\n' >"$batch"
 check "- is a batch file on standard input" 2 "$("$servoctl" - --json <"$batch" | jq .result.summary.done)"
 check "with options before it" 2 "$("$servoctl" -o json - --var X=1 <"$batch" | jq .result.summary.done)"
