@@ -29,7 +29,10 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   if (found.empty())
     return fail(Errc::negative, fmt::format("no fault of {} fits '{}'", context.profile->family, pattern),
                 "`fault list` shows all");
-  return report::Value(fault_table(found, context.chinese));
+  if (found.size() > kFewFaults) return report::Value(fault_table(found, context.chinese));
+  report::List out;
+  for (const auto* fault : found) out.emplace_back(fault_record(*fault, context.chinese));
+  return report::Value(std::move(out));
 }
 
 }  // namespace

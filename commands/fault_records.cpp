@@ -46,6 +46,29 @@ report::Table fault_table(std::span<const drive::Fault* const> faults, bool chin
   return table;
 }
 
+report::Record fault_record(const drive::Fault& fault, bool chinese) {
+  const auto& check = chinese && !fault.check_zh.empty() ? fault.check_zh : fault.check;
+  const auto power_cycle = std::string("no, it needs a power cycle");
+  return {{"code_text", report::text_or_null(code_text(fault)), Show::text, "code"},
+          {"code", fault.code ? Value(*fault.code) : Value(), Show::json},
+          {"extra", report::text_or_null(fault.extra)},
+          {"panel", report::text_or_null(fault.panel)},
+          {"kind", drive::name(fault.kind)},
+          {"name_text", name_of(fault, chinese), Show::text, "name"},
+          {"name", fault.name, Show::json},
+          {"name_zh", report::text_or_null(fault.name_zh), Show::json},
+          {"resettable_text",
+           !fault.resettable   ? Value()
+           : *fault.resettable ? Value("yes")
+                               : Value(power_cycle),
+           Show::text, "resettable"},
+          {"resettable", fault.resettable ? Value(*fault.resettable) : Value(), Show::json},
+          {"check_text", report::text_or_null(check), Show::text, "check"},
+          {"check", report::text_or_null(fault.check), Show::json},
+          {"check_zh", report::text_or_null(fault.check_zh), Show::json},
+          {"assumed", !fault.assumed.empty(), Show::json}};
+}
+
 std::string fault_words(const drive::Profile* profile, bool chinese, std::uint16_t code,
                         const std::array<std::uint8_t, 5>& vendor) {
   if (profile == nullptr) return canopen::emergency_text(code);

@@ -53,10 +53,12 @@ class FaultReport {
     add_alarm();
     add_emergencies();
     add_history();
-    // A few are told in full; many are listed, and `fault list CODE` tells more.
-    const bool few = candidates_.size() <= 3;
+    // A few are told in full; of many `fault list PANEL` tells more.
+    const bool few = candidates_.size() <= kFewFaults;
     for (const auto* fault : candidates_)
-      if (few) out_.push_back({"alarm_" + fault->panel, in_full(*fault), Show::text, title_of(*fault)});
+      if (few)
+        out_.push_back(
+            {"alarm_" + fault->panel, fault_record(*fault, context_->chinese), Show::text, title_of(*fault)});
     if (!candidates_.empty())
       out_.push_back({"alarms", fault_table(candidates_, context_->chinese),
                       few ? Show::json : Show::everywhere, "what it may be"});
@@ -76,17 +78,6 @@ class FaultReport {
   std::string title_of(const drive::Fault& fault) const {
     if (!fault.panel.empty()) return fault.panel;
     return fault.code ? fmt::format("0x{:04X}", *fault.code) : "fault";
-  }
-
-  Record in_full(const drive::Fault& fault) const {
-    const auto in_language = [&](const std::string& english, const std::string& chinese) {
-      return context_->chinese && !chinese.empty() ? chinese : english;
-    };
-    Record out{{"name", in_language(fault.name, fault.name_zh)}, {"kind", drive::name(fault.kind)}};
-    if (fault.resettable)
-      out.push_back({"resettable", *fault.resettable ? "yes" : "no, it needs a power cycle"});
-    out.push_back({"check", report::text_or_null(in_language(fault.check, fault.check_zh))});
-    return out;
   }
 
   void add_code() {
