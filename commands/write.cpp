@@ -43,15 +43,15 @@ Result<void> check(Context& context, const Arguments& arguments) {
   const auto type = parse_type_option(arguments);
   if (!type) return tl::unexpected<Error>(type.error());
   if (const auto one = check_one_source(arguments); !one) return one;
-  if (arguments.has("--from") && (arguments.has("--keep") || arguments.has("--unlock")))
-    return fail(Errc::usage, "--keep and --unlock go with a value, not with --from",
-                "write the file, then `store`");
   const auto target = drive::resolve(context.profile, arguments.text("object"));
   if (!target) return tl::unexpected<Error>(target.error());
   if (arguments.has("--from")) return {};
   for (const auto node : context.nodes)
     if (const auto fits = check_change(context, node, *target, arguments.text("value"), *type); !fits)
       return fits;
+  if (arguments.has("--from") && (arguments.has("--keep") || arguments.has("--unlock")))
+    return fail(Errc::usage, "--keep and --unlock go with a value, not with --from",
+                "write the file, then `store`");
   return {};
 }
 
