@@ -14,7 +14,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     now += std::chrono::milliseconds(input.next());
     can::Frame frame;
     frame.id = ((kind & 1U) != 0 ? 0x080U : 0x700U) + (kind >> 3U);
-    frame.size = (kind & 2U) != 0 ? 8 : input.next() % 9;
+    frame.size = static_cast<std::uint8_t>((kind & 2U) != 0 ? 8U : input.next() % 9U);
     frame.remote = (kind & 4U) != 0 && input.next() == 0;
     for (auto& byte : frame.data) byte = input.next();
     if (const auto emergency = canopen::parse_emergency(frame)) {
