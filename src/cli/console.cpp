@@ -1,5 +1,6 @@
 #include "cli/console.hpp"
 
+#include <poll.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -7,12 +8,26 @@
 #include <cstdio>
 #include <string>
 
+#include "cli/signals.hpp"
+
 namespace servoctl::cli {
 namespace {
+
+/// How late Ctrl-C may be noticed when it comes just before the wait begins.
+constexpr int kSliceMs = 50;
+
+/// Waits until a line was typed; false after Ctrl-C.
+bool line_is_there() {
+  pollfd input{STDIN_FILENO, POLLIN, 0};
+  while (!interrupted())
+    if (::poll(&input, 1, kSliceMs) > 0) return true;
+  return false;
+}
 
 /// Up to Enter, the end of the input, or a signal.
 std::string typed_line() {
   std::string out;
+  if (!line_is_there()) return out;
   for (int c = std::getchar(); c != EOF && c != '\n'; c = std::getchar()) out += static_cast<char>(c);
   if (std::feof(stdin) != 0 || std::ferror(stdin) != 0) std::clearerr(stdin);
   return out;

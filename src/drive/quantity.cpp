@@ -104,6 +104,12 @@ std::string labels_text(const Meaning& meaning) {
   return out;
 }
 
+/// `10H` is ten henry where the object's unit is H, and 16 everywhere else.
+bool ends_in_own_unit(const Meaning& meaning, std::string_view text) {
+  return equals_nocase(meaning.unit, "h") && !text.empty() && (text.back() == 'h' || text.back() == 'H') &&
+         split_unit(text).has_value();
+}
+
 }  // namespace
 
 std::string plain_text(const Meaning& meaning, const od::Value& value) {
@@ -183,7 +189,7 @@ Result<od::Value> parse_quantity(const Meaning& meaning, std::string_view text) 
       if (const auto real = parse_real(text))
         return od::encode_number(meaning.encoding, meaning.type, *real / meaning.scale);
     const bool number = od::is_integer(meaning.type) || od::is_real(meaning.type);
-    if (number && !parse_integer(text))
+    if (number && (!parse_integer(text) || ends_in_own_unit(meaning, text)))
       if (const auto physical = split_unit(text)) return from_physical(meaning, *physical, text);
     auto plain = od::parse_value(meaning.type, text);
     if (!plain && meaning.labels != nullptr && !parse_integer(text))

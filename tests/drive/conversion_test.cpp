@@ -98,6 +98,19 @@ TEST(Conversions, OfFloatsInHalvesDropTheLowerBits) {
   EXPECT_FALSE(parse_quantity(m, "1e39"));
 }
 
+TEST(Conversions, TakeHenryForAUnitWhereTheObjectHasIt) {
+  Meaning m;
+  m.type = od::DataType::u32;
+  m.type_known = true;
+  m.unit = "H";
+  m.encoding = od::Encoding::f32;
+  EXPECT_EQ(scaled(m, parse_quantity(m, "10H").value()), 10);
+  EXPECT_EQ(parse_quantity(m, "0x3F800000").value(), od::Value(std::uint64_t{0x3F80'0000}));
+  m.unit = "A";
+  m.encoding = od::Encoding::plain;
+  EXPECT_EQ(parse_quantity(m, "10h").value(), od::Value(std::uint64_t{16}));
+}
+
 TEST(Conversions, OfFloatsCompareNumbersAndNotBitPatterns) {
   Meaning m;
   m.type = od::DataType::i32;
