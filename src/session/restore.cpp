@@ -195,7 +195,9 @@ std::vector<PlannedWrite> plan_writes(const drive::Profile* profile, const Value
     const auto found = present.find(object);
     return found != present.end() && found->second != data;
   };
-  for (const auto& [object, data] : wanted) {
+  for (const auto& each : wanted) {
+    const auto object = each.first;
+    const auto& data = each.second;
     if (!differs(object, data)) continue;
     if (!is_communication(object.index) && !is_mapping(object.index)) {
       out.push_back({object, data});
