@@ -1,0 +1,71 @@
+#include "canopen/pdo.hpp"
+
+namespace servoctl::canopen {
+namespace {
+
+constexpr std::uint16_t kFirstReceive = 0x1400;
+constexpr std::uint16_t kFirstTransmit = 0x1800;
+constexpr std::uint16_t kMappingOffset = 0x200;
+
+bool bit_at(ByteSpan data, std::size_t bit) {
+  return bit / 8 < data.size() && ((data[bit / 8] >> (bit % 8)) & 1U) != 0;
+}
+
+void set_bit(Bytes& data, std::size_t bit) {
+  data[bit / 8] = static_cast<std::uint8_t>(data[bit / 8] | (1U << (bit % 8)));
+}
+
+std::size_t bits_of(std::span<const PdoEntry> entries) {
+  std::size_t out = 0;
+  for (const auto& entry : entries) out += entry.bits;
+  return out;
+}
+
+}  // namespace
+
+PdoEntry parse_pdo_entry(std::uint32_t mapping) {
+  return {{static_cast<std::uint16_t>(mapping >> 16U), static_cast<std::uint8_t>(mapping >> 8U)},
+          static_cast<std::uint8_t>(mapping)};
+}
+
+std::uint32_t mapping_of(PdoEntry entry) {
+  return static_cast<std::uint32_t>(entry.object.index) << 16U |
+         static_cast<std::uint32_t>(entry.object.sub) << 8U | entry.bits;
+}
+
+std::uint16_t Pdo::communication_index() const {
+  const auto first = direction == PdoDirection::receive ? kFirstReceive : kFirstTransmit;
+  return static_cast<std::uint16_t>(first + number - 1);
+}
+
+std::uint16_t Pdo::mapping_index() const {
+  return static_cast<std::uint16_t>(communication_index() + kMappingOffset);
+}
+
+std::size_t Pdo::bits() const { return bits_of(entries); }
+
+std::optional<std::vector<Bytes>> unpack_pdo(std::span<const PdoEntry> entries, ByteSpan data) {
+  if (bits_of(entries) > data.size() * 8) return std::nullopt;
+  std::vector<Bytes> out;
+  out.reserve(entries.size());
+  std::size_t at = 0;
+  for (const auto& entry : entries) {
+    Bytes value(entry.is_gap() ? 0 : (entry.bits + 7U) / 8U);
+    for (std::size_t bit = 0; bit < entry.bits && !entry.is_gap(); ++bit)
+      if (bit_at(data, at + bit)) set_bit(value, bit);
+    at += entry.bits;
+    out.push_back(std::move(value));
+  }
+  return out;
+}
+
+Bytes pack_pdo(std::span<const PdoEntry> entries, std::span<const Bytes> values) {
+  Bytes out((bits_of(entries) + 7) / 8);
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < entries.size(); at += entries[i].bits, ++i)
+    for (std::size_t bit = 0; bit < entries[i].bits && i < values.size(); ++bit)
+      if (bit_at(values[i], bit)) set_bit(out, at + bit);
+  return out;
+}
+
+}  // namespace servoctl::canopen
