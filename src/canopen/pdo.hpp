@@ -36,13 +36,13 @@ std::uint32_t mapping_of(PdoEntry entry);
 /// One PDO: communication and mapping parameter.
 struct Pdo {
   PdoDirection direction = PdoDirection::receive;
-  std::uint16_t number = 1;                ///< 1..512: RPDO1 stands at 1400h and 1600h.
-  std::uint32_t cob_id = kPdoInvalid;      ///< With bits 30 and 31.
-  std::uint8_t type = 255;                 ///< Transmission type, sub-index 2.
-  std::optional<std::uint16_t> inhibit;    ///< Sub-index 3, in 100 µs; empty where the drive has none.
-  std::optional<std::uint16_t> event;      ///< Sub-index 5, in ms.
-  std::optional<std::uint8_t> sync_start;  ///< Sub-index 6.
-  std::vector<PdoEntry> entries;
+  std::uint16_t number = 1;                     ///< 1..512: RPDO1 stands at 1400h and 1600h.
+  std::uint32_t cob_id = kPdoInvalid;           ///< With bits 30 and 31.
+  std::uint8_t type = 255;                      ///< Transmission type, sub-index 2.
+  std::optional<std::uint16_t> inhibit = {};    ///< Sub-index 3, in 100 µs; empty where the drive has none.
+  std::optional<std::uint16_t> event = {};      ///< Sub-index 5, in ms.
+  std::optional<std::uint8_t> sync_start = {};  ///< Sub-index 6.
+  std::vector<PdoEntry> entries = {};
 
   bool is_valid() const { return (cob_id & kPdoInvalid) == 0; }
   std::uint16_t communication_index() const;
