@@ -2,13 +2,11 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <map>
-#include <memory>
 
 #include "canopen/sdo_client.hpp"
+#include "commands/keeping_nodes.hpp"
 #include "drive/cia402.hpp"
 #include "session/measure.hpp"
-#include "session/storage.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -45,13 +43,37 @@ bool asks_measure(const Context& context, const drive::Meaning& meaning, std::st
   return meaning.measure && context.profile != nullptr && drive::needs_bridge(meaning, text);
 }
 
+/// A gear that takes effect at a restart may be set and not in force: what is written then is converted by
+/// numbers the drive does not go by yet.
+void warn_of_gear(Context& context, std::uint8_t node, drive::Measure measure) {
+  const auto& quotient = context.profile->rules.units.at(measure);
+  std::string names;
+  const auto add = [&](ObjectAddress object) {
+    const auto target = drive::target_at(context.profile, object);
+    if (drive::meaning(target, node).effect != od::Effect::restart || target.parameter == nullptr) return;
+    names += (names.empty() ? "" : ", ") + target.parameter->id;
+  };
+  for (const auto* factors : {&quotient.multiply, &quotient.divide})
+    for (const auto& factor : *factors)
+      if (const auto* object = std::get_if<ObjectAddress>(&factor)) add(*object);
+  for (const auto& condition : quotient.when) add(condition.object);
+  if (names.empty()) return;
+  const auto notice = fmt::format(
+      "node {}: the unit is converted by {}, right only if the drive was restarted since they were changed",
+      node, names);
+  if (std::find(context.notices.begin(), context.notices.end(), notice) == context.notices.end())
+    context.notices.push_back(notice);
+}
+
 /// What the drive's gear makes of the unit in the text, where only the drive can tell.
 void add_bridge(Context& context, std::uint8_t node, const drive::Target& target, std::string_view text,
                 drive::Meaning& meaning) {
   if (!asks_measure(context, meaning, text)) return;
   const session::MeasureQuestion question[] = {{node, *meaning.measure}};
   const auto measure = session::read_measures(*context.session, *context.profile, question).front();
-  if (measure) meaning.bridge = drive::bridge(meaning.unit, target.address, *measure);
+  if (!measure) return;
+  meaning.bridge = drive::bridge(meaning.unit, target.address, *measure);
+  warn_of_gear(context, node, question[0].measure);
 }
 
 tl::unexpected<Error> named(Error error, std::uint8_t node, const drive::Target& target,
@@ -129,64 +151,6 @@ Error with_password_hint(const Context& context, const Change& change, Error err
   if (store.unlock_closed) error.hint += fmt::format(", {} closes", *store.unlock_closed);
   return error;
 }
-
-/// The storage of every node that is written to.
-class KeepingNodes {
- public:
-  KeepingNodes(Context& context, std::span<const Change> changes) : context_(&context), changes_(changes) {
-    for (const auto& change : changes)
-      if (nodes_.find(change.node) == nodes_.end())
-        nodes_.emplace(change.node, std::make_unique<session::StorageScope>(*context.session, context.profile,
-                                                                            change.node));
-  }
-
-  Result<void> open(const WriteOptions& options) {
-    for (auto& [node, storage] : nodes_) {
-      const bool choose = std::any_of(changes_.begin(), changes_.end(), [&, n = node](const Change& change) {
-        return change.node == n && goes_to_memory(change);
-      });
-      if (const auto opened = storage->open(options.keep, options.unlock, choose); !opened) return opened;
-    }
-    return {};
-  }
-
-  /// A node of which one write failed stores nothing.
-  void close(std::span<const Result<session::Written>> written) {
-    for (auto& [node, storage] : nodes_) {
-      bool all = true;
-      for (std::size_t i = 0; i < changes_.size(); ++i)
-        all = all && (changes_[i].node != node || written[i].has_value());
-      const auto kept = storage->close(all);
-      if (!kept) context_->errors.push_back(not_kept(node, kept.error()));
-      kept_[node] = kept.value_or(session::Kept::unknown);
-      for (const auto& notice : storage->notices()) context_->notices.push_back(notice);
-    }
-  }
-  session::Kept kept(std::uint8_t node) const { return kept_.at(node); }
-
- private:
-  /// Not the controlword, not communication objects, and not the switch that chooses the memory.
-  bool goes_to_memory(const Change& change) const {
-    const auto object = change.target.address;
-    if (object.index < 0x2000 || object.index == 0x6040 || context_->profile == nullptr) return false;
-    const auto& name = context_->profile->rules.store.flash_switch;
-    const auto flash = name.empty() ? Result<drive::Target>{} : drive::resolve(context_->profile, name);
-    return !name.empty() && flash && flash->address != object;
-  }
-
-  static Error not_kept(std::uint8_t node, Error error) {
-    error.message = fmt::format("the values are written, but keeping them failed: {}", error.message);
-    if (!error.node) error.node = node;
-    if (error.code == Errc::sdo_abort)
-      error.hint = "whether the drive keeps them by itself is seen after a power cycle";
-    return error;
-  }
-
-  Context* context_;
-  std::span<const Change> changes_;
-  std::map<std::uint8_t, std::unique_ptr<session::StorageScope>> nodes_;
-  std::map<std::uint8_t, session::Kept> kept_;
-};
 
 report::List change_row(const Change& change, const Result<session::Written>& written, session::Kept kept,
                         bool chinese) {

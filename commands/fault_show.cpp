@@ -26,10 +26,7 @@ std::string code_text(std::uint16_t code, const std::string& words) {
   return fmt::format("0x{:04X} {}", code, words);
 }
 
-/// An object that is not there is no failure of the command: it is told.
-std::string unavailable(const Error& error) {
-  return error.code == Errc::sdo_abort ? "the drive does not have it" : error.message;
-}
+constexpr std::string_view kMissing = "the drive does not have it";
 
 /// Everything one node says of its faults.
 class FaultReport {
@@ -37,10 +34,7 @@ class FaultReport {
   FaultReport(Context& context, std::uint8_t node) : context_(&context), node_(node) {}
 
   Result<Record> make() {
-    auto& session = *context_->session;
-    const auto statusword = session.upload(node_, kStatusword);
-    if (!statusword && statusword.error().code != Errc::sdo_abort)
-      return tl::unexpected<Error>(statusword.error());
+    const auto statusword = read(kStatusword);
     out_ = {{"node", node_}};
     if (statusword) {
       const auto state = drive::decode_state(static_cast<std::uint16_t>(load_le(*statusword)));
@@ -53,6 +47,7 @@ class FaultReport {
     add_alarm();
     add_emergencies();
     add_history();
+    if (failure_) return tl::unexpected<Error>(*failure_);
     // A few are told in full; of many `fault list PANEL` tells more.
     const bool few = candidates_.size() <= kFewFaults;
     for (const auto* fault : candidates_)
@@ -66,6 +61,15 @@ class FaultReport {
   }
 
  private:
+  /// Empty where the drive does not have the object. Every other failure is kept and ends the report.
+  std::optional<Bytes> read(ObjectAddress object) {
+    if (failure_) return std::nullopt;
+    const auto answer = context_->session->upload(node_, object);
+    if (answer) return *answer;
+    if (answer.error().code != Errc::sdo_abort) failure_ = answer.error();
+    return std::nullopt;
+  }
+
   std::string words(std::uint16_t code, const std::array<std::uint8_t, 5>& vendor = {}) {
     if (context_->profile != nullptr)
       for (const auto* fault :
@@ -81,9 +85,9 @@ class FaultReport {
   }
 
   void add_code() {
-    const auto answer = context_->session->upload(node_, kErrorCode);
+    const auto answer = read(kErrorCode);
     if (!answer) {
-      out_.push_back({"code_text", unavailable(answer.error()), Show::text, "error code 603Fh"});
+      out_.push_back({"code_text", std::string(kMissing), Show::text, "error code 603Fh"});
       out_.push_back({"code", Value(), Show::json});
       return;
     }
@@ -95,11 +99,11 @@ class FaultReport {
   }
 
   void add_register() {
-    const auto answer = context_->session->upload(node_, kErrorRegister);
+    const auto answer = read(kErrorRegister);
     const auto bits = answer ? static_cast<std::uint8_t>(load_le(*answer)) : std::uint8_t{0};
     out_.push_back({"register_text",
                     answer ? fmt::format("0x{:02X} {}", bits, canopen::error_register_text(bits))
-                           : unavailable(answer.error()),
+                           : std::string(kMissing),
                     Show::text, "error register 1001h"});
     out_.push_back({"error_register", answer ? Value(bits) : Value(), Show::json});
   }
@@ -109,10 +113,10 @@ class FaultReport {
     if (context_->profile == nullptr || context_->profile->rules.fault.alarm.empty()) return;
     const auto target = drive::resolve(context_->profile, context_->profile->rules.fault.alarm);
     if (!target) return;
-    const auto answer = context_->session->upload(node_, target->address);
+    const auto answer = read(target->address);
     const auto code = answer ? static_cast<std::uint16_t>(load_le(*answer)) : std::uint16_t{0};
     out_.push_back({"alarm_text",
-                    !answer     ? unavailable(answer.error())
+                    !answer     ? std::string(kMissing)
                     : code == 0 ? std::string("none")
                                 : code_text(code, words(code)),
                     Show::text, target->label()});
@@ -140,13 +144,12 @@ class FaultReport {
   }
 
   void add_history() {
-    auto& session = *context_->session;
-    const auto count = session.upload(node_, kHistory);
+    const auto count = read(kHistory);
     List records;
     report::Table table;
     table.columns = {{"number", ""}, {"code"}, {"vendor"}, {"text", "meaning"}};
     for (std::uint8_t i = 1; count && i <= std::min<std::uint64_t>(load_le(*count), kMostHistory); ++i) {
-      const auto entry = session.upload(node_, {kHistory.index, i});
+      const auto entry = read({kHistory.index, i});
       if (!entry) break;
       const auto value = static_cast<std::uint32_t>(load_le(*entry));
       const auto code = static_cast<std::uint16_t>(value & 0xFFFFU);
@@ -158,7 +161,7 @@ class FaultReport {
       table.rows.push_back({i, report::Hex{code, 4}, report::Hex{vendor, 4}, text});
     }
     if (!count)
-      out_.push_back({"history_text", unavailable(count.error()), Show::text, "history 1003h"});
+      out_.push_back({"history_text", std::string(kMissing), Show::text, "history 1003h"});
     else if (table.rows.empty())
       out_.push_back({"history_text", "empty", Show::text, "history 1003h"});
     else
@@ -169,6 +172,7 @@ class FaultReport {
   Context* context_;
   std::uint8_t node_;
   Record out_;
+  std::optional<Error> failure_;
   std::vector<const drive::Fault*> candidates_;
 };
 

@@ -1,11 +1,13 @@
 #include "commands/restoring.hpp"
 
 #include <fmt/format.h>
+#include <map>
 
 #include "base/file.hpp"
 #include "commands/change.hpp"
 #include "commands/comparison.hpp"
 #include "drive/cia402.hpp"
+#include "drive/drive_settings.hpp"
 #include "session/restore.hpp"
 
 namespace servoctl::commands {
@@ -84,8 +86,8 @@ class Restoring {
     if (!word && word.error().code != Errc::sdo_abort) return tl::unexpected<Error>(word.error());
     if (!word || !drive::is_energised(drive::decode_state(static_cast<std::uint16_t>(load_le(*word)))))
       return {};
-    return fail(Errc::refused, fmt::format("node {} is energised: {}", node_, "nothing is restored into it"),
-                "disable it first");
+    return fail(Errc::refused, fmt::format("node {} is energised, its settings are not changed now", node_),
+                "`disable` takes its power away; make sure that the load is held");
   }
 
   bool is_address(ObjectAddress object) const {
@@ -104,10 +106,29 @@ class Restoring {
     return store_le(number - backup_->identity.node + node_, 4);
   }
 
+  /// Only what this drive's own data calls a setting is ever written, whatever the file says.
+  Result<void> leave_out(const Backup::Entry& entry, std::string_view reason) {
+    const auto what = fmt::format("{}:{}: {} is no setting of this drive: {}", title_, entry.line,
+                                  to_string(entry.object), reason);
+    if (!options_.force) return fail(Errc::refused, what, "nothing was written; --force restores the rest");
+    context_->notices.push_back(what + "; it is left out");
+    return {};
+  }
+
   Result<void> read_present() {
+    std::map<ObjectAddress, std::string_view> settings;
+    for (const auto& setting : drive::settings_of(*context_->profile))
+      settings.emplace(setting.entry->address, setting.left_out);
     std::vector<ObjectAddress> objects;
     for (const auto& entry : backup_->entries) {
       if (!entry.bytes || (is_address(entry.object) && !options_.with_address)) continue;
+      const auto setting = settings.find(entry.object);
+      const auto reason =
+          setting == settings.end() ? std::string_view("not in its data, or read-only") : setting->second;
+      if (!reason.empty()) {
+        if (const auto left_out = leave_out(entry, reason); !left_out) return left_out;
+        continue;
+      }
       wanted_.emplace(entry.object, for_this_node(entry.object, *entry.bytes));
       objects.push_back(entry.object);
     }
@@ -191,10 +212,12 @@ class Restoring {
           to_string(object));
       context_->errors.push_back(std::move(error));
     }
-    return result(
-        std::move(record),
-        outcome.astray.empty() ? "failed; what was written stays written" : "failed; see the errors",
-        outcome);
+    return result(std::move(record), failed_state(outcome), outcome);
+  }
+
+  static std::string_view failed_state(const session::RestoreOutcome& outcome) {
+    if (outcome.all_written) return "written and read back; see the error";
+    return outcome.astray.empty() ? "failed; what was written stays written" : "failed; see the errors";
   }
 
   static Value kept_value(const std::optional<session::RestoreOutcome>& outcome) {

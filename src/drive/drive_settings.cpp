@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
+#include <utility>
+
+#include "drive/naming.hpp"
 
 namespace servoctl::drive {
 namespace {
@@ -22,15 +26,31 @@ std::string_view reason(const od::Entry& entry, const od::Parameter* parameter) 
   return {};
 }
 
+/// What chooses the memory and what opens the lock are means of writing: a restore that wrote them midway
+/// would send the rest elsewhere.
+std::vector<std::pair<ObjectAddress, std::string_view>> means_of_writing(const Profile& profile) {
+  std::vector<std::pair<ObjectAddress, std::string_view>> out;
+  const auto add = [&](const std::string& name, std::string_view reason) {
+    if (name.empty()) return;
+    if (const auto target = resolve(&profile, name)) out.emplace_back(target->address, reason);
+  };
+  add(profile.rules.store.flash_switch, "memory switch");
+  if (profile.rules.store.unlock_open) add(profile.rules.store.unlock, "password");
+  return out;
+}
+
 }  // namespace
 
 std::vector<DriveSetting> settings_of(const Profile& profile) {
+  const auto means = means_of_writing(profile);
   std::vector<DriveSetting> out;
   for (const auto& object : profile.dictionary.objects())
     for (const auto& entry : object.entries) {
       if (!od::writable(entry.access)) continue;
       const auto* parameter = profile.parameter(entry.address);
-      out.push_back({&entry, parameter, reason(entry, parameter)});
+      const auto mean = std::find_if(means.begin(), means.end(),
+                                     [&](const auto& each) { return each.first == entry.address; });
+      out.push_back({&entry, parameter, mean != means.end() ? mean->second : reason(entry, parameter)});
     }
   return out;
 }

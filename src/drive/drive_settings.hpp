@@ -11,11 +11,13 @@ namespace servoctl::drive {
 struct DriveSetting {
   const od::Entry* entry = nullptr;
   const od::Parameter* parameter = nullptr;
-  std::string_view left_out;  ///< `write-only`, `command`, `volatile`, `process data`, `domain`
+  std::string_view left_out;  ///< `write-only`, `command`, `volatile`, `process data`, `domain`,
+                              ///< `memory switch`, `password`
 };
 
 /// Everything of a drive that can be written, in rising address. What moves the drive (controlword, targets,
-/// offsets, outputs), what is read off it, and what starts an action are no settings.
+/// offsets, outputs), what is read off it, what starts an action, and what chooses the memory or opens the
+/// lock for the writes themselves are no settings.
 std::vector<DriveSetting> settings_of(const Profile& profile);
 
 }  // namespace servoctl::drive

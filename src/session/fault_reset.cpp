@@ -4,6 +4,7 @@
 
 #include "drive/cia402.hpp"
 #include "drive/quantity.hpp"
+#include "session/deaf.hpp"
 
 namespace servoctl::session {
 namespace {
@@ -36,15 +37,22 @@ Result<bool> left_fault(Session& session, std::uint8_t node) {
   }
 }
 
+/// Writes the edge and takes it back, whatever becomes of it: while bit 7 stays set the drive obeys no other
+/// command, so neither Ctrl-C nor a lost answer may come between the two.
 Result<bool> by_controlword(Session& session, std::uint8_t node) {
-  for (const std::uint16_t word : {std::uint16_t{0}, kResetEdge})
-    if (const auto written = session.download(node, kControlword, store_le(word, 2)); !written)
-      return tl::unexpected<Error>(written.error());
-  const auto left = left_fault(session, node);
-  // While bit 7 stays set the drive obeys nothing else.
-  if (const auto released = session.download(node, kControlword, store_le(0, 2)); !released)
-    return tl::unexpected<Error>(released.error());
-  return left;
+  const auto prepared = session.download(node, kControlword, store_le(0, 2));
+  if (!prepared) return tl::unexpected<Error>(prepared.error());
+  const Deaf deaf(session);
+  const auto edge = session.download(node, kControlword, store_le(kResetEdge, 2));
+  const auto left = edge ? left_fault(session, node) : tl::unexpected<Error>(edge.error());
+  const auto released = session.download(node, kControlword, store_le(0, 2));
+  if (left && released) return left;
+  auto error = left ? released.error() : left.error();
+  if (!released)
+    error.hint =
+        "bit 7 of the controlword may still be set, then the drive obeys no other command: "
+        "`write 0x6040 0` takes it back";
+  return fail(std::move(error));
 }
 
 Result<bool> by_settings(Session& session, const drive::Profile& profile, std::uint8_t node) {
@@ -59,6 +67,20 @@ Result<bool> by_settings(Session& session, const drive::Profile& profile, std::u
     if (!left || *left) return left;
   }
   return false;
+}
+
+/// A drive without fault must be without power as well: another master may hold an enabling controlword.
+Result<FaultReset> check_power(Session& session, std::uint8_t node) {
+  const auto state = read_state(session, node);
+  if (!state) return tl::unexpected<Error>(state.error());
+  if (!drive::is_energised(*state)) return FaultReset::done;
+  Error error;
+  error.code = Errc::negative;
+  error.node = node;
+  error.message = fmt::format("node {}: the fault is reset, and the drive is in {}: it is energised", node,
+                              drive::name(*state));
+  error.hint = "another master commands it; stop and disable it, or take its power away";
+  return fail(std::move(error));
 }
 
 }  // namespace
@@ -82,7 +104,7 @@ Result<FaultReset> reset_fault(Session& session, const drive::Profile* profile, 
   if (profile == nullptr || profile->rules.fault.by_controlword) left = by_controlword(session, node);
   if (left && !*left && profile != nullptr) left = by_settings(session, *profile, node);
   if (!left) return tl::unexpected<Error>(left.error());
-  if (*left) return FaultReset::done;
+  if (*left) return check_power(session, node);
   Error error;
   error.code = Errc::negative;
   error.node = node;

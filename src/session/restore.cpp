@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "session/deaf.hpp"
 #include "session/write.hpp"
 
 namespace servoctl::session {
@@ -89,6 +90,7 @@ class Run {
     for (const auto& step : plan) touched_.insert(step.object);
     if (done) done = write(plan, out_.writes);
     if (done) done = check();
+    out_.all_written = done.has_value();
     if (!done) {
       out_.failure = done.error();
       if (options.roll_back) go_back();
@@ -134,15 +136,13 @@ class Run {
 
   /// Reads where things stand, puts back what is not as it was, and reads again. Deaf to Ctrl-C.
   void go_back() {
-    const auto before = session_->options();
-    session_->options().cancelled = {};
+    const Deaf deaf(*session_);
     auto now = read_touched();
     for (const auto object : touched_)
       if (now.count(object) == 0) now.emplace(object, other_than(present_->at(object)));
     std::size_t ignored = 0;
     if (!silent_) (void)write(plan_writes(profile_, now, *present_), ignored);
     now = silent_ ? Values{} : read_touched();
-    session_->options() = before;
     for (const auto object : touched_) {
       const auto found = now.find(object);
       if (found == now.end() || found->second != present_->at(object)) out_.astray.push_back(object);

@@ -32,12 +32,17 @@ struct RestoreOptions {
   bool unlock = false;
 };
 
-/// What came of a restore. The three ways it can end: `failure` is empty and every value is as wanted;
-/// `failure` says what went wrong and `astray` is empty: every value is as it was before; `astray` names the
-/// objects of which neither can be said.
+/// What came of a restore. The ways it can end:
+/// - `failure` is empty: every value is as wanted, read back, and kept as `kept` says;
+/// - `failure` and `all_written`: every value is as wanted, but keeping it, or locking the drive again,
+///   failed;
+/// - `failure` and `rolled_back`: every value is as it was before;
+/// - `failure` and `astray`: these objects could not be shown to be as they were before;
+/// - `failure` alone: `roll_back` was false, what was written stays written.
 struct RestoreOutcome {
   std::size_t writes = 0;  ///< That were acknowledged and read back, of the way there.
   std::optional<Error> failure;
+  bool all_written = false;
   bool rolled_back = false;
   std::vector<ObjectAddress> astray;
   Kept kept = Kept::unknown;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "drive/quantity.hpp"
+#include "session/deaf.hpp"
 
 namespace servoctl::session {
 namespace {
@@ -14,7 +15,7 @@ constexpr std::uint16_t kRestoreIndex = 0x1011;
 constexpr std::uint32_t kSave = 0x6576'6173;  ///< "save" (CiA 301, 7.5.2.13)
 constexpr std::uint32_t kLoad = 0x6461'6F6C;  ///< "load" (CiA 301, 7.5.2.14)
 
-/// The session with more patience for one answer, and deaf to Ctrl-C: what was begun is put in order first.
+/// The session with more patience for one answer.
 class Patience {
  public:
   Patience(Session& session, Duration timeout) : session_(&session), before_(session.options()) {
@@ -52,6 +53,12 @@ Result<void> write_settings(Session& session, const drive::Profile& profile, std
   for (const auto& setting : settings)
     if (const auto written = write_setting(session, profile, node, setting); !written) return written;
   return {};
+}
+
+/// One thing went wrong, and then another.
+void add_to(Error& first, const Error& next) {
+  first.message += "; " + next.message;
+  if (first.hint.empty()) first.hint = next.hint;
 }
 
 bool by_objects(const drive::Profile* profile) { return profile == nullptr || profile->rules.store.objects; }
@@ -121,6 +128,14 @@ Result<void> StorageScope::choose_memory() {
 Result<void> StorageScope::open(bool keep, bool unlock, bool choose) {
   open_ = true;
   keep_ = keep;
+  const auto prepared = prepare(unlock, choose);
+  if (prepared) return {};
+  auto error = prepared.error();
+  if (const auto closed = close(false); !closed) add_to(error, closed.error());
+  return fail(std::move(error));
+}
+
+Result<void> StorageScope::prepare(bool unlock, bool choose) {
   if (profile_ == nullptr) return {};
   const auto& rules = profile_->rules.store;
   if (choose)
@@ -134,17 +149,29 @@ Result<void> StorageScope::open(bool keep, bool unlock, bool choose) {
 
 Result<Kept> StorageScope::close(bool all_written) {
   if (!std::exchange(open_, false)) return Kept::unknown;
-  const Patience deaf(*session_, Duration::zero());
-  session_->options().cancelled = {};
+  const Deaf deaf(*session_);
   const bool has_switch = profile_ != nullptr && !profile_->rules.store.flash_switch.empty();
-  Result<void> stored;
+  std::optional<Error> wrong;
+  const auto note = [&](const Result<void>& result, std::string_view what, std::string_view hint) {
+    if (result) return;
+    auto error = result.error();
+    error.message = fmt::format("{}: {}", what, error.message);
+    if (!hint.empty()) error.hint = hint;
+    error.node = node_;
+    if (wrong)
+      add_to(*wrong, error);
+    else
+      wrong = std::move(error);
+  };
   if (keep_ && all_written && !has_switch)
-    stored = store_parameters(*session_, profile_, node_, ParameterGroup::all);
-  const auto locked = put_back(password_);
+    note(store_parameters(*session_, profile_, node_, ParameterGroup::all),
+         "the values are written, but keeping them failed",
+         "whether the drive keeps them by itself is seen after a power cycle; `store` tries again");
+  note(put_back(password_), "the password could not be taken back, the drive may still be unlocked", {});
   // A switch that chose the RAM stays there: the next trial wants it, and writing it back wears the flash.
-  const auto back = keep_ || !all_written ? put_back(memory_) : Result<void>{};
-  for (const auto* result : {&std::as_const(stored), &locked, &back})
-    if (!*result) return tl::unexpected<Error>(result->error());
+  if (keep_ || !all_written)
+    note(put_back(memory_), "the switch that chooses the memory could not be put back", {});
+  if (wrong) return fail(std::move(*wrong));
   if (has_switch) return keep_ && all_written ? Kept::yes : Kept::no;
   return keep_ && all_written ? Kept::yes : Kept::unknown;
 }

@@ -43,9 +43,10 @@ class StorageScope {
 
   /// Before the writes. `choose` is false for writes that no memory is chosen for: the controlword, the
   /// communication objects, the switch itself. Errc::usage when `unlock` is wanted and the family has no
-  /// password.
+  /// password. After an error what had been changed is put back, or the message says that it is not.
   Result<void> open(bool keep, bool unlock, bool choose);
-  /// After them. Stores only when `all_written`, and only if open() was told to keep.
+  /// After them. Stores only when `all_written`, and only if open() was told to keep. The error says all that
+  /// went wrong: values that are written but not kept, a password or a switch that could not be put back.
   Result<Kept> close(bool all_written);
 
   /// What was done beside the writes, in words.
@@ -58,6 +59,7 @@ class StorageScope {
     Bytes now;
   };
 
+  Result<void> prepare(bool unlock, bool choose);
   Result<void> set(const std::string& name, std::int64_t value, std::optional<Changed>& out);
   Result<void> put_back(std::optional<Changed>& changed);
   Result<void> choose_memory();

@@ -1,80 +1,11 @@
 // Backup, diff and verify, as a user runs them.
-#include <gtest/gtest.h>
-
-#include <fmt/format.h>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-
-#include "cli/line_runner.hpp"
-#include "cli/shell.hpp"
+#include "backup_fixture.hpp"
 #include "drive/drive_settings.hpp"
-#include "recording_console.hpp"
 
 namespace servoctl::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-class BackupTest : public testing::Test {
- protected:
-  void SetUp() override {
-    folder = fs::temp_directory_path() / fmt::format("servoctl-backup-{}", ::getpid());
-    fs::remove_all(folder);
-    fs::create_directories(folder);
-    ::setenv("SOURCE_DATE_EPOCH", "1795000000", 1);
-  }
-  void TearDown() override {
-    ::unsetenv("SOURCE_DATE_EPOCH");
-    fs::remove_all(folder);
-  }
-
-  /// Runs a line on the bus; a file is named by %, in the test's folder.
-  int run(std::string line) {
-    console.out_text.clear();
-    console.err_text.clear();
-    for (auto place = line.find('%'); place != std::string::npos; place = line.find('%'))
-      line.replace(place, 1, folder.string() + "/");
-    return LineRunner(shell()).run(line);
-  }
-  void use(const std::string& bus, const std::string& family) {
-    shell_.reset();
-    bus_ = bus;
-    family_ = family;
-  }
-  Shell& shell() {
-    if (!shell_) {
-      Shell::Options options;
-      options.drive_folders = {fs::path(SERVOCTL_SOURCE_DIR) / "eds"};
-      options.clock = sim::SimBus::Clock::virtual_time;
-      options.defaults.bus = bus_;
-      options.defaults.drive = family_;
-      options.defaults.nodes = "1";
-      shell_ = std::make_unique<Shell>(console, std::move(options));
-    }
-    return *shell_;
-  }
-  std::string slurp(const std::string& name) {
-    std::ostringstream out;
-    out << std::ifstream(folder / name).rdbuf();
-    return out.str();
-  }
-  void spill(const std::string& name, const std::string& text) { std::ofstream(folder / name) << text; }
-  std::string replaced(std::string text, std::string_view from, std::string_view to) {
-    const auto place = text.find(from);
-    EXPECT_NE(place, std::string::npos) << from;
-    return place == std::string::npos ? text : text.replace(place, from.size(), to);
-  }
-
-  fs::path folder;
-  RecordingConsole console;
-
- private:
-  std::string bus_ = "sim:gsd600@1";
-  std::string family_ = "gsd600";
-  std::unique_ptr<Shell> shell_;
-};
 
 TEST_F(BackupTest, OfEveryFamilyIsWhatTheDriveHolds) {
   for (const auto* family : {"da200", "dm", "gsd600", "sv2", "ts"}) {
@@ -188,97 +119,6 @@ TEST_F(BackupTest, OfAnotherFamilyIsRefused) {
   EXPECT_EQ(run("verify %gsd.json"), 8);
   ASSERT_EQ(run("backup %dm.json"), 0);
   EXPECT_EQ(run("diff %gsd.json %dm.json"), 1);
-}
-
-struct Changed {
-  const char* family;
-  const char* line;
-};
-
-TEST_F(BackupTest, IsPutBackIntoEveryFamily) {
-  for (const auto& c : {Changed{"da200", "param set P5.12 77"}, Changed{"dm", "write 6065h 1.25"},
-                        Changed{"gsd600", "param set Pn0214=450 Pn0215=900"},
-                        Changed{"sv2", "write 2001h:1 60"}, Changed{"ts", "param set Fn_33=120 Fn_3A=3"}}) {
-    SCOPED_TRACE(c.family);
-    use(fmt::format("sim:{}@1", c.family), c.family);
-    ASSERT_EQ(run("backup %drive.json"), 0);
-    ASSERT_EQ(run(c.line), 0) << console.err_text;
-    ASSERT_EQ(run("verify %drive.json"), 1);
-    EXPECT_EQ(run("restore %drive.json"), 8) << "it asks";
-    EXPECT_EQ(run("verify %drive.json"), 1);
-    EXPECT_EQ(run("restore %drive.json --dry-run"), 0);
-    EXPECT_EQ(run("verify %drive.json"), 1);
-    ASSERT_EQ(run("restore %drive.json --yes"), 0) << console.out_text << console.err_text;
-    EXPECT_EQ(run("verify %drive.json"), 0) << console.out_text;
-    EXPECT_EQ(run("restore %drive.json --yes"), 0);
-    EXPECT_NE(console.out_text.find("nothing differs"), std::string::npos) << console.out_text;
-  }
-}
-
-TEST_F(BackupTest, IsPutBackAfterTheFactoryValues) {
-  ASSERT_EQ(run("param set Pn0214=450 Pn0202=321"), 0);
-  ASSERT_EQ(run("write 605Ah 5"), 0);
-  ASSERT_EQ(run("backup %mine.json"), 0);
-  ASSERT_EQ(run("defaults --yes"), 0);
-  ASSERT_EQ(run("nmt reset --yes --wait"), 0);
-  ASSERT_EQ(run("verify %mine.json"), 1);
-  ASSERT_EQ(run("restore %mine.json --yes --keep"), 0) << console.err_text;
-  EXPECT_NE(console.out_text.find("kept       yes"), std::string::npos) << console.out_text;
-  ASSERT_EQ(run("nmt reset --yes --wait"), 0);
-  EXPECT_EQ(run("verify %mine.json"), 0) << console.out_text;
-  EXPECT_TRUE(fs::exists(folder / "mine.json.before-node-1.json"));
-  EXPECT_EQ(run("restore %mine.json.before-node-1.json --yes"), 0);
-}
-
-TEST_F(BackupTest, GoesIntoAnotherNodeWithItsOwnAddresses) {
-  use("sim:gsd600@1,gsd600@5", "gsd600");
-  ASSERT_EQ(run("param set Pn0214 450"), 0);
-  ASSERT_EQ(run("backup %one.json"), 0);
-  ASSERT_EQ(run("restore %one.json --yes -n 5"), 0) << console.out_text << console.err_text;
-  EXPECT_NE(console.out_text.find("different  1"), std::string::npos) << console.out_text;
-  EXPECT_EQ(run("param get Pn0214 Pn0049 -n 5 --json"), 0);
-  EXPECT_NE(console.out_text.find("\"raw\":450"), std::string::npos);
-  EXPECT_NE(console.out_text.find("\"raw\":5,"), std::string::npos);
-}
-
-TEST_F(BackupTest, GoesFromOneDriveIntoOthersWithoutAFile) {
-  use("sim:gsd600@1,gsd600@2,gsd600@3", "gsd600");
-  const auto here = fs::current_path();
-  fs::current_path(folder);
-  ASSERT_EQ(run("param set Pn0214=450 Pn0202=321"), 0);
-  EXPECT_EQ(run("clone --from 1 --to 2,3"), 8) << "it asks";
-  EXPECT_EQ(run("clone --from 1 --to 2,1 --yes"), 2);
-  EXPECT_EQ(run("clone --from 1 --to 200 --yes"), 2);
-  EXPECT_EQ(run("clone --from 9 --to 2 --yes --timeout 20ms"), 4);
-  EXPECT_EQ(run("clone --from 1 --to 2,3 --yes"), 0) << console.err_text;
-  EXPECT_EQ(run("param get Pn0214 -n 3 --json"), 0);
-  EXPECT_NE(console.out_text.find("\"raw\":450"), std::string::npos);
-  EXPECT_EQ(run("clone --from 1 --to 2,3 --yes"), 0);
-  EXPECT_NE(console.out_text.find("nothing differs"), std::string::npos);
-  EXPECT_TRUE(fs::exists("before-clone-node-3.json"));
-  fs::current_path(here);
-}
-
-TEST_F(BackupTest, IsNotPutIntoAnEnergisedDriveNorAnotherKind) {
-  ASSERT_EQ(run("backup %drive.json"), 0);
-  for (const auto* word : {"6", "7", "15"}) ASSERT_EQ(run(std::string("write 0x6040 --yes ") + word), 0);
-  EXPECT_EQ(run("restore %drive.json --yes"), 8);
-  EXPECT_NE(console.err_text.find("energised"), std::string::npos) << console.err_text;
-  use("sim:dm@1", "dm");
-  EXPECT_EQ(run("restore %drive.json --yes"), 8);
-  use("sim:dm@1", "gsd600");
-  EXPECT_EQ(run("restore %drive.json --yes"), 8);
-  EXPECT_NE(console.err_text.find("another drive"), std::string::npos) << console.err_text;
-}
-
-TEST_F(BackupTest, IsNotRestoredWhenItWasEdited) {
-  ASSERT_EQ(run("backup %drive.json --only gain"), 0);
-  // The same file as an editor without scruples would leave it: a value beyond its limits, and a checksum
-  // that fits.
-  auto text = replaced(slurp("drive.json"), "\"bytes\":\"90 01\"", "\"bytes\":\"FF FF\"");
-  spill("wild.json", text);
-  EXPECT_EQ(run("restore %wild.json --yes"), 7);
-  EXPECT_EQ(run("verify %drive.json"), 0);
 }
 
 TEST(DriveSettings, HoldNothingThatMovesOrStartsAnything) {

@@ -4,11 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "drive/quantity.hpp"
-#include "sim/sim_bus.hpp"
-#include "sim/sim_drive.hpp"
+#include "troubled_bus.hpp"
 
 namespace servoctl::session {
 namespace {
@@ -16,61 +13,6 @@ namespace {
 using namespace std::chrono_literals;
 
 const std::filesystem::path kFolders[] = {std::filesystem::path(SERVOCTL_SOURCE_DIR) / "eds"};
-
-/// What may go wrong; each is a probability per frame, or the number of the frame at which it happens.
-struct Trouble {
-  double lose = 0;
-  double repeat = 0;
-  int reset_at = -1;
-  int silent_at = -1;
-  int abort_at = -1;
-  int cancel_at = -1;
-};
-
-/// A simulated bus on which things go wrong.
-class TroubledBus final : public can::Bus {
- public:
-  TroubledBus(sim::SimBus& bus, sim::SimDrive& drive, const Trouble& trouble, unsigned seed)
-      : bus_(&bus), drive_(&drive), trouble_(trouble), random_(seed) {}
-
-  TimePoint now() const override { return bus_->now(); }
-  TimePoint next_event() const override { return bus_->next_event(); }
-  Result<void> send(const can::Frame& frame) override {
-    const int number = frames_++;
-    if (number == trouble_.silent_at) drive_->misbehaviour().silent = true;
-    if (number == trouble_.reset_at) (void)bus_->send(*can::parse_frame("000#8101"));
-    if (number == trouble_.abort_at) {
-      // Refused on its way: the drive never sees it.
-      auto refusal = *can::parse_frame("581#8000000000000008");
-      std::copy_n(frame.data.begin() + 1, 3, refusal.data.begin() + 1);
-      waiting_ = refusal;
-      return {};
-    }
-    if (chance(trouble_.lose)) return {};
-    return bus_->send(frame);
-  }
-  Result<std::optional<can::Frame>> receive(TimePoint deadline) override {
-    if (waiting_) return std::exchange(waiting_, std::nullopt);
-    for (;;) {
-      auto frame = bus_->receive(deadline);
-      if (!frame || !*frame) return frame;
-      if (chance(trouble_.lose)) continue;
-      if (chance(trouble_.repeat)) waiting_ = **frame;
-      return frame;
-    }
-  }
-  int frames() const { return frames_; }
-
- private:
-  bool chance(double probability) { return std::bernoulli_distribution(probability)(random_); }
-
-  sim::SimBus* bus_;
-  sim::SimDrive* drive_;
-  Trouble trouble_;
-  std::mt19937 random_;
-  std::optional<can::Frame> waiting_;
-  int frames_ = 0;
-};
 
 class World {
  public:
@@ -168,62 +110,47 @@ TEST(Restore, OfWhatIsThereWritesNothing) {
   EXPECT_TRUE(plan_writes(&world.profile(), world.present, world.present).empty());
 }
 
-TEST(Restore, PutsEverythingBackAfterARefusalAtAnyStep) {
+/// Runs a restore once for each of its frames, with trouble at that frame; `expect` says what has to come of
+/// it beside the promise.
+void with_trouble_at_every_step(int Trouble::*kind,
+                                const std::function<void(const RestoreOutcome&)>& expect) {
   World measure;
   (void)measure.run({}, 1);
   for (int step = 0; step < measure.frames; ++step) {
     SCOPED_TRACE(step);
     World world;
     Trouble trouble;
-    trouble.abort_at = step;
+    trouble.*kind = step;
     const auto outcome = world.run(trouble, 1);
-    ASSERT_TRUE(outcome.failure);
-    EXPECT_TRUE(outcome.rolled_back);
+    expect(outcome);
     expect_kept(world, outcome);
   }
+}
+
+TEST(Restore, PutsEverythingBackAfterARefusalAtAnyStep) {
+  with_trouble_at_every_step(&Trouble::abort_at, [](const RestoreOutcome& outcome) {
+    ASSERT_TRUE(outcome.failure);
+    EXPECT_TRUE(outcome.rolled_back);
+  });
 }
 
 TEST(Restore, PutsEverythingBackAfterCtrlCAtAnyStep) {
-  World measure;
-  (void)measure.run({}, 1);
-  for (int step = 0; step < measure.frames; step += 3) {
-    SCOPED_TRACE(step);
-    World world;
-    Trouble trouble;
-    trouble.cancel_at = step;
-    const auto outcome = world.run(trouble, 1);
+  with_trouble_at_every_step(&Trouble::cancel_at, [](const RestoreOutcome& outcome) {
     ASSERT_TRUE(outcome.failure);
     EXPECT_EQ(outcome.failure->code, Errc::interrupted);
     EXPECT_TRUE(outcome.rolled_back);
-    expect_kept(world, outcome);
-  }
+  });
 }
 
 TEST(Restore, NamesWhatIsUncertainWhenTheDriveFallsSilentAtAnyStep) {
-  World measure;
-  (void)measure.run({}, 1);
-  for (int step = 0; step < measure.frames; ++step) {
-    SCOPED_TRACE(step);
-    World world;
-    Trouble trouble;
-    trouble.silent_at = step;
-    const auto outcome = world.run(trouble, 1);
+  with_trouble_at_every_step(&Trouble::silent_at, [](const RestoreOutcome& outcome) {
     ASSERT_TRUE(outcome.failure);
     EXPECT_FALSE(outcome.astray.empty());
-    expect_kept(world, outcome);
-  }
+  });
 }
 
 TEST(Restore, NoticesADriveThatRestartsInBetween) {
-  World measure;
-  (void)measure.run({}, 1);
-  for (int step = 0; step < measure.frames; ++step) {
-    SCOPED_TRACE(step);
-    World world;
-    Trouble trouble;
-    trouble.reset_at = step;
-    expect_kept(world, world.run(trouble, 1));
-  }
+  with_trouble_at_every_step(&Trouble::reset_at, [](const RestoreOutcome&) {});
 }
 
 TEST(Restore, KeepsItsPromiseInAThousandRunsOnABadBus) {

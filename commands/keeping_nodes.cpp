@@ -1,0 +1,54 @@
+#include "commands/keeping_nodes.hpp"
+
+#include <algorithm>
+
+namespace servoctl::commands {
+
+KeepingNodes::KeepingNodes(Context& context, std::span<const Change> changes)
+    : context_(&context), changes_(changes) {
+  for (const auto& change : changes)
+    if (nodes_.find(change.node) == nodes_.end())
+      nodes_.emplace(change.node,
+                     std::make_unique<session::StorageScope>(*context.session, context.profile, change.node));
+}
+
+Result<void> KeepingNodes::open(const WriteOptions& options) {
+  for (auto& each : nodes_) {
+    const auto node = each.first;
+    const bool choose = std::any_of(changes_.begin(), changes_.end(), [&](const Change& change) {
+      return change.node == node && goes_to_memory(change);
+    });
+    const auto opened = each.second->open(options.keep, options.unlock, choose);
+    if (opened) continue;
+    for (auto& [number, storage] : nodes_) close_node(number, *storage, false);
+    return opened;
+  }
+  return {};
+}
+
+void KeepingNodes::close(std::span<const Result<session::Written>> written) {
+  for (auto& [node, storage] : nodes_) {
+    bool all = true;
+    for (std::size_t i = 0; i < changes_.size(); ++i)
+      all = all && (changes_[i].node != node || written[i].has_value());
+    close_node(node, *storage, all);
+  }
+}
+
+void KeepingNodes::close_node(std::uint8_t node, session::StorageScope& storage, bool all_written) {
+  const auto kept = storage.close(all_written);
+  if (!kept) context_->errors.push_back(kept.error());
+  kept_[node] = kept.value_or(session::Kept::unknown);
+  for (const auto& notice : storage.notices()) context_->notices.push_back(notice);
+}
+
+/// Not the controlword, not communication objects, and not the switch that chooses the memory.
+bool KeepingNodes::goes_to_memory(const Change& change) const {
+  const auto object = change.target.address;
+  if (object.index < 0x2000 || object.index == 0x6040 || context_->profile == nullptr) return false;
+  const auto& name = context_->profile->rules.store.flash_switch;
+  const auto flash = name.empty() ? Result<drive::Target>{} : drive::resolve(context_->profile, name);
+  return !name.empty() && flash && flash->address != object;
+}
+
+}  // namespace servoctl::commands

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+
+#include "commands/change.hpp"
+#include "session/storage.hpp"
+
+namespace servoctl::commands {
+
+/// The storage of every node that is written to by one command.
+class KeepingNodes {
+ public:
+  /// `changes` outlive it.
+  KeepingNodes(Context& context, std::span<const Change> changes);
+
+  /// Before the writes. After an error nothing is open any more.
+  Result<void> open(const WriteOptions& options);
+  /// After the writes: a node of which one write failed stores nothing. What goes wrong is in
+  /// `context.errors`.
+  void close(std::span<const Result<session::Written>> written);
+
+  session::Kept kept(std::uint8_t node) const { return kept_.at(node); }
+
+ private:
+  bool goes_to_memory(const Change& change) const;
+  void close_node(std::uint8_t node, session::StorageScope& storage, bool all_written);
+
+  Context* context_;
+  std::span<const Change> changes_;
+  std::map<std::uint8_t, std::unique_ptr<session::StorageScope>> nodes_;
+  std::map<std::uint8_t, session::Kept> kept_;
+};
+
+}  // namespace servoctl::commands

@@ -1,0 +1,153 @@
+// Restore and clone, as a user runs them.
+#include "backup_fixture.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+using RestoreTest = BackupTest;
+
+struct Changed {
+  const char* family;
+  const char* line;
+};
+
+TEST_F(RestoreTest, IsPutBackIntoEveryFamily) {
+  for (const auto& c : {Changed{"da200", "param set P5.12 77"}, Changed{"dm", "write 6065h 1.25"},
+                        Changed{"gsd600", "param set Pn0214=450 Pn0215=900"},
+                        Changed{"sv2", "write 2001h:1 60"}, Changed{"ts", "param set Fn_33=120 Fn_3A=3"}}) {
+    SCOPED_TRACE(c.family);
+    use(fmt::format("sim:{}@1", c.family), c.family);
+    ASSERT_EQ(run("backup %drive.json"), 0);
+    ASSERT_EQ(run(c.line), 0) << console.err_text;
+    ASSERT_EQ(run("verify %drive.json"), 1);
+    EXPECT_EQ(run("restore %drive.json"), 8) << "it asks";
+    EXPECT_EQ(run("verify %drive.json"), 1);
+    EXPECT_EQ(run("restore %drive.json --dry-run"), 0);
+    EXPECT_EQ(run("verify %drive.json"), 1);
+    ASSERT_EQ(run("restore %drive.json --yes"), 0) << console.out_text << console.err_text;
+    EXPECT_EQ(run("verify %drive.json"), 0) << console.out_text;
+    EXPECT_EQ(run("restore %drive.json --yes"), 0);
+    EXPECT_NE(console.out_text.find("nothing differs"), std::string::npos) << console.out_text;
+  }
+}
+
+TEST_F(RestoreTest, IsPutBackAfterTheFactoryValues) {
+  ASSERT_EQ(run("param set Pn0214=450 Pn0202=321"), 0);
+  ASSERT_EQ(run("write 605Ah 5"), 0);
+  ASSERT_EQ(run("backup %mine.json"), 0);
+  ASSERT_EQ(run("defaults --yes"), 0);
+  ASSERT_EQ(run("nmt reset --yes --wait"), 0);
+  ASSERT_EQ(run("verify %mine.json"), 1);
+  ASSERT_EQ(run("restore %mine.json --yes --keep"), 0) << console.err_text;
+  EXPECT_NE(console.out_text.find("kept       yes"), std::string::npos) << console.out_text;
+  ASSERT_EQ(run("nmt reset --yes --wait"), 0);
+  EXPECT_EQ(run("verify %mine.json"), 0) << console.out_text;
+  EXPECT_TRUE(fs::exists(folder / "mine.json.before-node-1.json"));
+  EXPECT_EQ(run("restore %mine.json.before-node-1.json --yes"), 0);
+}
+
+TEST_F(RestoreTest, GoesIntoAnotherNodeWithItsOwnAddresses) {
+  use("sim:gsd600@1,gsd600@5", "gsd600");
+  ASSERT_EQ(run("param set Pn0214 450"), 0);
+  ASSERT_EQ(run("backup %one.json"), 0);
+  ASSERT_EQ(run("restore %one.json --yes -n 5"), 0) << console.out_text << console.err_text;
+  EXPECT_NE(console.out_text.find("different  1"), std::string::npos) << console.out_text;
+  EXPECT_EQ(run("param get Pn0214 Pn0049 -n 5 --json"), 0);
+  EXPECT_NE(console.out_text.find("\"raw\":450"), std::string::npos);
+  EXPECT_NE(console.out_text.find("\"raw\":5,"), std::string::npos);
+}
+
+TEST_F(RestoreTest, GoesFromOneDriveIntoOthersWithoutAFile) {
+  use("sim:gsd600@1,gsd600@2,gsd600@3", "gsd600");
+  const auto here = fs::current_path();
+  fs::current_path(folder);
+  ASSERT_EQ(run("param set Pn0214=450 Pn0202=321"), 0);
+  EXPECT_EQ(run("clone --from 1 --to 2,3"), 8) << "it asks";
+  EXPECT_EQ(run("clone --from 1 --to 2,1 --yes"), 2);
+  EXPECT_EQ(run("clone --from 1 --to 200 --yes"), 2);
+  EXPECT_EQ(run("clone --from 9 --to 2 --yes --timeout 20ms"), 4);
+  EXPECT_EQ(run("clone --from 1 --to 2,3 --yes"), 0) << console.err_text;
+  EXPECT_EQ(run("param get Pn0214 -n 3 --json"), 0);
+  EXPECT_NE(console.out_text.find("\"raw\":450"), std::string::npos);
+  EXPECT_EQ(run("clone --from 1 --to 2,3 --yes"), 0);
+  EXPECT_NE(console.out_text.find("nothing differs"), std::string::npos);
+  EXPECT_TRUE(fs::exists("before-clone-node-3.json"));
+  fs::current_path(here);
+}
+
+TEST_F(RestoreTest, IsNotPutIntoAnEnergisedDriveNorAnotherKind) {
+  ASSERT_EQ(run("backup %drive.json"), 0);
+  for (const auto* word : {"6", "7", "15"}) ASSERT_EQ(run(std::string("write 0x6040 --yes ") + word), 0);
+  EXPECT_EQ(run("restore %drive.json --yes"), 8);
+  EXPECT_NE(console.err_text.find("energised"), std::string::npos) << console.err_text;
+  use("sim:dm@1", "dm");
+  EXPECT_EQ(run("restore %drive.json --yes"), 8);
+  use("sim:dm@1", "gsd600");
+  EXPECT_EQ(run("restore %drive.json --yes"), 8);
+  EXPECT_NE(console.err_text.find("another drive"), std::string::npos) << console.err_text;
+}
+
+TEST_F(RestoreTest, IsNotRestoredWhenItWasEdited) {
+  ASSERT_EQ(run("backup %drive.json --only gain"), 0);
+  // The same file as an editor without scruples would leave it: a value beyond its limits, and a checksum
+  // that fits.
+  auto text = replaced(slurp("drive.json"), "\"bytes\":\"90 01\"", "\"bytes\":\"FF FF\"");
+  spill("wild.json", text);
+  EXPECT_EQ(run("restore %wild.json --yes"), 7);
+  EXPECT_EQ(run("verify %drive.json"), 0);
+}
+
+TEST_F(RestoreTest, WritesNoMemorySwitchAndNoPasswordWhateverTheFileSays) {
+  struct Case {
+    const char* family;
+    const char* change;
+    const char* look;  ///< Shows the switch.
+    const char* reason;
+  };
+  for (const auto& c : {Case{"ts", "param set Fn_33=120", "param get Fn_99 --json", "memory switch"},
+                        Case{"sv2", "write 2001h:1 60", "read 2005h:3 --json", "memory switch"}}) {
+    SCOPED_TRACE(c.family);
+    use(fmt::format("sim:{}@1", c.family), c.family);
+    ASSERT_EQ(run("backup %drive.json"), 0);
+    EXPECT_NE(slurp("drive.json").find(c.reason), std::string::npos);
+    ASSERT_EQ(run(c.change), 0);
+    ASSERT_EQ(run(c.look), 0);
+    const auto before = console.out_text;
+    ASSERT_EQ(run("restore %drive.json --yes --keep"), 0) << console.err_text;
+    EXPECT_NE(console.out_text.find("kept       yes"), std::string::npos) << console.out_text;
+    ASSERT_EQ(run(c.look), 0);
+    EXPECT_EQ(console.out_text, before);
+    EXPECT_EQ(run("verify %drive.json"), 0);
+    ASSERT_EQ(run("nmt reset --yes --wait"), 0);
+    EXPECT_EQ(run("verify %drive.json"), 0) << console.out_text;
+  }
+}
+
+TEST_F(RestoreTest, WritesNothingThatThisDriveCallsNoSetting) {
+  // Taken with data of the family that did not know the memory switch yet.
+  for (const auto& file : fs::directory_iterator(eds / "sinsegye")) fs::copy(file.path(), folder);
+  auto rules = slurp("sv2.toml");
+  for (const auto* key : {"flash_switch", "to_ram", "to_flash"})
+    rules = replaced(rules, fmt::format("\n{} =", key), fmt::format("\n# {} =", key));
+  spill("sv2.toml", rules);
+  use("sim:sv2@1", "sv2");
+  ASSERT_EQ(run("backup %drive.json"), 0) << console.err_text;
+  for (const auto& file : fs::directory_iterator(eds / "sinsegye"))
+    fs::remove(folder / file.path().filename());
+  use("sim:sv2@1", "sv2");
+  ASSERT_EQ(run("write 2001h:1 60"), 0);
+  EXPECT_EQ(run("restore %drive.json --yes"), 8);
+  EXPECT_NE(console.err_text.find("0x2005:3 is no setting of this drive: memory switch"), std::string::npos)
+      << console.err_text;
+  EXPECT_EQ(run("verify %drive.json"), 1) << "nothing was written";
+  EXPECT_EQ(run("restore %drive.json --yes --force"), 0) << console.err_text;
+  EXPECT_NE(console.err_text.find("left out"), std::string::npos) << console.err_text;
+  ASSERT_EQ(run("verify %drive.json"), 1);
+  EXPECT_NE(console.out_text.find("different  1\n"), std::string::npos)
+      << "the switch alone: " << console.out_text;
+}
+
+}  // namespace
+}  // namespace servoctl::cli

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "can/bus.hpp"
+#include "sim/sim_bus.hpp"
+#include "sim/sim_drive.hpp"
+
+namespace servoctl::session {
+
+/// What may go wrong; each is a probability per frame, or the number of the frame at which it happens.
+struct Trouble {
+  double lose = 0;
+  double repeat = 0;
+  int reset_at = -1;
+  int silent_at = -1;
+  int abort_at = -1;
+  int cancel_at = -1;
+};
+
+/// A simulated bus on which things go wrong.
+class TroubledBus final : public can::Bus {
+ public:
+  TroubledBus(sim::SimBus& bus, sim::SimDrive& drive, const Trouble& trouble, unsigned seed)
+      : bus_(&bus), drive_(&drive), trouble_(trouble), random_(seed) {}
+
+  TimePoint now() const override { return bus_->now(); }
+  TimePoint next_event() const override { return bus_->next_event(); }
+  Result<void> send(const can::Frame& frame) override {
+    const int number = frames_++;
+    sent_.push_back(can::to_string(frame));
+    if (number == trouble_.silent_at) drive_->misbehaviour().silent = true;
+    if (number == trouble_.reset_at) (void)bus_->send(*can::parse_frame("000#8101"));
+    if (number == trouble_.abort_at) {
+      // Refused on its way: the drive never sees it.
+      auto refusal = *can::parse_frame("581#8000000000000008");
+      std::copy_n(frame.data.begin() + 1, 3, refusal.data.begin() + 1);
+      waiting_ = refusal;
+      return {};
+    }
+    if (chance(trouble_.lose)) return {};
+    return bus_->send(frame);
+  }
+  Result<std::optional<can::Frame>> receive(TimePoint deadline) override {
+    if (waiting_) return std::exchange(waiting_, std::nullopt);
+    for (;;) {
+      auto frame = bus_->receive(deadline);
+      if (!frame || !*frame) return frame;
+      if (chance(trouble_.lose)) continue;
+      if (chance(trouble_.repeat)) waiting_ = **frame;
+      return frame;
+    }
+  }
+  int frames() const { return frames_; }
+  /// In candump notation, whatever became of them.
+  const std::vector<std::string>& sent() const { return sent_; }
+
+ private:
+  bool chance(double probability) { return std::bernoulli_distribution(probability)(random_); }
+
+  sim::SimBus* bus_;
+  sim::SimDrive* drive_;
+  Trouble trouble_;
+  std::mt19937 random_;
+  std::optional<can::Frame> waiting_;
+  int frames_ = 0;
+  std::vector<std::string> sent_;
+};
+
+}  // namespace servoctl::session
