@@ -2,14 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <rapidcheck/gtest.h>
-
-#include <algorithm>
-#include <deque>
-
 #include "canopen/sdo_abort.hpp"
 #include "canopen/sdo_client.hpp"
-#include "canopen/sdo_server.hpp"
+#include "one_object.hpp"
 #include "transcript.hpp"
 
 namespace servoctl::canopen {
@@ -17,29 +12,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-Bytes counted(std::size_t size) {
-  Bytes out(size);
-  for (std::size_t i = 0; i < size; ++i) out[i] = static_cast<std::uint8_t>(i + 1);
-  return out;
-}
-
 Bytes text(std::string_view words) { return {words.begin(), words.end()}; }
-
-class OneObject final : public ObjectStore {
- public:
-  std::uint32_t read(ObjectAddress, Bytes& out) override {
-    out = value;
-    return refusal;
-  }
-  std::uint32_t write(ObjectAddress, ByteSpan data) override {
-    if (refusal == 0) value.assign(data.begin(), data.end());
-    writes += refusal == 0;
-    return refusal;
-  }
-  Bytes value;
-  std::uint32_t refusal = 0;
-  int writes = 0;
-};
 
 TEST(SdoCrc, HasTheCheckValueOfItsPolynomial) {
   EXPECT_EQ(sdo_crc(text("123456789")), 0x31C3);  // CiA 301, 7.2.4.3.16.
@@ -238,174 +211,6 @@ TEST_F(BlockClientTest, RefusesMoreOrLessThanAnnounced) {
   upload({"> 602#A4501F017F000000", "< 582#C2501F0101000000", "> 602#A300000000000000",
           "< 582#0101010101010101", "< 582#0201010101010101", "> 602#80501F0110000706"});
   expect_failure(Errc::protocol, "it sends more than the 1 bytes it announced");
-}
-
-class BlockServerTest : public testing::Test {
- protected:
-  OneObject object;
-  SdoServer server{2, object, {}};
-  TimePoint now{1s};
-};
-
-TEST_F(BlockServerTest, GivesABlock) {
-  object.value = text("123456789");
-  play(server, now,
-       {"< 602#A4501F017F000000", "> 582#C6501F0109000000", "< 602#A300000000000000",
-        "> 582#0131323334353637", "> 582#8238390000000000", "< 602#A2027F0000000000",
-        "> 582#D5C3310000000000", "< 602#A100000000000000"});
-  EXPECT_EQ(server.deadline(), kNever);
-}
-
-TEST_F(BlockServerTest, AnswersOrdinarilyBelowTheSwitchThreshold) {
-  object.value = {1, 2};
-  play(server, now, {"< 602#A4501F017F020000", "> 582#4B501F0101020000"});
-}
-
-TEST_F(BlockServerTest, TakesABlockAndWritesOnce) {
-  play(server, now,
-       {"< 602#C6501F0109000000", "> 582#A4501F017F000000", "< 602#0131323334353637",
-        "< 602#8238390000000000", "> 582#A2027F0000000000", "< 602#8238390000000000",
-        "< 602#D5C3310000000000", "> 582#A100000000000000"});
-  EXPECT_EQ(object.value, text("123456789"));
-  EXPECT_EQ(object.writes, 1);
-}
-
-TEST_F(BlockServerTest, RefusesAWrongCrcAWrongSizeAndItsObject) {
-  play(
-      server, now,
-      {"< 602#C6501F0109000000", "> 582#A4501F017F000000", "< 602#0131323334353637", "< 602#8238390000000000",
-       "> 582#A2027F0000000000", "< 602#D5C3320000000000", "> 582#80501F0104000405"});
-  play(
-      server, now,
-      {"< 602#C2501F010A000000", "> 582#A4501F017F000000", "< 602#0131323334353637", "< 602#8238390000000000",
-       "> 582#A2027F0000000000", "< 602#D500000000000000", "> 582#80501F0113000706"});
-  object.refusal = sdo_abort::kReadOnly;
-  play(
-      server, now,
-      {"< 602#C2501F0109000000", "> 582#A4501F017F000000", "< 602#0131323334353637", "< 602#8238390000000000",
-       "> 582#A2027F0000000000", "< 602#D500000000000000", "> 582#80501F0102000106"});
-  EXPECT_EQ(object.writes, 0);
-}
-
-TEST_F(BlockServerTest, RefusesBlocksWhenItHasNone) {
-  SdoServer::Options options;
-  options.block = false;
-  SdoServer plain(2, object, options);
-  play(plain, now, {"< 602#A4501F017F000000", "> 582#80501F0101000405"});
-  play(plain, now, {"< 602#C6501F0109000000", "> 582#80501F0101000405"});
-}
-
-TEST_F(BlockServerTest, GivesUpWhenTheClientFallsSilent) {
-  object.value = counted(20);
-  play(
-      server, now,
-      {"< 602#A4501F017F000000", "> 582#C6501F0114000000", "< 602#A300000000000000", "> 582#0101020304050607",
-       "> 582#0208090A0B0C0D0E", "> 582#830F101112131400", "+ 0ms", "+ 1s", "> 582#80501F0100000405"});
-}
-
-TEST_F(BlockServerTest, GivesTheClientItsFullTimeForEveryAnswer) {
-  object.value = text("123456789");
-  play(server, now,
-       {"< 602#A4501F017F000000", "> 582#C6501F0109000000", "+ 900ms", "< 602#A300000000000000",
-        "> 582#0131323334353637", "> 582#8238390000000000", "+ 0ms", "+ 900ms", "< 602#A2027F0000000000",
-        "> 582#D5C3310000000000", "+ 999ms", "+ 1ms", "> 582#80501F0100000405"});
-  play(server, now,
-       {"< 602#C6501F0109000000", "> 582#A4501F017F000000", "+ 999ms", "+ 1ms", "> 582#80501F0100000405"});
-}
-
-/// A client and a server with a line between them that loses and doubles frames.
-class Line {
- public:
-  Line(OneObject& object, SdoServer::Options options) : server(2, object, options) {}
-
-  /// Runs until the client has its result; `fate` says for each frame how many copies arrive.
-  template <class Fate>
-  Result<Bytes> run(Fate fate) {
-    for (int round = 0; round < 200'000; ++round) {
-      bool moved = false;
-      while (const auto sent = client.take_frame()) {
-        moved = true;
-        for (int copies = fate(); copies > 0; --copies) server.on_frame(*sent, now);
-      }
-      while (const auto sent = server.take_frame()) {
-        moved = true;
-        for (int copies = fate(); copies > 0; --copies) client.on_frame(*sent, now);
-      }
-      if (auto result = client.take_result()) return std::move(*result);
-      if (moved) continue;
-      now = std::max(now, std::min(client.deadline(), server.deadline()));
-      client.on_time(now);
-      server.on_time(now);
-    }
-    return fail(Errc::bug, "it never ends");
-  }
-
-  SdoClient client{2, 500ms};
-  SdoServer server;
-  TimePoint now{1s};
-};
-
-RC_GTEST_PROP(BlockTransfer, CarriesAnyDataInAnyBlockSize, ()) {
-  const auto data = *rc::gen::container<Bytes>(rc::gen::arbitrary<std::uint8_t>());
-  SdoServer::Options options;
-  options.block_size = *rc::gen::inRange<std::uint8_t>(1, 128);
-  options.crc = *rc::gen::arbitrary<bool>();
-  OneObject object;
-  Line line(object, options);
-  line.client.start_download({0x1F50, 1}, data, line.now, Transfer::block);
-  RC_ASSERT(line.run([] { return 1; }).has_value());
-  RC_ASSERT(object.value == data);
-  line.client.start_upload({0x1F50, 1}, line.now, Transfer::block);
-  const auto read = line.run([] { return 1; });
-  RC_ASSERT(read.has_value());
-  RC_ASSERT(*read == data);
-}
-
-TEST(BlockTransfer, GetsOverTheLossOfAnySingleSegment) {
-  for (int lost = 0; lost < 100; ++lost) {
-    OneObject object;
-    Line line(object, {});
-    int segment =
-        -3;  // Request and answer go before the first segment of a write; the start too before one of a read.
-    const auto fate = [&] { return segment++ == lost ? 0 : 1; };
-    line.client.start_upload({0x1F50, 1}, line.now, Transfer::block);
-    object.value = counted(700);
-    const auto read = line.run(fate);
-    ASSERT_TRUE(read) << lost << ": " << read.error().message;
-    EXPECT_EQ(*read, counted(700));
-    segment = -2;
-    line.client.start_download({0x1F50, 1}, counted(700), line.now, Transfer::block);
-    ASSERT_TRUE(line.run(fate)) << lost;
-    EXPECT_EQ(object.value, counted(700));
-  }
-}
-
-RC_GTEST_PROP(BlockTransfer, NeverDeliversWrongDataOverALineThatLosesAndDoublesFrames, ()) {
-  const auto size = *rc::gen::inRange<std::size_t>(0, 3000);
-  Bytes data(size);
-  for (std::size_t i = 0; i < size; ++i) data[i] = static_cast<std::uint8_t>(i * 31 + i / 256);
-  auto seed = *rc::gen::inRange<std::uint32_t>(1, 1'000'000);
-  const auto one_in = *rc::gen::inRange<std::uint32_t>(5, 400);
-  const auto fate = [&] {
-    seed = seed * 1664525U + 1013904223U;
-    const auto draw = (seed >> 8U) % one_in;
-    return draw == 0 ? 0 : draw == 1 ? 2 : 1;
-  };
-  SdoServer::Options options;
-  options.block_size = *rc::gen::inRange<std::uint8_t>(1, 128);
-  OneObject object;
-  Line line(object, options);
-  line.client.start_download({0x1F50, 1}, data, line.now, Transfer::block);
-  const auto written = line.run(fate);
-  RC_ASSERT(!written.has_value() || object.value == data);
-  RC_ASSERT(written.has_value() || written.error().code != Errc::bug);
-  object.value = data;
-  line.server.reset();
-  (void)line.client.take_frame();
-  line.client.start_upload({0x1F50, 1}, line.now, Transfer::block);
-  const auto read = line.run(fate);
-  RC_ASSERT(!read.has_value() || *read == data);
-  RC_ASSERT(read.has_value() || read.error().code != Errc::bug);
 }
 
 }  // namespace
