@@ -1,30 +1,15 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <vector>
 
 #include "drive/profile.hpp"
 #include "session/session.hpp"
 #include "session/storage.hpp"
+#include "session/write_plan.hpp"
 
 namespace servoctl::session {
-
-/// Values of one drive by object.
-using Values = std::map<ObjectAddress, Bytes>;
-
-/// One write of a plan.
-struct PlannedWrite {
-  ObjectAddress object;
-  Bytes data;
-};
-
-/// The writes that lead from `present` to `wanted`, both over the same objects: only what differs, in rising
-/// address, each PDO by the procedure of CiA 301, 7.5.2.35 (invalid, count 0, entries, count, parameters,
-/// COB-ID) or the family's own. `profile` may be null.
-std::vector<PlannedWrite> plan_writes(const drive::Profile* profile, const Values& present,
-                                      const Values& wanted);
 
 struct RestoreOptions {
   bool roll_back = true;

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "base/bytes.hpp"
+#include "base/object_address.hpp"
+#include "drive/profile.hpp"
+
+namespace servoctl::session {
+
+/// Values of one drive by object.
+using Values = std::map<ObjectAddress, Bytes>;
+
+/// One write of a plan.
+struct PlannedWrite {
+  ObjectAddress object;
+  Bytes data;
+};
+
+/// The writes that lead from `present` to `wanted`, both over the same objects: only what differs, in rising
+/// address, each PDO by the procedure of CiA 301, 7.5.2.35 (invalid, count 0, entries, count, parameters,
+/// COB-ID) or the family's own. `profile` may be null.
+std::vector<PlannedWrite> plan_writes(const drive::Profile* profile, const Values& present,
+                                      const Values& wanted);
+
+}  // namespace servoctl::session
