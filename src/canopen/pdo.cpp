@@ -1,11 +1,18 @@
 #include "canopen/pdo.hpp"
 
+#include <fmt/format.h>
+
+#include "base/number.hpp"
+#include "base/text.hpp"
+#include "canopen/cob_id.hpp"
+
 namespace servoctl::canopen {
 namespace {
 
 constexpr std::uint16_t kFirstReceive = 0x1400;
 constexpr std::uint16_t kFirstTransmit = 0x1800;
 constexpr std::uint16_t kMappingOffset = 0x200;
+constexpr std::uint16_t kMostPdos = 512;
 
 bool bit_at(ByteSpan data, std::size_t bit) {
   return bit / 8 < data.size() && ((data[bit / 8] >> (bit % 8)) & 1U) != 0;
@@ -43,6 +50,41 @@ std::uint16_t Pdo::mapping_index() const {
 }
 
 std::size_t Pdo::bits() const { return bits_of(entries); }
+
+std::string name(PdoDirection direction, std::uint16_t number) {
+  return fmt::format("{}PDO{}", direction == PdoDirection::receive ? 'R' : 'T', number);
+}
+
+std::optional<Pdo> parse_pdo_name(std::string_view text) {
+  const bool receive = starts_with_nocase(text, "RPDO");
+  if (!receive && !starts_with_nocase(text, "TPDO")) return std::nullopt;
+  const auto number = parse_digits(text.substr(4), 10);
+  if (!number || *number == 0 || *number > kMostPdos) return std::nullopt;
+  return Pdo{receive ? PdoDirection::receive : PdoDirection::transmit, static_cast<std::uint16_t>(*number)};
+}
+
+std::optional<PdoPlace> pdo_at(std::uint16_t index) {
+  if (index < kFirstReceive || index >= kFirstTransmit + 2 * kMappingOffset) return std::nullopt;
+  const auto offset = static_cast<std::uint16_t>(index - kFirstReceive);
+  return PdoPlace{index < kFirstTransmit ? PdoDirection::receive : PdoDirection::transmit,
+                  static_cast<std::uint16_t>(offset % kMappingOffset + 1), offset / kMappingOffset % 2 == 1};
+}
+
+std::string_view service_of(std::uint32_t can_id) {
+  const auto in = [can_id](std::uint32_t first, std::uint32_t last) {
+    return can_id >= first && can_id <= last;
+  };
+  if (can_id == kNmt) return "NMT";
+  if (can_id == kSync) return "SYNC";
+  if (can_id == 0x100) return "TIME";
+  if (in(kEmergency + kFirstNode, kEmergency + kLastNode)) return "EMCY";
+  if (in(kSdoAnswer + kFirstNode, kSdoAnswer + kLastNode)) return "SDO";
+  if (in(kSdoRequest + kFirstNode, kSdoRequest + kLastNode)) return "SDO";
+  if (in(kErrorControl + kFirstNode, kErrorControl + kLastNode)) return "error control";
+  if (in(0x001, 0x07F) || in(0x101, 0x180) || in(0x6E0, 0x6FF) || in(0x780, 0x7FF))
+    return "a reserved service";
+  return {};
+}
 
 std::optional<std::vector<Bytes>> unpack_pdo(std::span<const PdoEntry> entries, ByteSpan data) {
   if (bits_of(entries) > data.size() * 8) return std::nullopt;

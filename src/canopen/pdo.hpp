@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/bytes.hpp"
@@ -51,6 +53,25 @@ struct Pdo {
 
   bool operator==(const Pdo&) const = default;
 };
+
+/// `RPDO1`, `TPDO4`.
+std::string name(PdoDirection direction, std::uint16_t number);
+
+/// The PDO of this name, in any case, with nothing of it known yet; empty when the text names none.
+std::optional<Pdo> parse_pdo_name(std::string_view text);
+
+/// Whose record stands at an index.
+struct PdoPlace {
+  PdoDirection direction = PdoDirection::receive;
+  std::uint16_t number = 1;
+  bool mapping = false;  ///< The mapping record, not the communication record.
+};
+/// Empty for indexes other than 1400h to 1BFFh.
+std::optional<PdoPlace> pdo_at(std::uint16_t index);
+
+/// The service that CiA 301 gives this CAN-ID (7.3.5 and table 40), which no PDO may use: `NMT`, `SDO`, `a
+/// reserved service`; empty when a PDO may.
+std::string_view service_of(std::uint32_t can_id);
 
 /// Cuts the data of a frame into the raw bits of each entry, low bits first, each rounded up to whole bytes;
 /// gaps give empty bytes. Empty when the frame is shorter than the mapping.
