@@ -8,6 +8,7 @@
 
 #include "base/file.hpp"
 #include "base/number.hpp"
+#include "commands/field_reader.hpp"
 #include "commands/reading.hpp"
 
 namespace servoctl::commands {
@@ -45,15 +46,6 @@ class Checksum {
   std::uint64_t hash_ = 0xCBF2'9CE4'8422'2325U;
 };
 
-std::string checksum(const Backup& backup) {
-  Checksum sum;
-  sum.add(backup.family);
-  for (const auto& entry : backup.entries)
-    sum.add(fmt::format("\n{} {} {} {}", to_string(entry.object), od::name(entry.type),
-                        entry.bytes ? to_hex(*entry.bytes, "") : "-", entry.left_out));
-  return sum.text();
-}
-
 Value number_or_null(const std::optional<std::uint32_t>& number) { return number ? Value(*number) : Value(); }
 
 Record identity_record(const session::Identity& i) {
@@ -85,34 +77,6 @@ Record entry_record(const Context& context, const Backup& backup, const Backup::
   if (!entry.left_out.empty()) out.push_back({"left_out", entry.left_out});
   return out;
 }
-
-/// Reads the fields of a record; remembers the first that is missing or of another kind.
-class FieldReader {
- public:
-  FieldReader(const Value& record, std::string_view where) : record_(&record), where_(where) {}
-
-  std::string text(std::string_view key, bool required = false) {
-    const auto* value = report::find(*record_, key);
-    const auto* out = value == nullptr ? nullptr : std::get_if<std::string>(&value->data());
-    if (out == nullptr && (required || (value != nullptr && !value->is_null()))) refuse(key);
-    return out == nullptr ? std::string() : *out;
-  }
-  std::optional<std::uint64_t> number(std::string_view key, bool required = false) {
-    const auto* value = report::find(*record_, key);
-    const auto* out = value == nullptr ? nullptr : std::get_if<std::uint64_t>(&value->data());
-    if (out == nullptr && (required || (value != nullptr && !value->is_null()))) refuse(key);
-    return out == nullptr ? std::nullopt : std::optional(*out);
-  }
-  void refuse(std::string_view key) {
-    if (!error_) error_ = fmt::format("{}: '{}' is missing or wrong", where_, key);
-  }
-  const std::optional<std::string>& error() const { return error_; }
-
- private:
-  const Value* record_;
-  std::string where_;
-  std::optional<std::string> error_;
-};
 
 std::optional<std::uint32_t> narrow(std::optional<std::uint64_t> number) {
   return number ? std::optional(static_cast<std::uint32_t>(*number)) : std::nullopt;
@@ -191,6 +155,15 @@ Result<void> read_entries(const Value& document, std::uint32_t line, std::string
 }
 
 }  // namespace
+
+std::string checksum(const Backup& backup) {
+  Checksum sum;
+  sum.add(backup.family);
+  for (const auto& entry : backup.entries)
+    sum.add(fmt::format("\n{} {} {} {}", to_string(entry.object), od::name(entry.type),
+                        entry.bytes ? to_hex(*entry.bytes, "") : "-", entry.left_out));
+  return sum.text();
+}
 
 Backup make_backup(const Context& context, const session::Snapshot& snapshot) {
   Backup out;

@@ -33,6 +33,9 @@ struct Backup {
 /// The backup of a snapshot, with names and types of the family.
 Backup make_backup(const Context& context, const session::Snapshot& snapshot);
 
+/// A checksum of everything a restore would use.
+std::string checksum(const Backup& backup);
+
 /// The file's text: JSON, one entry a line, with a checksum over node-independent content.
 std::string backup_text(const Context& context, const Backup& backup);
 

@@ -19,6 +19,7 @@ constexpr Parameter kParameters[] = {
     {.name = "--force", .help = "although identities differ", .kind = Kind::flag},
     kKeepOption,
     kUnlockOption,
+    kResumeOption,
 };
 
 Result<std::vector<std::uint8_t>> nodes_of(std::string_view text) {
@@ -48,9 +49,10 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   for (const auto node : *to) {
     auto done = put_into(context, backup, fmt::format("node {}", from->front()), node,
                          fmt::format("before-clone-node-{}.json", node),
-                         {.force = arguments.has("--force"),
+                         {.choice = {.force = arguments.has("--force")},
                           .keep = arguments.has("--keep"),
-                          .unlock = arguments.has("--unlock")});
+                          .unlock = arguments.has("--unlock"),
+                          .resume = arguments.has("--resume")});
     // One that went wrong ends the work: the others stay as they are.
     if (!done && out.empty()) return done;
     if (!done) {

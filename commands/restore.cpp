@@ -2,6 +2,7 @@
 
 #include "commands/change.hpp"
 #include "commands/command.hpp"
+#include "commands/restore_journal.hpp"
 #include "commands/restoring.hpp"
 
 namespace servoctl::commands {
@@ -16,6 +17,7 @@ constexpr Parameter kParameters[] = {
     {.name = "--force", .help = "although identity or family are others", .kind = Kind::flag},
     kKeepOption,
     kUnlockOption,
+    kResumeOption,
 };
 
 Result<Value> run(Context& context, const Arguments& arguments) {
@@ -25,12 +27,14 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   const auto backup = read_backup(file);
   if (!backup) return tl::unexpected<Error>(backup.error());
   const auto node = context.nodes.front();
-  return put_into(context, *backup, file, node, fmt::format("{}.before-node-{}.json", file, node),
-                  {.with_address = arguments.has("--with-address"),
-                   .roll_back = !arguments.has("--no-rollback"),
-                   .force = arguments.has("--force"),
-                   .keep = arguments.has("--keep"),
-                   .unlock = arguments.has("--unlock")});
+  return put_into(
+      context, *backup, file, node, fmt::format("{}.before-node-{}.json", file, node),
+      {.choice = {.with_address = arguments.has("--with-address"), .force = arguments.has("--force")},
+       .roll_back = !arguments.has("--no-rollback"),
+       .keep = arguments.has("--keep"),
+       .unlock = arguments.has("--unlock"),
+       .resume = arguments.has("--resume")},
+      journal_of(file));
 }
 
 }  // namespace
@@ -42,12 +46,11 @@ const Command kRestore{
     .details =
         "Checks file, family and identity, shows what differs, saves what the drive holds beside the backup "
         "(FILE.before-node-N.json), writes only what differs and reads each value back, PDOs by the "
-        "procedure of "
-        "CiA 301. When a write fails, what was written is put back; the answer says how things stand. Stores "
-        "with "
-        "--keep, at the end and only if all is well. Node-ID and bitrate stay unless --with-address is "
-        "given; COB-IDs "
-        "follow the node they go to.",
+        "procedure of CiA 301. When a write fails, what was written is put back; the answer says how things "
+        "stand. Stores with --keep, at the end and only if all is well. Node-ID and bitrate stay unless "
+        "--with-address is given; COB-IDs follow the node they go to. While it runs a journal stands beside "
+        "that file: after a pulled cable or a crash --resume goes on, and restoring FILE.before-node-N.json "
+        "takes everything back.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::stores,

@@ -1,207 +1,168 @@
 #include "commands/restoring.hpp"
 
 #include <fmt/format.h>
-#include <map>
 
 #include "base/file.hpp"
 #include "commands/change.hpp"
 #include "commands/comparison.hpp"
-#include "drive/cia402.hpp"
+#include "commands/restore_journal.hpp"
 #include "drive/drive_settings.hpp"
-#include "session/restore.hpp"
 
 namespace servoctl::commands {
 namespace {
 
+namespace fs = std::filesystem;
 using report::Record;
-using report::Show;
 using report::Value;
-
-/// What of the identity speaks against the backup being this drive's, or one of its kind.
-std::string misfit(const session::Identity& file, const session::Identity& drive) {
-  const auto other = [](const auto& a, const auto& b) { return a && b && *a != *b; };
-  if (other(file.device_type, drive.device_type)) return "its device type (1000h)";
-  if (other(file.vendor_id, drive.vendor_id)) return "its vendor (1018h:01)";
-  if (other(file.product_code, drive.product_code)) return "its product code (1018h:02)";
-  return {};
-}
 
 /// One restore, from file to outcome.
 class Restoring {
  public:
   Restoring(Context& context, const Backup& backup, const std::string& title, std::uint8_t node,
-            const std::filesystem::path& before, const RestoringOptions& options)
+            const fs::path& before, const RestoringOptions& options, const fs::path& undoes)
       : context_(&context),
         backup_(&backup),
         title_(title),
         node_(node),
         before_(before),
+        undoes_(undoes),
         options_(options) {}
 
   Result<Value> run() {
-    if (const auto fits = check_identity(); !fits) return tl::unexpected<Error>(fits.error());
-    if (const auto still = check_standstill(); !still) return tl::unexpected<Error>(still.error());
-    if (const auto read = read_present(); !read) return tl::unexpected<Error>(read.error());
-    if (const auto valid = check_values(); !valid) return tl::unexpected<Error>(valid.error());
-    auto comparison = compare(context_->profile, {fmt::format("node {}", node_), node_, present_},
-                              {title_, node_, wanted_}, true, context_->chinese);
-    if (comparison.different == 0) return result(std::move(comparison.record), "nothing differs", {});
-    if (context_->dry_run) return planned();
-    const auto question =
-        fmt::format("Write {} values of {} to node {}?", comparison.different, title_, node_);
-    if (const auto answer = context_->confirm(question); !answer)
+    if (const auto known = take_up_journals(); !known) return tl::unexpected<Error>(known.error());
+    RestoreTarget target(*context_, *backup_, title_, node_, options_.choice);
+    if (const auto fits = target.prepare(); !fits) return tl::unexpected<Error>(fits.error());
+    auto comparison = compare(context_->profile, {fmt::format("node {}", node_), node_, target.present()},
+                              {title_, node_, target.wanted()}, true, context_->chinese);
+    const bool idle = comparison.different == 0 && !options_.keep && left_.means.empty();
+    if (idle) return take_away_journals(result(std::move(comparison.record), "nothing differs", {}));
+    if (context_->dry_run) return planned(target);
+    if (const auto answer = context_->confirm(question(comparison.different)); !answer)
       return tl::unexpected<Error>(answer.error());
-    if (const auto saved = save_present(); !saved) return tl::unexpected<Error>(saved.error());
-    return carry_out(std::move(comparison.record));
+    if (const auto noted = note(target); !noted) return tl::unexpected<Error>(noted.error());
+    if (const auto back = put_means_back(); !back) return tl::unexpected<Error>(back.error());
+    return carry_out(target, std::move(comparison.record));
   }
 
  private:
-  Result<void> check_identity() {
-    const bool force = options_.force;
-    if (backup_->family != context_->profile->family && !force)
-      return fail(Errc::refused,
-                  fmt::format("{} is of {}, not of {}", title_, backup_->family, context_->profile->family),
-                  "--force restores what fits all the same");
-    const std::uint8_t nodes[] = {node_};
-    const auto found = session::scan(*context_->session, nodes);
+  fs::path journal() const { return journal_of(before_); }
+
+  /// A restore that was cut off is gone on with or undone, never begun anew: what the drive held before is in
+  /// its file, and must not be replaced by what it holds now.
+  Result<void> take_up_journals() {
+    const auto found = read_journal(journal());
     if (!found) return tl::unexpected<Error>(found.error());
-    if (found->empty())
-      return fail(Errc::timeout, fmt::format("node {} does not answer", node_), "`scan` shows who does");
-    identity_ = found->front();
-    const auto& drive = identity_;
-    if (const auto what = misfit(backup_->identity, drive); !what.empty() && !force)
+    if (*found && !options_.resume)
       return fail(Errc::refused,
-                  fmt::format("node {} is another drive than that of {}: {} differs", node_, title_, what),
-                  "--force restores what fits all the same");
-    if (backup_->identity.revision != drive.revision ||
-        backup_->identity.software_version != drive.software_version)
-      context_->notices.push_back(fmt::format(
-          "node {}: the firmware differs from that of the backup: compare the values that matter", node_));
+                  fmt::format("a restore of {} into node {} was cut off before its end", title_, node_),
+                  fmt::format("--resume goes on with it; `restore {} -n {}` puts back what was there before",
+                              before_.string(), node_));
+    if (!*found && options_.resume)
+      return fail(Errc::usage,
+                  fmt::format("there is nothing to go on with: {} does not exist", journal().string()),
+                  "leave --resume away");
+    if (options_.resume) return resume(**found);
+    if (undoes_.empty()) return {};
+    const auto undone = read_journal(undoes_);
+    if (!undone) return tl::unexpected<Error>(undone.error());
+    if (!*undone || (*undone)->node != node_) return {};
+    left_ = **undone;
+    // What went to the flash has to go there again.
+    options_.keep = options_.keep || left_.keep;
+    options_.unlock = options_.unlock || left_.unlock;
     return {};
   }
 
-  /// Gains and limits are no things to change under a drive that holds a load.
-  Result<void> check_standstill() {
-    const auto word = context_->session->upload(node_, {0x6041, 0});
-    if (!word && word.error().code != Errc::sdo_abort) return tl::unexpected<Error>(word.error());
-    if (!word || !drive::is_energised(drive::decode_state(static_cast<std::uint16_t>(load_le(*word)))))
-      return {};
-    return fail(Errc::refused, fmt::format("node {} is energised, its settings are not changed now", node_),
-                "`disable` takes its power away; make sure that the load is held");
-  }
-
-  bool is_address(ObjectAddress object) const {
-    const auto& rules = context_->profile->rules.nmt;
-    const auto* parameter = context_->profile->parameter(object);
-    return parameter != nullptr && (parameter == context_->profile->parameter(rules.node_id) ||
-                                    parameter == context_->profile->parameter(rules.bitrate));
-  }
-
-  /// A COB-ID that contains the node-ID of the drive it was read from contains that of this one here.
-  Bytes for_this_node(ObjectAddress object, Bytes bytes) const {
-    const auto* entry = context_->profile->dictionary.find(object);
-    const bool with_node = entry != nullptr && entry->default_value && entry->default_value->plus_node_id;
-    const auto number = load_le(bytes);
-    if (!with_node || bytes.size() != 4 || (number & 0x7FU) != backup_->identity.node) return bytes;
-    return store_le(number - backup_->identity.node + node_, 4);
-  }
-
-  /// Only what this drive's own data calls a setting is ever written, whatever the file says.
-  Result<void> leave_out(const Backup::Entry& entry, std::string_view reason) {
-    const auto what = fmt::format("{}:{}: {} is no setting of this drive: {}", title_, entry.line,
-                                  to_string(entry.object), reason);
-    if (!options_.force) return fail(Errc::refused, what, "nothing was written; --force restores the rest");
-    context_->notices.push_back(what + "; it is left out");
+  Result<void> resume(const RestoreJournal& found) {
+    if (found.checksum != checksum(*backup_) || found.node != node_)
+      return fail(
+          Errc::refused, fmt::format("{} is not what was being restored into node {}", title_, node_),
+          fmt::format(
+              "the same values are needed to go on; `restore {} -n {}` puts back what was there before",
+              before_.string(), node_));
+    left_ = found;
+    options_.choice = {found.with_address, found.force};
+    options_.keep = found.keep;
+    options_.unlock = found.unlock;
     return {};
   }
 
-  Result<void> read_present() {
-    std::map<ObjectAddress, std::string_view> settings;
-    for (const auto& setting : drive::settings_of(*context_->profile))
-      settings.emplace(setting.entry->address, setting.left_out);
-    std::vector<ObjectAddress> objects;
-    for (const auto& entry : backup_->entries) {
-      if (!entry.bytes || (is_address(entry.object) && !options_.with_address)) continue;
-      const auto setting = settings.find(entry.object);
-      const auto reason =
-          setting == settings.end() ? std::string_view("not in its data, or read-only") : setting->second;
-      if (!reason.empty()) {
-        if (const auto left_out = leave_out(entry, reason); !left_out) return left_out;
-        continue;
-      }
-      wanted_.emplace(entry.object, for_this_node(entry.object, *entry.bytes));
-      objects.push_back(entry.object);
-    }
-    const auto read = session::read_objects(*context_->session, node_, objects);
-    if (!read) return tl::unexpected<Error>(read.error());
-    for (const auto& entry : *read) {
-      if (entry.bytes && entry.bytes->size() == wanted_.at(entry.object).size()) {
-        present_.emplace(entry.object, *entry.bytes);
-        continue;
-      }
-      if (!options_.force)
-        return fail(
-            Errc::negative,
-            fmt::format("{}:{}: {} of the backup: {}", title_, line_of(entry.object), to_string(entry.object),
-                        entry.bytes ? "the drive's has another length" : entry.left_out),
-            "nothing was written; --force restores the rest");
-      wanted_.erase(entry.object);
-    }
-    return {};
+  std::string question(std::size_t different) const {
+    if (different == 0)
+      return fmt::format("All values of node {} are those of {}. {}?", node_, title_,
+                         options_.keep ? "Make it keep them" : "Put its memory switch and password back");
+    return fmt::format("Write {} values of {} to node {}?", different, title_, node_);
   }
 
-  std::uint32_t line_of(ObjectAddress object) const {
-    for (const auto& entry : backup_->entries)
-      if (entry.object == object) return entry.line;
-    return 0;
-  }
-
-  /// Nothing is written unless everything can be.
-  Result<void> check_values() const {
-    for (const auto& [object, data] : wanted_) {
-      if (present_.at(object) == data) continue;
-      const auto target = drive::target_at(context_->profile, object);
-      auto meaning = drive::fitted(drive::meaning(target, node_), data.size());
-      const auto value = meaning.type_known ? od::decode(meaning.type, data)
-                                            : Result<od::Value>(od::Value(std::uint64_t{0}));
-      const bool writable = od::writable(meaning.access);
-      const auto limits = value && meaning.type_known ? drive::check_limits(meaning, *value) : Result<void>{};
-      if (writable && value && limits) continue;
-      return fail(Errc::negative,
-                  fmt::format("{}:{}: {}: {}", title_, line_of(object), name_of(target),
-                              !writable ? "is read-only"
-                              : !value  ? value.error().message
-                                        : limits.error().message),
-                  "nothing was written");
-    }
-    return {};
-  }
-
-  Value planned() const {
+  Value planned(const RestoreTarget& target) const {
     std::vector<Change> changes;
-    for (const auto& step : session::plan_writes(context_->profile, present_, wanted_))
+    for (const auto& step : session::plan_writes(context_->profile, target.present(), target.wanted()))
       changes.push_back({node_, drive::target_at(context_->profile, step.object), {}, step.data});
     return planned_frames(changes);
   }
 
-  /// What the drive holds now, beside the backup: the way back when everything else fails.
-  Result<void> save_present() {
+  /// What the drive holds now, beside the backup: the way back when everything else fails. One that is gone
+  /// on with has noted it already.
+  Result<void> note(const RestoreTarget& target) {
+    if (options_.resume) return {};
     session::Snapshot snapshot;
-    snapshot.identity = identity_;
-    for (const auto& [object, data] : present_) snapshot.entries.push_back({object, data, {}});
-    return write_file_atomically(before_, backup_text(*context_, make_backup(*context_, snapshot)));
+    snapshot.identity = target.identity();
+    for (const auto& [object, data] : target.present()) snapshot.entries.push_back({object, data, {}});
+    RestoreJournal journal;
+    journal.checksum = checksum(*backup_);
+    journal.node = node_;
+    journal.with_address = options_.choice.with_address;
+    journal.force = options_.choice.force;
+    journal.keep = options_.keep;
+    journal.unlock = options_.unlock;
+    journal.means = left_.means;
+    for (const auto& mean : drive::means_of_writing(*context_->profile)) {
+      if (!left_.means.empty()) break;
+      const auto value = context_->session->upload(node_, mean.first);
+      if (value) journal.means.emplace_back(mean.first, *value);
+      if (!value && value.error().code != Errc::sdo_abort) return tl::unexpected<Error>(value.error());
+    }
+    const auto saved =
+        write_file_atomically(before_, backup_text(*context_, make_backup(*context_, snapshot)));
+    return saved ? write_journal(this->journal(), journal) : saved;
   }
 
-  Result<Value> carry_out(Record record) {
+  /// The memory switch and the password as they were before what was cut off.
+  Result<void> put_means_back() {
+    for (const auto& [object, bytes] : left_.means) {
+      const auto present = context_->session->upload(node_, object);
+      if (!present) return tl::unexpected<Error>(present.error());
+      if (*present == bytes) continue;
+      if (const auto written = context_->session->download(node_, object, bytes); !written) return written;
+    }
+    return {};
+  }
+
+  Value take_away_journals(Value done) {
+    std::error_code ignored;
+    fs::remove(journal(), ignored);
+    if (!left_.checksum.empty() && !undoes_.empty()) fs::remove(undoes_, ignored);
+    return done;
+  }
+
+  Result<Value> carry_out(const RestoreTarget& target, Record record) {
     const auto outcome =
-        session::restore(*context_->session, context_->profile, node_, present_, wanted_,
+        session::restore(*context_->session, context_->profile, node_, target.present(), target.wanted(),
                          {.roll_back = options_.roll_back, .keep = options_.keep, .unlock = options_.unlock});
     for (const auto& notice : outcome.notices) context_->notices.push_back(notice);
     context_->notices.push_back(fmt::format("what node {} held before is in {}", node_, before_.string()));
-    if (!outcome.failure) return result(std::move(record), "restored", outcome);
+    if (!outcome.failure) return take_away_journals(result(std::move(record), "restored", outcome));
     context_->errors.push_back(*outcome.failure);
-    if (outcome.rolled_back)
-      return result(std::move(record), "failed; every value is as it was before", outcome);
+    add_astray(outcome);
+    auto out = result(std::move(record), failed_state(outcome), outcome);
+    // Undone to the end: nothing is left to go on with. What is being taken back itself stays begun.
+    if (outcome.rolled_back && left_.checksum.empty()) return take_away_journals(std::move(out));
+    context_->notices.push_back(
+        fmt::format("node {}: --resume goes on with it when the cause is removed", node_));
+    return out;
+  }
+
+  void add_astray(const session::RestoreOutcome& outcome) {
     for (const auto object : outcome.astray) {
       Error error;
       error.code = Errc::negative;
@@ -212,10 +173,10 @@ class Restoring {
           to_string(object));
       context_->errors.push_back(std::move(error));
     }
-    return result(std::move(record), failed_state(outcome), outcome);
   }
 
   static std::string_view failed_state(const session::RestoreOutcome& outcome) {
+    if (outcome.rolled_back) return "failed; every value is as it was before";
     if (outcome.all_written) return "written and read back; see the error";
     return outcome.astray.empty() ? "failed; what was written stays written" : "failed; see the errors";
   }
@@ -236,18 +197,17 @@ class Restoring {
   const Backup* backup_;
   std::string title_;
   std::uint8_t node_;
-  std::filesystem::path before_;
+  fs::path before_;
+  fs::path undoes_;
   RestoringOptions options_;
-  session::Identity identity_;
-  session::Values wanted_;
-  session::Values present_;
+  RestoreJournal left_;  ///< Of what was cut off and is gone on with, or undone.
 };
 
 }  // namespace
 
 Result<Value> put_into(Context& context, const Backup& backup, const std::string& title, std::uint8_t node,
-                       const std::filesystem::path& before, const RestoringOptions& options) {
-  return Restoring(context, backup, title, node, before, options).run();
+                       const fs::path& before, const RestoringOptions& options, const fs::path& undoes) {
+  return Restoring(context, backup, title, node, before, options, undoes).run();
 }
 
 }  // namespace servoctl::commands

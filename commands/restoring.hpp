@@ -5,23 +5,30 @@
 
 #include "commands/backup_file.hpp"
 #include "commands/command.hpp"
+#include "commands/restore_target.hpp"
 
 namespace servoctl::commands {
 
+/// `--resume`, for the commands that restore.
+inline constexpr Parameter kResumeOption{
+    .name = "--resume", .help = "go on with what was cut off, as it was begun", .kind = Kind::flag};
+
 /// How a backup goes into a drive.
 struct RestoringOptions {
-  bool with_address = false;  ///< Node-ID and bitrate as well.
+  RestoreChoice choice;
   bool roll_back = true;
-  bool force = false;  ///< Although identity or family are others; what does not fit is left out.
   bool keep = false;
   bool unlock = false;
+  bool resume = false;  ///< Go on with the one that its journal tells of; its options hold then.
 };
 
 /// Puts a backup into one node: checks identity, state and every value, shows what differs, asks, saves what
-/// the node holds (`before`), and carries the restore out. `title` names the backup in messages. The answer
-/// says what differed and how it ended; failures go to `context.errors`.
+/// the node holds (`before`) and a journal beside it, and carries the restore out. `title` names the backup
+/// in messages. Where a journal stands already Errc::refused, unless it is to be gone on with. `undoes` is
+/// the journal of the restore that this one takes back, where there is one; it goes away when all is done.
+/// The answer says what differed and how it ended; failures go to `context.errors`.
 Result<report::Value> put_into(Context& context, const Backup& backup, const std::string& title,
                                std::uint8_t node, const std::filesystem::path& before,
-                               const RestoringOptions& options);
+                               const RestoringOptions& options, const std::filesystem::path& undoes = {});
 
 }  // namespace servoctl::commands

@@ -74,8 +74,8 @@ _servoctl_scan() {
     'write') options+=' --type --from --transfer --keep --unlock' ;;
     'param set') options+=' --keep --unlock' ;;
     'backup') options+=' --only' ;;
-    'restore') options+=' --with-address --no-rollback --force --keep --unlock' ;;
-    'clone') options+=' --from --to --force --keep --unlock' ;;
+    'restore') options+=' --with-address --no-rollback --force --keep --unlock --resume' ;;
+    'clone') options+=' --from --to --force --keep --unlock --resume' ;;
     'nmt start') options+=' --wait' ;;
     'nmt stop') options+=' --wait' ;;
     'nmt preop') options+=' --wait' ;;

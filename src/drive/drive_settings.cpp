@@ -26,8 +26,8 @@ std::string_view reason(const od::Entry& entry, const od::Parameter* parameter) 
   return {};
 }
 
-/// What chooses the memory and what opens the lock are means of writing: a restore that wrote them midway
-/// would send the rest elsewhere.
+}  // namespace
+
 std::vector<std::pair<ObjectAddress, std::string_view>> means_of_writing(const Profile& profile) {
   std::vector<std::pair<ObjectAddress, std::string_view>> out;
   const auto add = [&](const std::string& name, std::string_view reason) {
@@ -38,8 +38,6 @@ std::vector<std::pair<ObjectAddress, std::string_view>> means_of_writing(const P
   if (profile.rules.store.unlock_open) add(profile.rules.store.unlock, "password");
   return out;
 }
-
-}  // namespace
 
 std::vector<DriveSetting> settings_of(const Profile& profile) {
   const auto means = means_of_writing(profile);

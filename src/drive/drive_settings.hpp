@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "drive/profile.hpp"
@@ -14,6 +15,10 @@ struct DriveSetting {
   std::string_view left_out;  ///< `write-only`, `command`, `volatile`, `process data`, `domain`,
                               ///< `memory switch`, `password`
 };
+
+/// What is written for the sake of other writes, and its name: the `memory switch` that says where values go,
+/// the `password` that opens the lock. Part of a restore they would send the rest of it elsewhere.
+std::vector<std::pair<ObjectAddress, std::string_view>> means_of_writing(const Profile& profile);
 
 /// Everything of a drive that can be written, in rising address. What moves the drive (controlword, targets,
 /// offsets, outputs), what is read off it, what starts an action, and what chooses the memory or opens the

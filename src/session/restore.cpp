@@ -22,7 +22,8 @@ class Run {
   RestoreOutcome carry_out(const RestoreOptions& options) {
     StorageScope storage(*session_, profile_, node_);
     Result<void> done = storage.open(options.keep, options.unlock, true);
-    const auto plan = plan_writes(profile_, *present_, *wanted_);
+    const auto plan =
+        plan_writes(profile_, storage.worked_in_ram() ? in_flash(options.unlock) : *present_, *wanted_);
     for (const auto& step : plan) touched_.insert(step.object);
     if (done) done = write(plan, out_.writes);
     if (done) done = check();
@@ -32,7 +33,7 @@ class Run {
       if (options.roll_back) go_back();
     }
     const auto kept = storage.close(!out_.failure);
-    out_.notices = storage.notices();
+    for (const auto& notice : storage.notices()) out_.notices.push_back(notice);
     if (kept)
       out_.kept = *kept;
     else if (!out_.failure)
@@ -41,6 +42,24 @@ class Run {
   }
 
  private:
+  /// What the flash of a drive that worked in its RAM holds: unknown, so everything of the vendor's is
+  /// written and not only what differs. What stands behind a password that is not given cannot have been
+  /// tried.
+  Values in_flash(bool unlocked) {
+    std::set<ObjectAddress> locked;
+    for (const auto& id : profile_->rules.store.locked)
+      if (const auto* parameter = profile_->parameter(id); parameter != nullptr && parameter->object)
+        locked.insert(*parameter->object);
+    Values out = *present_;
+    for (auto& [object, data] : out)
+      if (object.index >= 0x2000 && object.index < 0x6000 && (unlocked || locked.count(object) == 0))
+        data = other_than(data);
+    out_.notices.push_back(fmt::format(
+        "node {}: it worked in its RAM, so every value is written to its flash, not only those that differ",
+        node_));
+    return out;
+  }
+
   Result<void> write(const std::vector<PlannedWrite>& plan, std::size_t& count) {
     for (const auto& step : plan) {
       const SdoRequest request{node_, step.object, step.data};

@@ -49,6 +49,10 @@ class StorageScope {
   /// went wrong: values that are written but not kept, a password or a switch that could not be put back.
   Result<Kept> close(bool all_written);
 
+  /// Whether the drive worked in its RAM before it was told to keep: what its flash holds may be older than
+  /// what it answers, so a value that need not change must be written all the same.
+  bool worked_in_ram() const { return keep_ && memory_.has_value(); }
+
   /// What was done beside the writes, in words.
   const std::vector<std::string>& notices() const { return notices_; }
 

@@ -125,6 +125,47 @@ TEST_F(RestoreTest, WritesNoMemorySwitchAndNoPasswordWhateverTheFileSays) {
   }
 }
 
+TEST_F(RestoreTest, KeepsWhatTheDriveHeldInItsRamAlready) {
+  for (const auto& c : {Changed{"ts", "param set Fn_33=120"}, Changed{"sv2", "write 2001h:1 60"}}) {
+    SCOPED_TRACE(c.family);
+    use(fmt::format("sim:{}@1", c.family), c.family);
+    ASSERT_EQ(run(c.line), 0);
+    ASSERT_EQ(run("backup %drive.json"), 0);
+    ASSERT_EQ(run("restore %drive.json --yes --keep"), 0) << console.err_text;
+    EXPECT_NE(console.err_text.find("every value is written to its flash"), std::string::npos);
+    ASSERT_EQ(run("nmt reset --yes --wait"), 0);
+    EXPECT_EQ(run("verify %drive.json"), 0) << console.out_text;
+  }
+}
+
+TEST_F(RestoreTest, ThatWasCutOffIsNotBegunAnew) {
+  const auto journal = folder / "drive.json.before-node-1.json.journal";
+  ASSERT_EQ(run("backup %drive.json --only gain"), 0);
+  EXPECT_EQ(run("restore %drive.json --yes --resume"), 2) << "nothing was cut off";
+  int code = 0;
+  for (int time = 100; !fs::exists(journal); time += 10) {
+    ASSERT_LT(time, 5000);
+    use(fmt::format("sim:gsd600@1?delay=5ms&silent={}ms", time), "gsd600");
+    (void)run("param set Pn0214=450 Pn0215=900");
+    code = run("restore %drive.json --yes");
+  }
+  EXPECT_EQ(code, 4);
+  EXPECT_NE(console.err_text.find("--resume goes on"), std::string::npos) << console.err_text;
+  const auto saved = slurp("drive.json.before-node-1.json");
+
+  use("sim:gsd600@1", "gsd600");
+  ASSERT_EQ(run("param set Pn0215=900"), 0);
+  EXPECT_EQ(run("restore %drive.json --yes"), 8);
+  EXPECT_NE(console.err_text.find("was cut off before its end"), std::string::npos) << console.err_text;
+  EXPECT_EQ(slurp("drive.json.before-node-1.json"), saved);
+  EXPECT_EQ(run("restore %drive.json --yes --resume"), 0) << console.err_text;
+  EXPECT_EQ(run("verify %drive.json"), 0);
+  EXPECT_FALSE(fs::exists(journal));
+
+  spill("drive.json.before-node-1.json.journal", "{}");
+  EXPECT_EQ(run("restore %drive.json --yes"), 7) << "no journal that anyone could go by";
+}
+
 TEST_F(RestoreTest, WritesNothingThatThisDriveCallsNoSetting) {
   // Taken with data of the family that did not know the memory switch yet.
   for (const auto& file : fs::directory_iterator(eds / "sinsegye")) fs::copy(file.path(), folder);

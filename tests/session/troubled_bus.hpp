@@ -21,7 +21,11 @@ struct Trouble {
   int silent_at = -1;
   int abort_at = -1;
   int cancel_at = -1;
+  int kill_at = -1;  ///< The process ends: an exception, and nothing is sent or heard after it.
 };
+
+/// What a TroubledBus throws where the process is to end.
+struct Killed {};
 
 /// A simulated bus on which things go wrong.
 class TroubledBus final : public can::Bus {
@@ -32,7 +36,12 @@ class TroubledBus final : public can::Bus {
   TimePoint now() const override { return bus_->now(); }
   TimePoint next_event() const override { return bus_->next_event(); }
   Result<void> send(const can::Frame& frame) override {
+    if (killed_) return {};
     const int number = frames_++;
+    if (number == trouble_.kill_at) {
+      killed_ = true;
+      throw Killed{};
+    }
     sent_.push_back(can::to_string(frame));
     if (number == trouble_.silent_at) drive_->misbehaviour().silent = true;
     if (number == trouble_.reset_at) (void)bus_->send(*can::parse_frame("000#8101"));
@@ -47,6 +56,7 @@ class TroubledBus final : public can::Bus {
     return bus_->send(frame);
   }
   Result<std::optional<can::Frame>> receive(TimePoint deadline) override {
+    if (killed_) return bus_->receive(deadline);
     if (waiting_) return std::exchange(waiting_, std::nullopt);
     for (;;) {
       auto frame = bus_->receive(deadline);
@@ -69,6 +79,7 @@ class TroubledBus final : public can::Bus {
   std::mt19937 random_;
   std::optional<can::Frame> waiting_;
   int frames_ = 0;
+  bool killed_ = false;
   std::vector<std::string> sent_;
 };
 

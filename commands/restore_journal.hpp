@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/bytes.hpp"
+#include "base/object_address.hpp"
+#include "base/result.hpp"
+
+namespace servoctl::commands {
+
+/// What a restore notes beside the backup before its first write, and takes away when the drive holds all of
+/// one or of the other: with it a restore that was cut off (a pulled cable, a crash, `kill -9`) can be gone
+/// on with or undone.
+struct RestoreJournal {
+  std::string checksum;  ///< Of the backup that is being restored.
+  std::uint8_t node = 0;
+  bool with_address = false;
+  bool force = false;
+  bool keep = false;
+  bool unlock = false;
+  /// Memory switch and password as they were: a restore that is cut off leaves them as it needed them.
+  std::vector<std::pair<ObjectAddress, Bytes>> means;
+};
+
+/// Where the journal of a restore stands whose values from before are in this file.
+std::filesystem::path journal_of(const std::filesystem::path& before);
+
+/// Reads a journal; empty when there is none. Errc::file for one that cannot be understood.
+Result<std::optional<RestoreJournal>> read_journal(const std::filesystem::path& path);
+
+/// Writes a journal; it is on the disk when this returns.
+Result<void> write_journal(const std::filesystem::path& path, const RestoreJournal& journal);
+
+}  // namespace servoctl::commands

@@ -1,0 +1,156 @@
+#include "commands/restore_target.hpp"
+
+#include <fmt/format.h>
+#include <map>
+
+#include "commands/change.hpp"
+#include "drive/cia402.hpp"
+#include "drive/drive_settings.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+/// What of the identity speaks against the backup being this drive's, or one of its kind.
+std::string misfit(const session::Identity& file, const session::Identity& drive) {
+  const auto other = [](const auto& a, const auto& b) { return a && b && *a != *b; };
+  if (other(file.device_type, drive.device_type)) return "its device type (1000h)";
+  if (other(file.vendor_id, drive.vendor_id)) return "its vendor (1018h:01)";
+  if (other(file.product_code, drive.product_code)) return "its product code (1018h:02)";
+  return {};
+}
+
+}  // namespace
+
+Result<void> RestoreTarget::prepare() {
+  for (const auto step :
+       {&RestoreTarget::check_identity, &RestoreTarget::choose_values, &RestoreTarget::read_present})
+    if (const auto done = (this->*step)(); !done) return done;
+  if (const auto still = check_standstill(); !still) return still;
+  return check_values();
+}
+
+Result<void> RestoreTarget::check_identity() {
+  const bool force = choice_.force;
+  if (backup_->family != context_->profile->family && !force)
+    return fail(Errc::refused,
+                fmt::format("{} is of {}, not of {}", title_, backup_->family, context_->profile->family),
+                "--force restores what fits all the same");
+  const std::uint8_t nodes[] = {node_};
+  const auto found = session::scan(*context_->session, nodes);
+  if (!found) return tl::unexpected<Error>(found.error());
+  if (found->empty())
+    return fail(Errc::timeout, fmt::format("node {} does not answer", node_), "`scan` shows who does");
+  identity_ = found->front();
+  const auto& drive = identity_;
+  if (const auto what = misfit(backup_->identity, drive); !what.empty() && !force)
+    return fail(Errc::refused,
+                fmt::format("node {} is another drive than that of {}: {} differs", node_, title_, what),
+                "--force restores what fits all the same");
+  if (backup_->identity.revision != drive.revision ||
+      backup_->identity.software_version != drive.software_version)
+    context_->notices.push_back(fmt::format(
+        "node {}: the firmware differs from that of the backup: compare the values that matter", node_));
+  return {};
+}
+
+/// Gains and limits are no things to change under a drive that holds a load.
+Result<void> RestoreTarget::check_standstill() const {
+  const auto word = context_->session->upload(node_, {0x6041, 0});
+  if (!word && word.error().code != Errc::sdo_abort) return tl::unexpected<Error>(word.error());
+  if (!word || !drive::is_energised(drive::decode_state(static_cast<std::uint16_t>(load_le(*word)))))
+    return {};
+  return fail(Errc::refused, fmt::format("node {} is energised, its settings are not changed now", node_),
+              "`disable` takes its power away; make sure that the load is held");
+}
+
+bool RestoreTarget::is_address(ObjectAddress object) const {
+  const auto& rules = context_->profile->rules.nmt;
+  const auto* parameter = context_->profile->parameter(object);
+  return parameter != nullptr && (parameter == context_->profile->parameter(rules.node_id) ||
+                                  parameter == context_->profile->parameter(rules.bitrate));
+}
+
+/// A COB-ID that contains the node-ID of the drive it was read from contains that of this one here.
+Bytes RestoreTarget::for_this_node(ObjectAddress object, Bytes bytes) const {
+  const auto* entry = context_->profile->dictionary.find(object);
+  const bool with_node = entry != nullptr && entry->default_value && entry->default_value->plus_node_id;
+  const auto number = load_le(bytes);
+  if (!with_node || bytes.size() != 4 || (number & 0x7FU) != backup_->identity.node) return bytes;
+  return store_le(number - backup_->identity.node + node_, 4);
+}
+
+/// Only what this drive's own data calls a setting is ever written, whatever the file says.
+Result<void> RestoreTarget::leave_out(const Backup::Entry& entry, std::string_view reason) {
+  const auto what = fmt::format("{}:{}: {} is no setting of this drive: {}", title_, entry.line,
+                                to_string(entry.object), reason);
+  if (!choice_.force) return fail(Errc::refused, what, "nothing was written; --force restores the rest");
+  context_->notices.push_back(what + "; it is left out");
+  return {};
+}
+
+Result<void> RestoreTarget::choose_values() {
+  std::map<ObjectAddress, std::string_view> settings;
+  for (const auto& setting : drive::settings_of(*context_->profile))
+    settings.emplace(setting.entry->address, setting.left_out);
+  for (const auto& entry : backup_->entries) {
+    if (!entry.bytes || (is_address(entry.object) && !choice_.with_address)) continue;
+    const auto setting = settings.find(entry.object);
+    const auto reason =
+        setting == settings.end() ? std::string_view("not in its data, or read-only") : setting->second;
+    if (reason.empty())
+      wanted_.emplace(entry.object, for_this_node(entry.object, *entry.bytes));
+    else if (const auto left_out = leave_out(entry, reason); !left_out)
+      return left_out;
+  }
+  return {};
+}
+
+Result<void> RestoreTarget::read_present() {
+  std::vector<ObjectAddress> objects;
+  for (const auto& value : wanted_) objects.push_back(value.first);
+  const auto read = session::read_objects(*context_->session, node_, objects);
+  if (!read) return tl::unexpected<Error>(read.error());
+  for (const auto& entry : *read) {
+    if (entry.bytes && entry.bytes->size() == wanted_.at(entry.object).size()) {
+      present_.emplace(entry.object, *entry.bytes);
+      continue;
+    }
+    if (!choice_.force)
+      return fail(
+          Errc::negative,
+          fmt::format("{}:{}: {} of the backup: {}", title_, line_of(entry.object), to_string(entry.object),
+                      entry.bytes ? "the drive's has another length" : entry.left_out),
+          "nothing was written; --force restores the rest");
+    wanted_.erase(entry.object);
+  }
+  return {};
+}
+
+std::uint32_t RestoreTarget::line_of(ObjectAddress object) const {
+  for (const auto& entry : backup_->entries)
+    if (entry.object == object) return entry.line;
+  return 0;
+}
+
+/// Nothing is written unless everything can be.
+Result<void> RestoreTarget::check_values() const {
+  for (const auto& [object, data] : wanted_) {
+    if (present_.at(object) == data) continue;
+    const auto target = drive::target_at(context_->profile, object);
+    auto meaning = drive::fitted(drive::meaning(target, node_), data.size());
+    const auto value =
+        meaning.type_known ? od::decode(meaning.type, data) : Result<od::Value>(od::Value(std::uint64_t{0}));
+    const bool writable = od::writable(meaning.access);
+    const auto limits = value && meaning.type_known ? drive::check_limits(meaning, *value) : Result<void>{};
+    if (writable && value && limits) continue;
+    return fail(Errc::negative,
+                fmt::format("{}:{}: {}: {}", title_, line_of(object), name_of(target),
+                            !writable ? "is read-only"
+                            : !value  ? value.error().message
+                                      : limits.error().message),
+                "nothing was written");
+  }
+  return {};
+}
+
+}  // namespace servoctl::commands

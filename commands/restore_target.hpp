@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "commands/backup_file.hpp"
+#include "commands/command.hpp"
+#include "session/restore.hpp"
+#include "session/scan.hpp"
+
+namespace servoctl::commands {
+
+/// What of a backup goes into a drive.
+struct RestoreChoice {
+  bool with_address = false;  ///< Node-ID and bitrate as well.
+  bool force = false;         ///< Although identity or family are others; what does not fit is left out.
+};
+
+/// A drive that a backup is to go into: whether it may, and which values. Writes nothing.
+class RestoreTarget {
+ public:
+  /// `context` and `backup` outlive it. `title` names the backup in messages.
+  RestoreTarget(Context& context, const Backup& backup, std::string title, std::uint8_t node,
+                const RestoreChoice& choice)
+      : context_(&context), backup_(&backup), title_(std::move(title)), node_(node), choice_(choice) {}
+
+  /// Checks family, identity and standstill, reads what the drive holds, and checks every value against its
+  /// data. Errc::refused for another or an energised drive, and for what is no setting of this one;
+  /// Errc::negative, with line and entry, for a value that this drive cannot take.
+  Result<void> prepare();
+
+  const session::Identity& identity() const { return identity_; }
+  const session::Values& wanted() const { return wanted_; }
+  const session::Values& present() const { return present_; }
+
+ private:
+  Result<void> check_identity();
+  Result<void> check_standstill() const;
+  bool is_address(ObjectAddress object) const;
+  Bytes for_this_node(ObjectAddress object, Bytes bytes) const;
+  Result<void> leave_out(const Backup::Entry& entry, std::string_view reason);
+  Result<void> choose_values();
+  Result<void> read_present();
+  std::uint32_t line_of(ObjectAddress object) const;
+  Result<void> check_values() const;
+
+  Context* context_;
+  const Backup* backup_;
+  std::string title_;
+  std::uint8_t node_;
+  RestoreChoice choice_;
+  session::Identity identity_;
+  session::Values wanted_;
+  session::Values present_;
+};
+
+}  // namespace servoctl::commands
