@@ -139,5 +139,10 @@ kill -INT $client
 wait $client
 check "exit code of Ctrl-C" 130 $?
 
+# 9. Restores killed while they write are gone on with or undone.
+"$(dirname "$0")/restore_kill_test.sh" "$servoctl" vcan1 4 7 >"$work/killed" 2>&1
+check "killed restores" 0 $?
+cat "$work/killed"
+
 printf '%d checks, %d failed\n' "$checks" "$failures"
 [ "$failures" -eq 0 ]
