@@ -20,7 +20,7 @@ Result<void> KeepingNodes::open(const WriteOptions& options) {
     });
     const auto opened = each.second->open(options.keep, options.unlock, choose);
     if (opened) continue;
-    for (auto& [number, storage] : nodes_) close_node(number, *storage, false);
+    for (auto& [number, storage] : nodes_) close_node(number, *storage, false, 0);
     return opened;
   }
   return {};
@@ -28,15 +28,20 @@ Result<void> KeepingNodes::open(const WriteOptions& options) {
 
 void KeepingNodes::close(std::span<const Result<session::Written>> written) {
   for (auto& [node, storage] : nodes_) {
-    bool all = true;
-    for (std::size_t i = 0; i < changes_.size(); ++i)
-      all = all && (changes_[i].node != node || written[i].has_value());
-    close_node(node, *storage, all);
+    std::size_t of_node = 0;
+    std::size_t done = 0;
+    for (std::size_t i = 0; i < changes_.size(); ++i) {
+      if (changes_[i].node != node) continue;
+      ++of_node;
+      done += written[i] ? 1U : 0U;
+    }
+    close_node(node, *storage, done == of_node, done);
   }
 }
 
-void KeepingNodes::close_node(std::uint8_t node, session::StorageScope& storage, bool all_written) {
-  const auto kept = storage.close(all_written);
+void KeepingNodes::close_node(std::uint8_t node, session::StorageScope& storage, bool all_written,
+                              std::size_t writes) {
+  const auto kept = storage.close(all_written, writes);
   if (!kept) context_->errors.push_back(kept.error());
   kept_[node] = kept.value_or(session::Kept::unknown);
   for (const auto& notice : storage.notices()) context_->notices.push_back(notice);

@@ -26,7 +26,7 @@ class KeepingNodes {
 
  private:
   bool goes_to_memory(const Change& change) const;
-  void close_node(std::uint8_t node, session::StorageScope& storage, bool all_written);
+  void close_node(std::uint8_t node, session::StorageScope& storage, bool all_written, std::size_t writes);
 
   Context* context_;
   std::span<const Change> changes_;

@@ -32,7 +32,7 @@ class Run {
       out_.failure = done.error();
       if (options.roll_back) go_back();
     }
-    const auto kept = storage.close(!out_.failure);
+    const auto kept = storage.close(!out_.failure, out_.writes);
     for (const auto& notice : storage.notices()) out_.notices.push_back(notice);
     if (kept)
       out_.kept = *kept;

@@ -70,6 +70,9 @@ class Session {
   void guard(std::uint8_t node, canopen::GuardOptions options);
   void stop_guarding();
 
+  /// Values written to the flash of a node since the bus was opened, where each write wears it.
+  std::size_t& flash_writes(std::uint8_t node) { return flash_writes_[node]; }
+
   TimePoint now() const { return bus_->now(); }
   can::Bus& bus() { return *bus_; }
   const std::string& url() const { return url_; }
@@ -93,6 +96,7 @@ class Session {
   canopen::NodeGuard guard_;
   std::vector<can::ControllerReport> reports_;
   std::optional<can::ControllerReport> last_report_;
+  std::array<std::size_t, 128> flash_writes_{};
   TimePoint received_at_{};  ///< When receive() ended; asking the clock costs a system call on some machines.
 };
 

@@ -131,7 +131,7 @@ Result<void> StorageScope::open(bool keep, bool unlock, bool choose) {
   const auto prepared = prepare(unlock, choose);
   if (prepared) return {};
   auto error = prepared.error();
-  if (const auto closed = close(false); !closed) add_to(error, closed.error());
+  if (const auto closed = close(false, 0); !closed) add_to(error, closed.error());
   return fail(std::move(error));
 }
 
@@ -147,7 +147,16 @@ Result<void> StorageScope::prepare(bool unlock, bool choose) {
   return set(rules.unlock, *rules.unlock_open, password_);
 }
 
-Result<Kept> StorageScope::close(bool all_written) {
+void StorageScope::tell_wear(std::size_t writes) {
+  if (!profile_->rules.store.wears || writes == 0) return;
+  auto& all = session_->flash_writes(node_);
+  all += writes;
+  notices_.push_back(fmt::format("node {}: {} written to its flash{}; every write wears it", node_,
+                                 writes == 1 ? "1 value was" : fmt::format("{} values were", writes),
+                                 all == writes ? "" : fmt::format(" ({} since the bus was opened)", all)));
+}
+
+Result<Kept> StorageScope::close(bool all_written, std::size_t writes) {
   if (!std::exchange(open_, false)) return Kept::unknown;
   const Deaf deaf(*session_);
   const bool has_switch = profile_ != nullptr && !profile_->rules.store.flash_switch.empty();
@@ -163,6 +172,7 @@ Result<Kept> StorageScope::close(bool all_written) {
     else
       wrong = std::move(error);
   };
+  if (keep_ && has_switch) tell_wear(writes);
   if (keep_ && all_written && !has_switch)
     note(store_parameters(*session_, profile_, node_, ParameterGroup::all),
          "the values are written, but keeping them failed",

@@ -39,15 +39,16 @@ class StorageScope {
       : session_(&session), profile_(profile), node_(node) {}
   StorageScope(const StorageScope&) = delete;
   StorageScope& operator=(const StorageScope&) = delete;
-  ~StorageScope() { (void)close(false); }
+  ~StorageScope() { (void)close(false, 0); }
 
   /// Before the writes. `choose` is false for writes that no memory is chosen for: the controlword, the
   /// communication objects, the switch itself. Errc::usage when `unlock` is wanted and the family has no
   /// password. After an error what had been changed is put back, or the message says that it is not.
   Result<void> open(bool keep, bool unlock, bool choose);
-  /// After them. Stores only when `all_written`, and only if open() was told to keep. The error says all that
-  /// went wrong: values that are written but not kept, a password or a switch that could not be put back.
-  Result<Kept> close(bool all_written);
+  /// After them. Stores only when `all_written`, and only if open() was told to keep. `writes` is their
+  /// number: where each wears the flash, it is told. The error says all that went wrong: values that are
+  /// written but not kept, a password or a switch that could not be put back.
+  Result<Kept> close(bool all_written, std::size_t writes);
 
   /// Whether the drive worked in its RAM before it was told to keep: what its flash holds may be older than
   /// what it answers, so a value that need not change must be written all the same.
@@ -67,6 +68,7 @@ class StorageScope {
   Result<void> set(const std::string& name, std::int64_t value, std::optional<Changed>& out);
   Result<void> put_back(std::optional<Changed>& changed);
   Result<void> choose_memory();
+  void tell_wear(std::size_t writes);
 
   Session* session_;
   const drive::Profile* profile_;
