@@ -193,20 +193,25 @@ Result<void> read_quick_stop(const TableReader& reader, Rules& rules) {
 
 Result<void> read_motion(const TableReader& reader, Rules& rules) {
   auto& out = rules.motion;
-  return reader.read({{"position", into(out.position)},
-                      {"velocity", into(out.velocity)},
-                      {"torque", into(out.torque)},
-                      {"homing", into(out.homing)},
-                      {"enable", into(out.enable)},
-                      {"start_homing", into(out.start_homing)},
-                      {"homing_done_mask", into(out.homing_done_mask)},
-                      {"homing_done", into(out.homing_done)},
-                      {"homing_error", into(out.homing_error)},
-                      {"homed_bit", into(out.homed_bit)},
-                      {"halt", into(out.halt)},
-                      {"no_homing", into(out.no_homing)},
-                      {"speed_limit", into(out.speed_limit)},
-                      {"setpoints", into(out.setpoints)}});
+  return reader.read(
+      {{"position", into(out.position)},
+       {"velocity", into(out.velocity)},
+       {"torque", into(out.torque)},
+       {"homing", into(out.homing)},
+       {"enable", into(out.enable)},
+       {"start_homing", into(out.start_homing)},
+       {"homing_done_mask", into(out.homing_done_mask)},
+       {"homing_done", into(out.homing_done)},
+       {"homing_error", into(out.homing_error)},
+       {"homed_bit", into(out.homed_bit)},
+       {"halt", into(out.halt)},
+       {"handshake", into(out.handshake)},
+       {"position_speed", into(out.position_speed)},
+       {"rated_speed", into(out.rated_speed)},
+       {"inputs", [&](const auto& n) { return into(out.inputs)(n) && out.inputs.size() == 3; }},
+       {"no_homing", into(out.no_homing)},
+       {"speed_limit", into(out.speed_limit)},
+       {"setpoints", into(out.setpoints)}});
 }
 
 Result<void> read_emergency(const TableReader& reader, Rules& rules) {
