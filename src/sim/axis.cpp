@@ -10,12 +10,6 @@ namespace servoctl::sim {
 namespace {
 
 constexpr double kTick = 0.001;
-constexpr double kPi = 3.14159265358979323846;
-/// Where the manual does not tell the counts of a turn.
-constexpr double kAssumedTurn = 10000;
-/// Speed that ramps given as a time lead to.
-constexpr double kRampSpeedRpm = 3000;
-constexpr double kNoRamp = 1e12;
 constexpr Duration kHomingTime = std::chrono::milliseconds(300);
 /// Speed that full rated torque gives the unloaded motor in one second.
 constexpr double kTurnsPerSecondOfRatedTorque = 10;
@@ -34,17 +28,19 @@ constexpr ObjectAddress kTargetTorque{0x6071, 0};
 constexpr ObjectAddress kTorqueActual{0x6077, 0};
 constexpr ObjectAddress kTargetPosition{0x607A, 0};
 constexpr ObjectAddress kHomeOffset{0x607C, 0};
-constexpr ObjectAddress kProfileVelocity{0x6081, 0};
 constexpr ObjectAddress kAcceleration{0x6083, 0};
 constexpr ObjectAddress kTargetVelocity{0x60FF, 0};
 constexpr ObjectAddress kHomingMethod{0x6098, 0};
+constexpr ObjectAddress kHomingSpeed{0x6099, 1};
 
 constexpr std::int8_t kInterpolatedMode = 7;  ///< CiA 402-2.
 
 }  // namespace
 
 void Axis::reset(TimePoint now) {
+  const auto faults = faults_;
   *this = Axis(*profile_, *values_);
+  faults_ = faults;
   time_ = now;
 }
 
@@ -71,7 +67,7 @@ void Axis::on_controlword(std::uint16_t controlword, bool enabled, TimePoint now
     homing_ends_.reset();
     return;
   }
-  if (kind() == Kind::position) {
+  if (kind() == Kind::position && profile_->rules.motion.handshake) {
     if (low) acknowledged_ = false;
     if (rising) take_setpoint((controlword & kRelative) != 0, (controlword & kAtOnce) != 0);
   }
@@ -108,28 +104,57 @@ void Axis::start_homing(TimePoint now) {
   const auto method = static_cast<std::int8_t>(values_->number(kHomingMethod));
   if (std::find(nothing.begin(), nothing.end(), method) != nothing.end()) return;
   homed_ = false;
-  homing_ends_ = now + kHomingTime;
+  homing_failed_ = false;
+  homing_ends_ = faults_.no_index ? kNever : now + kHomingTime;
 }
 
 void Axis::advance(bool enabled, TimePoint now) {
   if (!enabled) {
     velocity_ = 0;
     torque_ = 0;
+    behind_ = 0;
   }
   for (; time_ + std::chrono::milliseconds(1) <= now; time_ += std::chrono::milliseconds(1)) {
+    if (enabled) follow_target();
     if (!enabled || (is_steady() && !homing_ends_)) {
-      position_ += velocity_ * std::chrono::duration<double>(now - time_).count();
+      travel(std::chrono::duration<double>(now - time_).count());
       time_ = now;
       break;
     }
     step(kTick);
     if (homing_ends_ && time_ >= *homing_ends_) {
       homing_ends_.reset();
-      homed_ = true;
-      position_ = read(kHomeOffset);
+      velocity_ = 0;
+      homing_failed_ = faults_.bad_home;
+      homed_ = !homing_failed_;
+      if (homed_) position_ = read(kHomeOffset);
     }
   }
   publish();
+}
+
+/// Without a handshake the target is followed as it stands.
+void Axis::follow_target() {
+  if (kind() != Kind::position || profile_->rules.motion.handshake) return;
+  const double target = read(kTargetPosition);
+  if (target != position_)
+    target_ = target;
+  else
+    target_.reset();
+}
+
+/// The position by the present speed; what is in the way keeps it from following.
+void Axis::travel(double seconds) {
+  const double way = velocity_ * seconds;
+  if (faults_.stalled)
+    behind_ += way;
+  else
+    position_ += faults_.reversed ? -way : way;
+}
+
+bool Axis::is_out_of_window() const {
+  const double window = read(kFollowingErrorWindow);
+  return window > 0 && std::abs(behind_) > window;
 }
 
 /// Whether nothing changes but the position, and that evenly.
@@ -154,10 +179,12 @@ void Axis::step(double seconds) {
       velocity_ += torque_ / 100 * kTurnsPerSecondOfRatedTorque * units_per_turn() * seconds;
       break;
     case Kind::homing:
+      approach(homing_ends_ && !halted ? read(kHomingSpeed) * speed_factor(kHomingSpeed) : 0, seconds);
+      break;
     case Kind::interpolated:
     case Kind::none: approach(0, seconds); break;
   }
-  position_ += velocity_ * seconds;
+  travel(seconds);
 }
 
 void Axis::approach(double wanted, double seconds) {
@@ -170,11 +197,12 @@ void Axis::step_position(double seconds) {
   const double left = *target_ - position_;
   const double ramp_rate = ramp(kAcceleration);
   const double braking = std::sqrt(2 * ramp_rate * std::abs(left));
-  const double fastest = std::min(std::abs(read(kProfileVelocity) * speed_factor(kProfileVelocity)), braking);
+  const auto speed = speed_object();
+  const double fastest = std::min(std::abs(read(speed) * speed_factor(speed)), braking);
   approach(std::copysign(fastest, left), seconds);
   const bool there = std::abs(left) <= std::abs(velocity_) * seconds + ramp_rate * seconds * seconds;
   if (!there) return;
-  position_ = *target_;
+  if (!faults_.stalled && !faults_.reversed) position_ = *target_;
   velocity_ = 0;
   target_.reset();
   if (waiting_.empty()) return;
@@ -192,6 +220,7 @@ std::uint16_t Axis::homing_bits() const {
   const auto done = static_cast<std::uint16_t>(motion.homing_done & motion.homing_done_mask);
   if (homing_ends_) return static_cast<std::uint16_t>(~done & kModeBit);
   if (homed_) return static_cast<std::uint16_t>(done | kTargetReached);
+  if (homing_failed_) return motion.homing_error;
   return kTargetReached;
 }
 
@@ -219,53 +248,10 @@ std::uint16_t Axis::bits(bool enabled) const {
 
 void Axis::publish() {
   write(kPositionActual, position_);
-  write(kVelocityActual, velocity_ / speed_factor(kVelocityActual));
+  const double turning = faults_.stalled ? 0 : faults_.reversed ? -velocity_ : velocity_;
+  write(kVelocityActual, turning / speed_factor(kVelocityActual));
   write(kTorqueActual, torque_);
-}
-
-double Axis::read(ObjectAddress object) const {
-  const auto meaning = drive::meaning(drive::target_at(profile_, object), 0);
-  if (!meaning.type_known) return 0;
-  const auto value = od::decode(meaning.type, values_->get(object));
-  return value ? drive::scaled(meaning, *value) : 0;
-}
-
-void Axis::write(ObjectAddress object, double number) {
-  const auto meaning = drive::meaning(drive::target_at(profile_, object), 0);
-  if (!meaning.type_known) return;
-  const auto raw =
-      meaning.encoding == od::Encoding::plain
-          ? Result<od::Value>(od::Value(static_cast<std::int64_t>(std::llround(number / meaning.scale))))
-          : od::encode_number(meaning.encoding, meaning.type, number);
-  const auto bytes = raw ? od::encode(meaning.type, *raw) : tl::unexpected<Error>(raw.error());
-  if (bytes) values_->set(object, *bytes);
-}
-
-double Axis::units_per_turn() const {
-  if (drive::meaning(drive::target_at(profile_, kPositionActual), 0).unit == "rad") return 2 * kPi;
-  const auto rule = profile_->rules.units.find(drive::Measure::increments_per_turn);
-  if (rule == profile_->rules.units.end()) return kAssumedTurn;
-  double out = 1;
-  const auto factor = [&](const drive::Quotient::Factor& f) {
-    const auto* object = std::get_if<ObjectAddress>(&f);
-    return object != nullptr ? read(*object) : std::get<double>(f);
-  };
-  for (const auto& f : rule->second.multiply) out *= factor(f);
-  for (const auto& f : rule->second.divide) out /= factor(f);
-  return std::isfinite(out) && out > 0 ? out : kAssumedTurn;
-}
-
-double Axis::speed_factor(ObjectAddress object) const {
-  const auto unit = drive::meaning(drive::target_at(profile_, object), 0).unit;
-  return unit == "rpm" ? units_per_turn() / 60 : 1;
-}
-
-double Axis::ramp(ObjectAddress object) const {
-  const auto unit = drive::meaning(drive::target_at(profile_, object), 0).unit;
-  const double value = read(object);
-  if (value <= 0) return kNoRamp;
-  if (unit == "ms") return kRampSpeedRpm / 60 * units_per_turn() / (value / 1000);
-  return unit == "rpm/s" ? value * units_per_turn() / 60 : value;
+  write(kFollowingError, behind_ + turning * faults_.lag);
 }
 
 }  // namespace servoctl::sim

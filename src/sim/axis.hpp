@@ -10,6 +10,15 @@
 
 namespace servoctl::sim {
 
+/// Ways in which the mechanics misbehave; all off at first.
+struct AxisFaults {
+  bool stalled = false;   ///< The motor cannot turn: the following error grows.
+  bool reversed = false;  ///< It turns the other way.
+  double lag = 0;         ///< Seconds by which it is behind its command.
+  bool no_index = false;  ///< Homing looks for ever: the switch or the index pulse never comes.
+  bool bad_home = false;  ///< Homing ends in an error: the switch is stuck.
+};
+
 /// The moving part of a simulated drive: profile position with its set-points, profile velocity, torque and
 /// homing, in the units of the family's own objects. It moves by trapezoid ramps and without load; homing
 /// finds its reference after a fixed time. Positions are in units of 6064h, speeds in those units a second.
@@ -27,7 +36,10 @@ class Axis {
   /// Bits 10 to 15 of the statusword while the drive is enabled; bit 15 also when it is not.
   std::uint16_t bits(bool enabled) const;
 
-  bool is_moving() const { return velocity_ != 0; }
+  bool is_moving() const { return velocity_ != 0 && !faults_.stalled; }
+  /// The following error is greater than 6065h, where there is one that is not zero.
+  bool is_out_of_window() const;
+  AxisFaults& faults() { return faults_; }
 
  private:
   enum class Kind : std::uint8_t { none, position, velocity, torque, homing, interpolated };
@@ -40,10 +52,13 @@ class Axis {
   void step(double seconds);
   void approach(double wanted_velocity, double seconds);
   void step_position(double seconds);
+  void follow_target();
+  void travel(double seconds);
   void publish();
   void write(ObjectAddress object, double value);
   double read(ObjectAddress object) const;
   double units_per_turn() const;
+  ObjectAddress speed_object() const;               ///< Holds the speed of a move to a position.
   double speed_factor(ObjectAddress object) const;  ///< One of the object's speed unit in units a second.
   double ramp(ObjectAddress object) const;          ///< Units a second a second.
   std::uint16_t position_bits() const;
@@ -61,7 +76,10 @@ class Axis {
   bool acknowledged_ = false;  ///< Bit 12 in profile position.
   bool at_once_ = false;       ///< The present set-point gives way to a new one at once.
   bool homed_ = false;
+  bool homing_failed_ = false;
   std::optional<TimePoint> homing_ends_;
+  double behind_ = 0;  ///< Demand minus actual position.
+  AxisFaults faults_;
 };
 
 }  // namespace servoctl::sim

@@ -16,6 +16,8 @@ namespace {
 constexpr Duration kBootTime = std::chrono::milliseconds(50);
 /// EMCY of a life guarding or heartbeat error (CiA 301, table 26).
 constexpr std::uint16_t kLifeGuardError = 0x8130;
+/// CiA 402-2, table of error codes.
+constexpr std::uint16_t kFollowingErrorFault = 0x8611;
 
 canopen::SdoServer::Options server_options(const drive::Rules& rules) {
   canopen::SdoServer::Options options;
@@ -51,6 +53,7 @@ void SimDrive::on_frame(const can::Frame& frame, TimePoint now) {
     if (message->node == 0 || message->node == node_) on_nmt(message->command, now);
     return;
   }
+  consumer_.on_frame(frame, now);
   error_control_.on_frame(frame, now);
   while (const auto answer = error_control_.take_frame()) tx_.push_back(*answer);
   if (nmt_ == NmtState::stopped) return;  // CiA 301, table 39: no SDO in this state.
@@ -81,10 +84,10 @@ void SimDrive::on_time(TimePoint now) {
     misbehaviour_.silent = true;
     planned_silence_ = kNever;
   }
-  if (misbehaviour_.silent) return;
   if (now >= boot_at_) power_on(now);
   power_.on_time(now);
-  axis_.advance(is_enabled(), now);
+  move_axis();
+  if (consumer_.take_lost(now)) on_producer_lost(now);
   server_.on_time(now);
   collect_answers(now);
   while (!late_.empty() && now >= late_.front().time) {
@@ -98,12 +101,12 @@ void SimDrive::on_time(TimePoint now) {
     const auto alarm = std::exchange(planned_fault_, std::nullopt)->alarm;
     raise_fault(alarm.code, alarm.vendor, now);
   }
+  if (misbehaviour_.silent) tx_.clear();
 }
 
 TimePoint SimDrive::deadline() const {
-  if (misbehaviour_.silent) return kNever;
-  auto next = std::min(
-      {boot_at_, power_.deadline(), server_.deadline(), error_control_.deadline(), planned_silence_});
+  auto next = std::min({boot_at_, power_.deadline(), server_.deadline(), error_control_.deadline(),
+                        consumer_.deadline(), planned_silence_});
   if (!late_.empty()) next = std::min(next, late_.front().time);
   if (planned_fault_) next = std::min(next, planned_fault_->time);
   return next;
@@ -148,6 +151,7 @@ void SimDrive::power_on(TimePoint now) {
   error_control_.boot(nmt_, now);
   tx_.push_back(*error_control_.take_frame());
   set_up_error_control(now);
+  set_up_consumers();
 }
 
 void SimDrive::on_nmt(NmtCommand command, TimePoint now) {
@@ -177,6 +181,18 @@ void SimDrive::set_up_error_control(TimePoint now) {
   error_control_.set_heartbeat(std::chrono::milliseconds(values_.number(kHeartbeatTime)), now);
   error_control_.set_life_time(std::chrono::milliseconds(values_.number(kGuardTime)),
                                static_cast<std::uint32_t>(values_.number(kLifeFactor)));
+}
+
+void SimDrive::set_up_consumers() {
+  for (std::uint8_t entry = 1; entry <= HeartbeatConsumer::kMost; ++entry)
+    if (values_.has({kConsumerIndex, entry}))
+      consumer_.set(entry, static_cast<std::uint32_t>(values_.number({kConsumerIndex, entry})));
+}
+
+/// Lets the axis move up to now; it cannot follow for long without a fault.
+void SimDrive::move_axis() {
+  axis_.advance(is_enabled(), now_);
+  if (is_enabled() && axis_.is_out_of_window()) raise_fault(kFollowingErrorFault, {}, now_);
 }
 
 /// The master has stopped asking.

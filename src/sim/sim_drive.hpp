@@ -12,6 +12,7 @@
 #include "drive/profile.hpp"
 #include "sim/axis.hpp"
 #include "sim/device.hpp"
+#include "sim/heartbeat_consumer.hpp"
 #include "sim/memory.hpp"
 #include "sim/object_values.hpp"
 #include "sim/power_stage.hpp"
@@ -20,7 +21,7 @@ namespace servoctl::sim {
 
 /// Ways in which a simulated drive misbehaves; all off at first.
 struct Misbehaviour {
-  bool silent = false;                  ///< Says nothing and hears nothing: power off or cable out.
+  bool silent = false;                  ///< Says nothing and hears nothing: the cable is out.
   std::uint32_t drop_answers = 0;       ///< So many SDO answers are lost on the way.
   std::uint32_t duplicate_answers = 0;  ///< So many SDO answers arrive twice.
   Duration answer_delay{};              ///< Every SDO answer comes this late.
@@ -53,10 +54,15 @@ class SimDrive final : public Device, private canopen::ObjectStore {
   void raise_fault_at(Alarm alarm, TimePoint time) { planned_fault_ = {alarm, time}; }
   void fall_silent_at(TimePoint time) { planned_silence_ = time; }
   Misbehaviour& misbehaviour() { return misbehaviour_; }
+  AxisFaults& axis_faults() { return axis_.faults(); }
 
   const drive::Profile& profile() const { return *profile_; }
   std::uint8_t node() const { return node_; }
   canopen::NmtState nmt_state() const { return nmt_; }
+  drive::DriveState power_state() const { return power_.state(); }
+  bool is_moving() const { return axis_.is_moving(); }
+  /// What an object holds, as its bytes; for tests that look past the bus.
+  const Bytes& value(ObjectAddress object) const { return values_.get(object); }
   /// Writes that went to the memory that outlives power-off since the drive was made.
   std::uint64_t flash_writes() const { return flash_writes_; }
 
@@ -92,6 +98,9 @@ class SimDrive final : public Device, private canopen::ObjectStore {
   void collect_answers(TimePoint now);
   void set_up_error_control(TimePoint now);
   void on_life_lost(TimePoint now);
+  void set_up_consumers();
+  void on_producer_lost(TimePoint now);
+  void move_axis();
   void send_emergency(std::uint16_t code, std::array<std::uint8_t, 5> vendor);
   std::uint64_t effective(ObjectAddress object) const;
   const od::Parameter* parameter(const std::string& id) const {
@@ -108,6 +117,7 @@ class SimDrive final : public Device, private canopen::ObjectStore {
   Axis axis_;
   canopen::SdoServer server_;
   canopen::ErrorControlSlave error_control_;
+  HeartbeatConsumer consumer_;
   canopen::NmtState nmt_ = canopen::NmtState::initialising;
   TimePoint now_{};
   TimePoint boot_at_ = TimePoint::min();  ///< When the boot-up message is due; kNever once it is sent.

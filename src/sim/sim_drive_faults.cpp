@@ -14,6 +14,9 @@ using canopen::NmtState;
 namespace {
 
 constexpr std::size_t kHistorySize = 8;
+/// EMCY of a life guarding or heartbeat error (CiA 301, table 26).
+constexpr std::uint16_t kHeartbeatError = 0x8130;
+constexpr std::uint16_t kQuickStopWord = 0x0002;
 constexpr std::uint64_t kGenericAndVendor = 0x81;  ///< Bits of 1001h.
 
 }  // namespace
@@ -31,6 +34,17 @@ void SimDrive::raise_fault(std::uint16_t code, std::array<std::uint8_t, 5> vendo
   history_.push_front(static_cast<std::uint32_t>(vendor[0] | vendor[1] << 8U) << 16U | code);
   if (history_.size() > kHistorySize) history_.pop_back();
   send_emergency(code, vendor);
+}
+
+/// A heartbeat that 1016h watches has not come: emergency, and what 6007h says; a fault where there is none.
+void SimDrive::on_producer_lost(TimePoint now) {
+  enum : std::uint64_t { kNoAction, kFault, kDisable, kQuickStop };
+  const bool has_option = values_.has(kAbortConnectionOption);
+  const auto option = has_option ? values_.number(kAbortConnectionOption) : kFault;
+  if (option == kFault) return raise_fault(kHeartbeatError, {}, now);
+  send_emergency(kHeartbeatError, {});
+  if (option == kDisable) power_.disable();
+  if (option == kQuickStop) power_.on_controlword(kQuickStopWord, 0, false, now);
 }
 
 /// Some families take a wrong access for a fault of the drive.

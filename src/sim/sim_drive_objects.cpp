@@ -13,7 +13,7 @@ using canopen::NmtState;
 
 std::uint32_t SimDrive::read(ObjectAddress object, Bytes& out) {
   if (const auto code = values_.check_read(object); code != 0) return code;
-  axis_.advance(is_enabled(), now_);
+  move_axis();
   if (object == kStatusword) {
     const auto word = power_.statusword(static_cast<std::int8_t>(values_.number(kModeDisplay)));
     out = store_le(static_cast<std::uint16_t>(word | axis_.bits(is_enabled())), 2);
@@ -109,6 +109,8 @@ void SimDrive::after_write(ObjectAddress object, ByteSpan data) {
     (void)memory_->save();
   }
   if (object == kHeartbeatTime || object == kGuardTime || object == kLifeFactor) set_up_error_control(now_);
+  if (object.index == kConsumerIndex && object.sub > 0)
+    consumer_.set(object.sub, static_cast<std::uint32_t>(values_.number(object)));
   if (object == kModes) values_.set(kModeDisplay, data);
   if (object == kControlword) {
     power_.on_controlword(static_cast<std::uint16_t>(load_le(data)),

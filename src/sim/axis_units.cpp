@@ -1,0 +1,72 @@
+// The numbers of a simulated axis in the units of the family's own objects.
+#include <cmath>
+
+#include "drive/quantity.hpp"
+#include "sim/axis.hpp"
+
+namespace servoctl::sim {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+/// Where the manual does not tell the counts of a turn.
+constexpr double kAssumedTurn = 10000;
+/// Speed that ramps given as a time lead to.
+constexpr double kRampSpeedRpm = 3000;
+constexpr double kNoRamp = 1e12;
+
+constexpr ObjectAddress kPositionActual{0x6064, 0};
+constexpr ObjectAddress kProfileVelocity{0x6081, 0};
+
+}  // namespace
+
+double Axis::read(ObjectAddress object) const {
+  const auto meaning = drive::meaning(drive::target_at(profile_, object), 0);
+  if (!meaning.type_known) return 0;
+  const auto value = od::decode(meaning.type, values_->get(object));
+  return value ? drive::scaled(meaning, *value) : 0;
+}
+
+void Axis::write(ObjectAddress object, double number) {
+  const auto meaning = drive::meaning(drive::target_at(profile_, object), 0);
+  if (!meaning.type_known) return;
+  const auto raw =
+      meaning.encoding == od::Encoding::plain
+          ? Result<od::Value>(od::Value(static_cast<std::int64_t>(std::llround(number / meaning.scale))))
+          : od::encode_number(meaning.encoding, meaning.type, number);
+  const auto bytes = raw ? od::encode(meaning.type, *raw) : tl::unexpected<Error>(raw.error());
+  if (bytes) values_->set(object, *bytes);
+}
+
+ObjectAddress Axis::speed_object() const {
+  const auto target = drive::resolve(profile_, profile_->rules.motion.position_speed);
+  return target ? target->address : kProfileVelocity;
+}
+
+double Axis::units_per_turn() const {
+  if (drive::meaning(drive::target_at(profile_, kPositionActual), 0).unit == "rad") return 2 * kPi;
+  const auto rule = profile_->rules.units.find(drive::Measure::increments_per_turn);
+  if (rule == profile_->rules.units.end()) return kAssumedTurn;
+  double out = 1;
+  const auto factor = [&](const drive::Quotient::Factor& f) {
+    const auto* object = std::get_if<ObjectAddress>(&f);
+    return object != nullptr ? read(*object) : std::get<double>(f);
+  };
+  for (const auto& f : rule->second.multiply) out *= factor(f);
+  for (const auto& f : rule->second.divide) out /= factor(f);
+  return std::isfinite(out) && out > 0 ? out : kAssumedTurn;
+}
+
+double Axis::speed_factor(ObjectAddress object) const {
+  const auto unit = drive::meaning(drive::target_at(profile_, object), 0).unit;
+  return unit == "rpm" ? units_per_turn() / 60 : 1;
+}
+
+double Axis::ramp(ObjectAddress object) const {
+  const auto unit = drive::meaning(drive::target_at(profile_, object), 0).unit;
+  const double value = read(object);
+  if (value <= 0) return kNoRamp;
+  if (unit == "ms") return kRampSpeedRpm / 60 * units_per_turn() / (value / 1000);
+  return unit == "rpm/s" ? value * units_per_turn() / 60 : value;
+}
+
+}  // namespace servoctl::sim
