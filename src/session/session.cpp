@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "canopen/cob_id.hpp"
+#include "canopen/nmt.hpp"
 #include "session/transfer_run.hpp"
 
 namespace servoctl::session {
@@ -42,7 +43,9 @@ Result<std::optional<can::Frame>> Session::receive(TimePoint deadline) {
   }
   while (const auto question = guard_.take_frame())
     if (const auto sent = bus_->send(*question); !sent) return tl::unexpected<Error>(sent.error());
-  auto frame = bus_->receive(std::min({deadline, watch_.deadline(), guard_.deadline()}));
+  const auto heartbeat = send_heartbeat();
+  if (!heartbeat) return tl::unexpected<Error>(heartbeat.error());
+  auto frame = bus_->receive(std::min({deadline, watch_.deadline(), guard_.deadline(), *heartbeat}));
   if (!frame) return frame;
   received_at_ = now();
   if (*frame) watch_.on_frame(**frame, received_at_);
@@ -52,6 +55,18 @@ Result<std::optional<can::Frame>> Session::receive(TimePoint deadline) {
   if (const auto report = *frame ? can::parse_report(**frame) : std::nullopt)
     if (const auto alive = on_report(*report); !alive) return tl::unexpected<Error>(alive.error());
   return frame;
+}
+
+Result<TimePoint> Session::send_heartbeat() {
+  if (!heartbeat_) return kNever;
+  const auto time = now();
+  if (time < heartbeat_->next) return heartbeat_->next;
+  heartbeat_->next = time + heartbeat_->period;
+  if (const auto sent =
+          bus_->send(canopen::heartbeat_frame(heartbeat_->node, canopen::NmtState::operational));
+      !sent)
+    return tl::unexpected<Error>(sent.error());
+  return heartbeat_->next;
 }
 
 Result<void> Session::on_report(can::ControllerReport report) {
@@ -104,7 +119,8 @@ void Session::stop_guarding() {
 }
 
 TimePoint Session::next_event() const {
-  return std::min({bus_->next_event(), watch_.deadline(), guard_.deadline()});
+  return std::min(
+      {bus_->next_event(), watch_.deadline(), guard_.deadline(), heartbeat_ ? heartbeat_->next : kNever});
 }
 
 }  // namespace servoctl::session

@@ -34,6 +34,9 @@ struct Options {
   Duration timeout = std::chrono::milliseconds(500);  ///< Longest wait for one SDO answer.
   std::uint32_t retries = 1;        ///< Further tries of a read that was not answered; never of a write.
   std::function<bool()> cancelled;  ///< Asked in every wait; may be empty.
+  /// Told true before a drive is energised and false when it is at rest again: until then a signal must not
+  /// end the process at once. May be empty.
+  std::function<void(bool energised)> protect;
   /// Told how many bytes of a long transfer have gone, of how many in all where that is known, on the bus's
   /// clock; may be empty.
   std::function<void(std::size_t done, std::optional<std::size_t> total, TimePoint now)> progress;
@@ -73,6 +76,13 @@ class Session {
   /// Values written to the flash of a node since the bus was opened, where each write wears it.
   std::size_t& flash_writes(std::uint8_t node) { return flash_writes_[node]; }
 
+  /// servoctl as a heartbeat producer (CiA 301, 7.2.8.2.2.2), state operational: one message at once and one
+  /// a period, in every wait from now on. `node` 1..127 is servoctl's own.
+  void produce_heartbeat(std::uint8_t node, Duration period) {
+    heartbeat_ = {node, period, TimePoint::min()};
+  }
+  void stop_heartbeat() { heartbeat_.reset(); }
+
   TimePoint now() const { return bus_->now(); }
   can::Bus& bus() { return *bus_; }
   const std::string& url() const { return url_; }
@@ -88,12 +98,21 @@ class Session {
   /// cancelled, Errc::bus when the controller reports bus-off: nothing will be answered then.
   Result<std::optional<can::Frame>> receive(TimePoint deadline);
   Result<void> on_report(can::ControllerReport report);
+  /// Sends the heartbeat when it is due; the answer is when the next one is.
+  Result<TimePoint> send_heartbeat();
+
+  struct Heartbeat {
+    std::uint8_t node;
+    Duration period;
+    TimePoint next;
+  };
 
   std::unique_ptr<can::Bus> bus_;
   std::string url_;
   Options options_;
   canopen::NodeWatch watch_;
   canopen::NodeGuard guard_;
+  std::optional<Heartbeat> heartbeat_;
   std::vector<can::ControllerReport> reports_;
   std::optional<can::ControllerReport> last_report_;
   std::array<std::size_t, 128> flash_writes_{};
