@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/result.hpp"
+#include "commands/keys.hpp"
 #include "drive/profile.hpp"
 #include "report/value.hpp"
 #include "session/session.hpp"
@@ -91,6 +92,13 @@ struct Context {
   /// Shows one sample of a command that goes on: the line in text, the record with `-o jsonl`. With `--json`
   /// nothing: the result has to carry the samples.
   std::function<void(const report::Record& sample, std::string_view line)> emit;
+
+  /// Shows lines at once where people look (stderr), whatever form the result has; may be empty.
+  std::function<void(std::string_view text)> tell;
+  /// Whether what emit() shows reaches nobody any more (closed pipe, full disk); may be empty.
+  std::function<bool()> output_lost;
+  /// The keys of the terminal, until the answer is destroyed; null where there is none. May be empty.
+  std::function<std::unique_ptr<Keys>()> open_keys;
 
   bool keeps_samples = false;  ///< `--json`: the result carries what emit() was given.
 

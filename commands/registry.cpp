@@ -26,6 +26,14 @@ extern const Command kFaultShow;
 extern const Command kFaultList;
 extern const Command kFaultReset;
 extern const Command kFaultClearHistory;
+extern const Command kEnable;
+extern const Command kDisable;
+extern const Command kQuickStopCommand;
+extern const Command kMode;
+extern const Command kJog;
+extern const Command kMove;
+extern const Command kHome;
+extern const Command kTorque;
 extern const Command kNmtStart;
 extern const Command kNmtStop;
 extern const Command kNmtPreop;
@@ -83,23 +91,48 @@ constexpr Parameter kGlobal[] = {
 
 std::span<const Command* const> registry() {
   static constexpr const Command* kAll[] = {
-      &kScan,         &kInfo,
-      &kStatus,       &kRead,
-      &kWrite,        &kObjects,
-      &kParamList,    &kParamGet,
-      &kParamSet,     &kParamSearch,
-      &kParamExplain, &kBackup,
-      &kDiff,         &kVerify,
-      &kRestore,      &kClone,
-      &kStore,        &kDefaults,
-      &kFaultShow,    &kFaultList,
-      &kFaultReset,   &kFaultClearHistory,
-      &kNmtStart,     &kNmtStop,
-      &kNmtPreop,     &kNmtReset,
-      &kNmtResetComm, &kNmtWatch,
-      &kDecode,       &kDrives,
-      &kEdsCheck,     &kRun,
-      &kSim,          &kCompletion,
+      &kScan,
+      &kInfo,
+      &kStatus,
+      &kRead,
+      &kWrite,
+      &kObjects,
+      &kParamList,
+      &kParamGet,
+      &kParamSet,
+      &kParamSearch,
+      &kParamExplain,
+      &kBackup,
+      &kDiff,
+      &kVerify,
+      &kRestore,
+      &kClone,
+      &kStore,
+      &kDefaults,
+      &kFaultShow,
+      &kFaultList,
+      &kFaultReset,
+      &kFaultClearHistory,
+      &kEnable,
+      &kDisable,
+      &kQuickStopCommand,
+      &kMode,
+      &kJog,
+      &kMove,
+      &kHome,
+      &kTorque,
+      &kNmtStart,
+      &kNmtStop,
+      &kNmtPreop,
+      &kNmtReset,
+      &kNmtResetComm,
+      &kNmtWatch,
+      &kDecode,
+      &kDrives,
+      &kEdsCheck,
+      &kRun,
+      &kSim,
+      &kCompletion,
       &kHelp,
   };
   return kAll;

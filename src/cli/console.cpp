@@ -9,6 +9,7 @@
 #include <string>
 
 #include "cli/signals.hpp"
+#include "cli/terminal_keys.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -60,6 +61,10 @@ void StandardConsole::pause(std::string_view text) {
 }
 
 bool StandardConsole::can_ask() const { return ::isatty(STDIN_FILENO) == 1 && ::isatty(STDERR_FILENO) == 1; }
+
+std::unique_ptr<commands::Keys> StandardConsole::open_keys() {
+  return can_ask() ? TerminalKeys::open(STDIN_FILENO) : nullptr;
+}
 
 std::size_t StandardConsole::width() const {
   winsize size{};

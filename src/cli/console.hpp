@@ -1,7 +1,10 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <string_view>
+
+#include "commands/keys.hpp"
 
 namespace servoctl::cli {
 
@@ -23,6 +26,10 @@ class Console {
   virtual void pause(std::string_view text) = 0;
   virtual bool can_ask() const = 0;       ///< Whether there is a person at a terminal.
   virtual std::size_t width() const = 0;  ///< Columns of the terminal text goes to; 0: no terminal.
+  /// The keys of the terminal as they are pressed, until the answer is destroyed; null where there is none.
+  virtual std::unique_ptr<commands::Keys> open_keys() { return nullptr; }
+  /// Whether data can no longer be written: the reader has gone.
+  virtual bool output_lost() const { return false; }
 };
 
 /// Standard streams of the process.
@@ -35,6 +42,8 @@ class StandardConsole final : public Console {
   void pause(std::string_view text) override;
   bool can_ask() const override;
   std::size_t width() const override;
+  std::unique_ptr<commands::Keys> open_keys() override;
+  bool output_lost() const override { return write_error_ != 0; }
 
   /// The first error (errno) that kept data from being written; 0 when all of it was.
   int write_error() const { return write_error_; }

@@ -8,6 +8,7 @@
 #include "base/text.hpp"
 #include "can/socketcan.hpp"
 #include "canopen/cob_id.hpp"
+#include "cli/signals.hpp"
 #include "commands/help.hpp"
 #include "commands/notice.hpp"
 #include "session/open_bus.hpp"
@@ -111,9 +112,15 @@ Result<Value> Shell::execute(Run& run, const commands::Arguments& arguments) {
   context.emit = [this, &run](const report::Record& sample, std::string_view line) {
     if (run.settings.samples)
       console_->out(report::to_json(sample) + "\n");
-    else if (!run.settings.json)
+    else if (!run.settings.json && !line.empty())
       console_->out(std::string(line) + "\n");
   };
+  context.tell = [this](std::string_view text) {
+    progress_.end();
+    console_->err(text);
+  };
+  context.output_lost = [this] { return console_->output_lost(); };
+  context.open_keys = [this] { return console_->open_keys(); };
   return run.command->run(context, arguments);
 }
 
@@ -213,6 +220,7 @@ Result<session::Session*> Shell::open(const Settings& settings) {
     trace_ = settings.trace;
     session_ = std::make_unique<session::Session>(std::move(*bus), settings.bus, session::Options{});
     session_->options().cancelled = options_.cancelled;
+    session_->options().protect = protect_from_signals;
     session_->options().progress = [this](std::size_t done, std::optional<std::size_t> total, TimePoint now) {
       progress_.update(done, total, now);
     };

@@ -1,0 +1,90 @@
+#include <fmt/format.h>
+
+#include "commands/motion_options.hpp"
+#include "commands/motion_result.hpp"
+#include "commands/records.hpp"
+#include "drive/cia402.hpp"
+#include "session/operation_mode.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using report::Show;
+using report::Value;
+
+constexpr Parameter kParameters[] = {kTurnOption};
+
+/// Up to "operation enabled" with harmless targets. On every other way out the drive is de-energised.
+Result<void> energise(Context& context, session::Motion& motion) {
+  session::MotionGuard guard(*context.session, motion.units(), motion.node());
+  if (const auto done = guard.neutral_targets(); !done) return done;
+  if (const auto done = guard.enable(); !done) return done;
+  return guard.release();
+}
+
+Result<session::PreflightItem> enable_one(Context& context, session::Motion& motion) {
+  if (const auto ready = motion.prepare(); !ready) return tl::unexpected<Error>(ready.error());
+  const auto items = motion.look(context.chinese);
+  if (!items) return tl::unexpected<Error>(items.error());
+  if (context.tell) context.tell(preflight_text(*items));
+  if (context.dry_run) return session::PreflightItem{};
+  if (const auto possible = session::check_preflight(*items, motion.node()); !possible)
+    return tl::unexpected<Error>(possible.error());
+  const auto mode = session::read_mode(*context.session, motion.node());
+  if (!mode) return tl::unexpected<Error>(mode.error());
+  const auto question = fmt::format(
+      "Energise node {} and leave it so, in mode {}? Nothing will watch over it, and the motor may move.",
+      motion.node(), session::mode_text(*context.profile, *mode, context.chinese));
+  if (const auto answer = context.confirm(question); !answer) return tl::unexpected<Error>(answer.error());
+  if (const auto done = energise(context, motion); !done) return tl::unexpected<Error>(done.error());
+  return session::PreflightItem{};
+}
+
+Result<Value> run(Context& context, const Arguments& arguments) {
+  report::Table table;
+  table.columns = {{"node"}, {"state"}, {"energised", "", Show::json}, {"result"}, {"error", "", Show::json}};
+  for (const auto node : context.nodes) {
+    auto options = motion_options(context, arguments);
+    if (!options) return tl::unexpected<Error>(options.error());
+    session::Motion motion(*context.session, *context.profile, node, std::move(*options));
+    const auto done = enable_one(context, motion);
+    if (!done) context.errors.push_back(done.error());
+    session::Power power(*context.session, *context.profile, node);
+    const auto state = power.state();
+    const bool enabled = done.has_value() && !context.dry_run;
+    table.rows.push_back({node, state ? Value(drive::name(*state)) : Value(),
+                          state ? Value(drive::is_energised(*state)) : Value(),
+                          !done             ? "failed"
+                          : context.dry_run ? "would be enabled"
+                                            : "ENERGISED, and stays so",
+                          done ? Value() : error_record(done.error())});
+    if (enabled)
+      context.notices.push_back(fmt::format(
+          "node {} IS ENERGISED and nothing watches over it; `disable -n {}` takes the power away", node,
+          node));
+    if (!done) break;
+  }
+  return Value(std::move(table));
+}
+
+}  // namespace
+
+extern const Command kEnable;
+const Command kEnable{
+    .path = "enable",
+    .summary = "Energise a drive and leave it enabled",
+    .details =
+        "Shows what there is to know before, asks, sets the targets so that nothing moves (60FFh and 6071h "
+        "to 0, 607Ah "
+        "to where it stands), and goes to \"operation enabled\" by controlwords 06h, 07h, 0Fh, waiting in "
+        "every state. "
+        "The drive stays energised when servoctl ends: `disable` takes the power away. `jog` and `move` "
+        "enable and "
+        "disable by themselves.",
+    .parameters = kParameters,
+    .needs = Needs::node | Needs::dictionary,
+    .effect = Effect::moves,
+    .run = run,
+};
+
+}  // namespace servoctl::commands

@@ -1,0 +1,57 @@
+#include "commands/motion_options.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+constexpr Parameter kParameters[] = {
+    {.name = "method", .help = "number or name of 6098h; the drive's own unless said", .kind = Kind::value},
+    {.name = "--speed", .help = "speed to the switch (6099h:01)", .kind = Kind::value},
+    {.name = "--search", .help = "speed to the index pulse (6099h:02)", .kind = Kind::value},
+    {.name = "--offset", .help = "position of the home point (607Ch)", .kind = Kind::value},
+    {.name = "--within", .help = "longest time it may take (default 60s)", .kind = Kind::duration},
+    kSpeedLimitOption,
+    kMaxTorqueOption,
+    kMaxFollowingErrorOption,
+    kWindowOption,
+    kTurnOption,
+    kMasterNodeOption,
+    kCsvOption,
+};
+
+Result<report::Value> run(Context& context, const Arguments& arguments) {
+  session::Home home;
+  home.method = arguments.text("method");
+  home.fast = arguments.text("--speed");
+  home.slow = arguments.text("--search");
+  home.offset = arguments.text("--offset");
+  const auto longest = time_option(arguments, "--within");
+  if (!longest) return tl::unexpected<Error>(longest.error());
+  home.longest = longest->value_or(home.longest);
+  MotionRun motion;
+  motion.plan = [&](session::Motion& m) { return session::plan_home(m, home); };
+  motion.run = [&](session::Motion& m, const session::MotionPlan& plan) {
+    return session::run_home(m, home, plan);
+  };
+  return run_motion(context, arguments, motion);
+}
+
+}  // namespace
+
+extern const Command kHome;
+const Command kHome{
+    .path = "home",
+    .summary = "Find the home position",
+    .details =
+        "Homing mode with the family's own start sequence, watched and ended like `jog`. A drive that says "
+        "\"homed\" "
+        "from an earlier run is not believed: the bits must go and come back. Method, speeds and offset are "
+        "put back "
+        "afterwards; the home position stays. Example: `home 35 -n 1`, `home 1 --speed 30rpm --search 6rpm "
+        "-n 1`.",
+    .parameters = kParameters,
+    .needs = Needs::node | Needs::dictionary,
+    .effect = Effect::moves,
+    .run = run,
+};
+
+}  // namespace servoctl::commands

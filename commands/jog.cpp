@@ -1,0 +1,130 @@
+#include <fmt/format.h>
+
+#include "base/number.hpp"
+#include "commands/motion_options.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+constexpr Parameter kParameters[] = {
+    {.name = "speed",
+     .help = "60rpm, -1.5rev/s; the sign is the direction",
+     .kind = Kind::value,
+     .required = true},
+    {.name = "--for", .help = "how long", .kind = Kind::duration},
+    {.name = "--turns", .help = "how many turns of the motor", .kind = Kind::number},
+    {.name = "--until-key",
+     .help = "while an arrow key is held; any other key ends (default on a terminal)",
+     .kind = Kind::flag},
+    kSpeedLimitOption,
+    kAccelerationOption,
+    kMaxTorqueOption,
+    kMaxFollowingErrorOption,
+    kWindowOption,
+    kTurnOption,
+    kMasterNodeOption,
+    kCsvOption,
+};
+
+/// Turns the repetitions of a held key into "held" and "let go". Keyboards begin to repeat after up to 0.7 s,
+/// and then do it at least ten times a second.
+class HeldKey {
+ public:
+  HeldKey(std::unique_ptr<Keys> keys, session::Session& session)
+      : keys_(std::move(keys)), session_(&session) {}
+
+  session::HoldKey operator()() {
+    for (auto key = keys_->take(); key != Keys::Key::none; key = keys_->take()) {
+      const bool plus = key == Keys::Key::right || key == Keys::Key::up;
+      const bool minus = key == Keys::Key::left || key == Keys::Key::down;
+      if (!plus && !minus) return session::HoldKey::stop;
+      const auto now_held = plus ? session::HoldKey::plus : session::HoldKey::minus;
+      repeats_ = now_held == held_;
+      held_ = now_held;
+      pressed_ = session_->now();
+    }
+    if (session_->now() - pressed_ > (repeats_ ? kRepeat : kFirstRepeat)) held_ = session::HoldKey::none;
+    return held_;
+  }
+
+ private:
+  static constexpr Duration kFirstRepeat = std::chrono::milliseconds(700);
+  static constexpr Duration kRepeat = std::chrono::milliseconds(200);
+
+  std::unique_ptr<Keys> keys_;
+  session::Session* session_;
+  session::HoldKey held_ = session::HoldKey::none;
+  bool repeats_ = false;
+  TimePoint pressed_{};
+};
+
+Result<session::Jog> parse_jog(const Arguments& arguments) {
+  session::Jog jog;
+  jog.speed = arguments.text("speed");
+  const auto length = time_option(arguments, "--for");
+  if (!length) return tl::unexpected<Error>(length.error());
+  jog.length = *length;
+  if (arguments.has("--turns")) {
+    jog.turns = parse_real(arguments.text("--turns"));
+    if (!jog.turns || *jog.turns <= 0)
+      return fail(Errc::usage, fmt::format("'{}' is no number of turns", arguments.text("--turns")),
+                  "write 3 or 0.5; the sign of the speed is the direction");
+  }
+  if (int{jog.length.has_value()} + int{jog.turns.has_value()} + int{arguments.has("--until-key")} > 1)
+    return fail(Errc::usage, "--for, --turns and --until-key are three ways to end; give one");
+  return jog;
+}
+
+Result<report::Value> run(Context& context, const Arguments& arguments) {
+  auto jog = parse_jog(arguments);
+  if (!jog) return tl::unexpected<Error>(jog.error());
+  const bool by_key = !jog->length && !jog->turns;
+  const auto missing = fail(Errc::usage, "how long?", "add --for 2s or --turns 3; keys need a terminal");
+  MotionRun motion;
+  motion.plan = [&](session::Motion& m) { return session::plan_jog(m, *jog); };
+  motion.run = [&](session::Motion& m, const session::MotionPlan& plan) {
+    if (by_key) {
+      auto keys = context.open_keys();
+      if (keys == nullptr) return m.finish(missing);
+      if (context.tell)
+        context.tell("hold right or up to turn, left or down to turn back; any other key ends\n");
+      auto held = std::make_shared<HeldKey>(std::move(keys), m.session());
+      jog->keys = [held] { return (*held)(); };
+    }
+    auto done = session::run_jog(m, *jog, plan);
+    jog->keys = {};
+    return done;
+  };
+  if (by_key && !context.dry_run && (!context.open_keys || context.open_keys() == nullptr)) return missing;
+  return run_motion(context, arguments, motion);
+}
+
+}  // namespace
+
+extern const Command kJog;
+const Command kJog{
+    .path = "jog",
+    .summary = "Turn a motor at a speed, for a time, some turns, or while a key is held",
+    .details =
+        "Looks at the drive first and shows what there is to know, asks, then enables the drive in its "
+        "velocity "
+        "mode, turns, stops and disables it, and puts everything back that it changed; on every way out, "
+        "Ctrl-C "
+        "and lost connections among them. Above 300 rpm (or a tenth of the drive's own limit, where its unit "
+        "is "
+        "not known) --limit is needed. Ramps take half a second unless --accel says otherwise. It ends at "
+        "once "
+        "when the drive reports an emergency, does not answer, turns the wrong way or not at all, or passes "
+        "a "
+        "limit given. Where the drive has a heartbeat consumer (1016h), it watches servoctl meanwhile and "
+        "stops by "
+        "itself 0.5 s after the last heartbeat. Positions, speeds, torques are shown on the way; -o jsonl "
+        "has every "
+        "sample. Examples: `jog 60rpm --for 2s -n 1`, `jog -30rpm --turns 3 -n 1 --yes`.",
+    .parameters = kParameters,
+    .needs = Needs::node | Needs::dictionary,
+    .effect = Effect::moves,
+    .run = run,
+};
+
+}  // namespace servoctl::commands

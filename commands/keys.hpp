@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+
+namespace servoctl::commands {
+
+/// Keys that a person presses, each as it is pressed, without Enter.
+class Keys {
+ public:
+  enum class Key : std::uint8_t {
+    none,  ///< Nothing was pressed since the last look.
+    left,
+    right,
+    up,
+    down,
+    other,
+    lost,  ///< The terminal is gone.
+  };
+
+  Keys() = default;
+  Keys(const Keys&) = delete;
+  Keys& operator=(const Keys&) = delete;
+  virtual ~Keys() = default;
+
+  /// The next key; never waits.
+  virtual Key take() = 0;
+};
+
+}  // namespace servoctl::commands

@@ -1,0 +1,143 @@
+#include "commands/motion_options.hpp"
+
+#include <fmt/format.h>
+
+#include "base/duration.hpp"
+#include "base/number.hpp"
+#include "canopen/cob_id.hpp"
+#include "commands/motion_result.hpp"
+#include "session/operation_mode.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using report::Record;
+using report::Value;
+
+/// A line of text so often; `-o jsonl` has every sample.
+constexpr Duration kLinePeriod = std::chrono::milliseconds(250);
+
+/// Shows the samples while they come.
+class Display {
+ public:
+  Display(Context& context, const session::Motion& motion) : context_(&context), motion_(&motion) {}
+
+  void operator()(const session::MotionSample& sample) {
+    if (!begin_) begin_ = sample.time;
+    const bool due = !last_line_ || sample.time - *last_line_ >= kLinePeriod;
+    if (due) last_line_ = sample.time;
+    context_->emit(sample_record(sample, *begin_),
+                   due ? sample_line(sample, *begin_, motion_->units()) : std::string());
+  }
+
+ private:
+  Context* context_;
+  const session::Motion* motion_;
+  std::optional<TimePoint> begin_;
+  std::optional<TimePoint> last_line_;
+};
+
+/// What would be written, in order.
+Value planned(const Context& context, const session::Motion& motion, const session::MotionPlan& plan,
+              const std::vector<session::PreflightItem>& items) {
+  report::Table steps;
+  steps.columns = {{"step"}, {"object"}, {"value"}};
+  const auto add = [&](std::string_view step, ObjectAddress object, const Bytes& data) {
+    const auto value = motion.units().physical(object, data);
+    steps.rows.push_back(
+        {step, to_string(object), value ? fmt::format("{:g} {}", value->value, value->unit) : to_hex(data)});
+  };
+  steps.rows.push_back({"watchdog", "", session::to_string(motion.watchdog())});
+  steps.rows.push_back({"mode", to_string(session::kModeOfOperation),
+                        session::mode_text(*context.profile, plan.mode, context.chinese)});
+  for (const auto& [object, data] : plan.settings) add("setting", object, data);
+  steps.rows.push_back({"enable", to_string(session::kControlword), "0x0006, 0x0007, 0x000F"});
+  steps.rows.push_back({"motion", "", plan.summary});
+  steps.rows.push_back(
+      {"end", to_string(session::kControlword), "stop, disable, put everything back, verify"});
+  return Record{{"node", motion.node()}, {"preflight", preflight_table(items)}, {"steps", std::move(steps)}};
+}
+
+Result<void> ask(Context& context, std::uint8_t node, const session::MotionPlan& plan,
+                 const std::vector<session::PreflightItem>& items) {
+  if (context.tell) context.tell(preflight_text(items));
+  return context.confirm(
+      fmt::format("The motor of node {} will move: {}. Is the machine clear?", node, plan.summary));
+}
+
+std::optional<std::uint64_t> number(const Arguments& arguments, std::string_view name) {
+  const auto value = parse_integer(arguments.text(name));
+  return value && !value->negative ? std::optional(value->magnitude) : std::nullopt;
+}
+
+}  // namespace
+
+Result<std::uint8_t> one_node(const Context& context) {
+  if (context.nodes.size() == 1 && context.nodes.front() != 0) return context.nodes.front();
+  return fail(Errc::usage, "one motor at a time: this command takes one node", "-n 1");
+}
+
+Result<std::optional<Duration>> time_option(const Arguments& arguments, std::string_view name) {
+  if (!arguments.has(name)) return std::optional<Duration>();
+  const auto time = parse_duration(arguments.text(name));
+  if (!time || *time == Duration::zero())
+    return fail(Errc::usage, fmt::format("'{}' is no time for {}", arguments.text(name), name),
+                "write 500ms or 10s");
+  return std::optional(*time);
+}
+
+Result<session::MotionOptions> motion_options(const Context& context, const Arguments& arguments) {
+  session::MotionOptions out;
+  out.speed_limit = arguments.text("--limit");
+  out.acceleration = arguments.text("--accel");
+  out.max_torque = arguments.text("--max-torque");
+  out.max_following_error = arguments.text("--max-following-error");
+  out.window = arguments.text("--window");
+  out.unheard = context.output_lost;
+  if (arguments.has("--turn")) {
+    const auto counts = number(arguments, "--turn");
+    if (!counts || *counts == 0)
+      return fail(Errc::usage, fmt::format("'{}' is no number of counts", arguments.text("--turn")),
+                  "such as 131072 for 17 bits");
+    out.turn = static_cast<double>(*counts);
+  }
+  if (!arguments.has("--master-node")) return out;
+  const auto id = number(arguments, "--master-node");
+  if (!id || *id < canopen::kFirstNode || *id > canopen::kLastNode)
+    return fail(Errc::usage, fmt::format("'{}' is no node-ID", arguments.text("--master-node")),
+                "write 1..127");
+  out.producer = static_cast<std::uint8_t>(*id);
+  return out;
+}
+
+Result<Value> run_motion(Context& context, const Arguments& arguments, const MotionRun& run) {
+  const auto node = one_node(context);
+  if (!node) return tl::unexpected<Error>(node.error());
+  auto options = motion_options(context, arguments);
+  if (!options) return tl::unexpected<Error>(options.error());
+  std::function<void(const session::MotionSample&)> display;
+  options->on_sample = [&display](const session::MotionSample& sample) { display(sample); };
+  session::Motion motion(*context.session, *context.profile, *node, std::move(*options));
+  display = Display(context, motion);
+  if (const auto ready = motion.prepare(); !ready) return tl::unexpected<Error>(ready.error());
+  const auto plan = run.plan(motion);
+  if (!plan) return tl::unexpected<Error>(plan.error());
+  const auto items = motion.look(context.chinese);
+  if (!items) return tl::unexpected<Error>(items.error());
+  for (const auto& note : plan->notes) context.notices.push_back(fmt::format("node {}: {}", *node, note));
+  if (context.dry_run) return planned(context, motion, *plan, *items);
+  if (const auto possible = session::check_preflight(*items, *node); !possible)
+    return tl::unexpected<Error>(possible.error());
+  if (const auto mode = session::check_mode(*context.session, *context.profile, *node, plan->mode); !mode)
+    return tl::unexpected<Error>(mode.error());
+  if (const auto answer = ask(context, *node, *plan, *items); !answer)
+    return tl::unexpected<Error>(answer.error());
+  const auto done = run.run(motion, *plan);
+  if (arguments.has("--csv"))
+    if (const auto written = write_csv(std::string(arguments.text("--csv")), done.samples, motion.units());
+        !written)
+      context.errors.push_back(written.error());
+  return motion_result(context, *node, *plan, *items, done);
+}
+
+}  // namespace servoctl::commands

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <functional>
+
+#include "commands/command.hpp"
+#include "session/motion_kinds.hpp"
+
+/// What jog, move, home and torque have in common on the command line, and how they run.
+namespace servoctl::commands {
+
+inline constexpr Parameter kSpeedLimitOption{
+    .name = "--limit", .help = "greatest speed; raises the safe one knowingly", .kind = Kind::value};
+inline constexpr Parameter kAccelerationOption{
+    .name = "--accel", .help = "ramps (6083h, 6084h) instead of half a second", .kind = Kind::value};
+inline constexpr Parameter kMaxTorqueOption{
+    .name = "--max-torque", .help = "stop above this torque", .kind = Kind::value};
+inline constexpr Parameter kMaxFollowingErrorOption{
+    .name = "--max-following-error", .help = "stop above this following error", .kind = Kind::value};
+inline constexpr Parameter kWindowOption{
+    .name = "--window", .help = "stop when it has moved farther than this", .kind = Kind::value};
+inline constexpr Parameter kTurnOption{.name = "--turn",
+                                       .help = "counts in one turn of the motor, if the drive does not tell",
+                                       .kind = Kind::number};
+inline constexpr Parameter kMasterNodeOption{
+    .name = "--master-node", .help = "servoctl's own node-ID for the watchdog", .kind = Kind::number};
+inline constexpr Parameter kCsvOption{
+    .name = "--csv", .help = "write the samples to this file", .kind = Kind::file};
+
+/// The options above, as far as they are given. Errc::usage for a number that is none.
+Result<session::MotionOptions> motion_options(const Context& context, const Arguments& arguments);
+
+/// The one node that a motion may have. Errc::usage for several: one motor at a time.
+Result<std::uint8_t> one_node(const Context& context);
+
+/// A time that an option gives; empty when it is not given.
+Result<std::optional<Duration>> time_option(const Arguments& arguments, std::string_view name);
+
+/// What a command does between the looks and the answer.
+struct MotionRun {
+  std::function<Result<session::MotionPlan>(session::Motion&)> plan;
+  std::function<session::MotionReport(session::Motion&, const session::MotionPlan&)> run;
+  std::string what;  ///< `jog 60rpm`: for --dry-run.
+};
+
+/// Looks, shows the pre-flight list, asks, moves, and tells how the drive was left. With --dry-run the drive
+/// is looked at and nothing is written.
+Result<report::Value> run_motion(Context& context, const Arguments& arguments, const MotionRun& run);
+
+}  // namespace servoctl::commands

@@ -1,0 +1,174 @@
+#include "commands/motion_result.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+
+#include "base/file.hpp"
+#include "base/number.hpp"
+#include "base/text.hpp"
+#include "commands/notice.hpp"
+#include "drive/cia402.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using report::Record;
+using report::Show;
+using report::Value;
+using session::Channel;
+using session::MotionSample;
+
+constexpr std::array kEvery{Channel::position, Channel::velocity, Channel::torque, Channel::following_error};
+
+double seconds_since(const MotionSample& sample, TimePoint begin) {
+  return std::chrono::duration<double>(sample.time - begin).count();
+}
+
+/// Six digits are more than any sensor has, and fewer than the noise of the conversion.
+std::string short_number(double value) { return fmt::format("{:.6g}", value); }
+
+double rounded(double value) { return parse_real(short_number(value)).value_or(value); }
+
+/// First, last, least and greatest value of one quantity.
+Value summary_of(const std::vector<Series>& series) {
+  report::Table table;
+  table.columns = {{"quantity"}, {"unit"}, {"first"}, {"last"}, {"least"}, {"greatest"}};
+  for (const auto& one : series) {
+    const auto [least, greatest] = std::minmax_element(one.values.begin(), one.values.end());
+    table.rows.push_back(
+        {one.name, report::text_or_null(one.unit), one.values.front(), one.values.back(), *least, *greatest});
+  }
+  return table;
+}
+
+Value samples_of(const std::vector<Series>& series) {
+  report::List out;
+  for (const auto& one : series) {
+    report::List seconds(one.seconds.begin(), one.seconds.end());
+    report::List values(one.values.begin(), one.values.end());
+    out.emplace_back(Record{{"name", one.name},
+                            {"unit", report::text_or_null(one.unit)},
+                            {"seconds", std::move(seconds)},
+                            {"values", std::move(values)}});
+  }
+  return out;
+}
+
+Value end_record(const session::MotionEnd& end) {
+  report::List notes(end.notes.begin(), end.notes.end());
+  return Record{{"verified", end.verified},
+                {"state", drive::name(end.state)},
+                {"statusword", report::Hex{end.statusword, 4}},
+                {"stopped", end.stopped},
+                {"quick_stop", end.quick_stop},
+                {"not_put_back", std::move(notes)}};
+}
+
+/// A drive that may still be energised is worse than whatever ended the motion.
+Error unverified(std::uint8_t node, const std::string& text) {
+  Error error;
+  error.code = Errc::negative;
+  error.node = node;
+  error.message = fmt::format("node {}: {}", node, text);
+  error.hint = "do not go near the machine before its power is off";
+  return error;
+}
+
+}  // namespace
+
+std::string end_text(const session::MotionEnd& end, const session::WatchdogPlan& watchdog) {
+  if (end.verified)
+    return fmt::format("{}{}, verified (statusword 0x{:04X})", drive::name(end.state),
+                       end.quick_stop ? " after a quick stop" : "", end.statusword);
+  std::string out = "THE END STATE COULD NOT BE VERIFIED: TAKE THE POWER AWAY";
+  if (watchdog.kind != session::WatchdogPlan::Kind::none)
+    out += fmt::format(" (its watchdog should stop it within {} ms)",
+                       std::chrono::duration_cast<std::chrono::milliseconds>(watchdog.time).count());
+  return out;
+}
+
+Value motion_result(Context& context, std::uint8_t node, const session::MotionPlan& plan,
+                    const std::vector<session::PreflightItem>& items, const session::MotionReport& done) {
+  const auto end = end_text(done.end, done.watchdog);
+  if (!done.end.verified) context.errors.push_back(unverified(node, end));
+  if (!done.outcome) {
+    auto error = done.outcome.error();
+    error.message += fmt::format("; the drive is in {}", end);
+    if (!error.node) error.node = node;
+    context.errors.push_back(std::move(error));
+  }
+  for (const auto& note : done.end.notes) context.notices.push_back(fmt::format("node {}: {}", node, note));
+  for (const auto& event : done.events)
+    context.notices.push_back(notice_text(event, context.profile, context.chinese));
+  const double length =
+      done.samples.empty() ? 0 : seconds_since(done.samples.back(), done.samples.front().time);
+  Record out{{"node", node},
+             {"motion", plan.summary},
+             {"result", done.outcome ? "done" : "stopped"},
+             {"seconds", std::round(length * 1000) / 1000},
+             {"end", end, Show::text, "drive"},
+             {"end", end_record(done.end), Show::json},
+             {"watchdog", session::to_string(done.watchdog), Show::json},
+             {"preflight", preflight_table(items), Show::json},
+             {"summary", summary_of(done.series)}};
+  if (context.keeps_samples) out.push_back({"samples", samples_of(done.series), Show::json});
+  return out;
+}
+
+report::Table preflight_table(const std::vector<session::PreflightItem>& items) {
+  report::Table table;
+  table.columns = {{"weight", ""}, {"what"}, {"text", "before anything moves"}};
+  for (const auto& item : items) table.rows.push_back({session::name(item.weight), item.what, item.text});
+  return table;
+}
+
+std::string preflight_text(const std::vector<session::PreflightItem>& items) {
+  std::string out;
+  for (const auto& item : items)
+    out += fmt::format("{}  {}: {}\n", pad_right(session::name(item.weight), 7), item.what, item.text);
+  return out;
+}
+
+Record sample_record(const MotionSample& sample, TimePoint begin) {
+  Record out{{"time", seconds_since(sample, begin)}, {"statusword", sample.statusword}};
+  for (const auto channel : kEvery)
+    if (const auto value = sample[channel]) out.push_back({std::string(session::name(channel)), *value});
+  return out;
+}
+
+std::string sample_line(const MotionSample& sample, TimePoint begin, const session::MotionUnits& units) {
+  auto out = fmt::format("{:8.3f} s", seconds_since(sample, begin));
+  constexpr std::array<std::string_view, session::kChannels> kShort{"", "", "torque ", "error "};
+  for (const auto channel : kEvery) {
+    const auto value = sample[channel];
+    if (!value) continue;
+    const auto text = fmt::format("{}{} {}", kShort[static_cast<std::size_t>(channel)], short_number(*value),
+                                  units.unit(session::object_of(channel)));
+    out += "  " + pad_left(text, 15);
+  }
+  return out;
+}
+
+Result<void> write_csv(const std::string& path, const std::vector<MotionSample>& samples,
+                       const session::MotionUnits& units) {
+  std::string out = "seconds,statusword";
+  for (const auto channel : kEvery) {
+    const auto unit = units.unit(session::object_of(channel));
+    if (units.has(session::object_of(channel)))
+      out += fmt::format(",{}{}", session::name(channel), unit.empty() ? "" : " (" + unit + ")");
+  }
+  out += '\n';
+  for (const auto& sample : samples) {
+    out += fmt::format("{:.6f},0x{:04X}", seconds_since(sample, samples.front().time), sample.statusword);
+    for (const auto channel : kEvery) {
+      if (!units.has(session::object_of(channel))) continue;
+      const auto value = sample[channel];
+      out += value ? fmt::format(",{:.9g}", *value) : ",";
+    }
+    out += '\n';
+  }
+  return write_file_atomically(path, out);
+}
+
+}  // namespace servoctl::commands

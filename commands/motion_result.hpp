@@ -1,0 +1,31 @@
+#pragma once
+
+#include "commands/command.hpp"
+#include "session/motion_kinds.hpp"
+
+namespace servoctl::commands {
+
+/// The answer of a motion: what was asked, how it went, how the drive was left, the numbers on the way, and
+/// with --json all samples. What went wrong goes to `context.errors`, what the node told to the notices.
+report::Value motion_result(Context& context, std::uint8_t node, const session::MotionPlan& plan,
+                            const std::vector<session::PreflightItem>& items,
+                            const session::MotionReport& done);
+
+/// How a motion left the drive: `switch on disabled, verified`, or loudly that it could not be verified.
+std::string end_text(const session::MotionEnd& end, const session::WatchdogPlan& watchdog);
+
+/// The pre-flight list as a table.
+report::Table preflight_table(const std::vector<session::PreflightItem>& items);
+/// The same as lines for a notice or a question, `caution  watchdog  none: …`.
+std::string preflight_text(const std::vector<session::PreflightItem>& items);
+
+/// One sample as `-o jsonl` shows it, and as a line.
+report::Record sample_record(const session::MotionSample& sample, TimePoint begin);
+std::string sample_line(const session::MotionSample& sample, TimePoint begin,
+                        const session::MotionUnits& units);
+
+/// Writes the series as a table, one line a sample: `seconds,position (deg),…`. Errc::file.
+Result<void> write_csv(const std::string& path, const std::vector<session::MotionSample>& samples,
+                       const session::MotionUnits& units);
+
+}  // namespace servoctl::commands

@@ -1,0 +1,56 @@
+#include "commands/motion_options.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+constexpr Parameter kParameters[] = {
+    {.name = "target",
+     .help = "90deg, 2rev, or the drive's own counts",
+     .kind = Kind::value,
+     .required = true},
+    {.name = "--relative", .help = "counted from where it stands", .kind = Kind::flag},
+    {.name = "--speed",
+     .help = "speed of the move (a fifth of the safe speed unless said)",
+     .kind = Kind::value},
+    kSpeedLimitOption,
+    kAccelerationOption,
+    kMaxTorqueOption,
+    kMaxFollowingErrorOption,
+    kWindowOption,
+    kTurnOption,
+    kMasterNodeOption,
+    kCsvOption,
+};
+
+Result<report::Value> run(Context& context, const Arguments& arguments) {
+  session::Move move;
+  move.target = arguments.text("target");
+  move.relative = arguments.has("--relative");
+  move.speed = arguments.text("--speed");
+  MotionRun motion;
+  motion.plan = [&](session::Motion& m) { return session::plan_move(m, move); };
+  motion.run = [&](session::Motion& m, const session::MotionPlan& plan) {
+    return session::run_move(m, move, plan);
+  };
+  return run_motion(context, arguments, motion);
+}
+
+}  // namespace
+
+extern const Command kMove;
+const Command kMove{
+    .path = "move",
+    .summary = "Go to a position",
+    .details =
+        "Profile position with the set-point handshake, watched and ended like `jog`. The motion counts as "
+        "done when "
+        "the drive reports the target reached, stands still, and is where it was sent. Negative targets need "
+        "`--` "
+        "before them or a unit: `move --relative -- -90deg`. Example: `move 90deg --speed 30rpm -n 1`.",
+    .parameters = kParameters,
+    .needs = Needs::node | Needs::dictionary,
+    .effect = Effect::moves,
+    .run = run,
+};
+
+}  // namespace servoctl::commands

@@ -1,0 +1,53 @@
+#include "commands/motion_options.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+constexpr Parameter kParameters[] = {
+    {.name = "torque", .help = "5%, 0.2Nm; the sign is the direction", .kind = Kind::value, .required = true},
+    {.name = "--for", .help = "how long", .kind = Kind::duration, .required = true},
+    kSpeedLimitOption,
+    kMaxTorqueOption,
+    kMaxFollowingErrorOption,
+    kWindowOption,
+    kTurnOption,
+    kMasterNodeOption,
+    kCsvOption,
+};
+
+Result<report::Value> run(Context& context, const Arguments& arguments) {
+  if (!arguments.has("--limit"))
+    return fail(Errc::usage, "an unloaded motor runs away under torque: it needs a speed limit",
+                "add --limit 60rpm");
+  session::Torque torque;
+  torque.torque = arguments.text("torque");
+  const auto length = time_option(arguments, "--for");
+  if (!length) return tl::unexpected<Error>(length.error());
+  if (!*length) return fail(Errc::usage, "how long?", "add --for 1s");
+  torque.length = **length;
+  MotionRun motion;
+  motion.plan = [&](session::Motion& m) { return session::plan_torque(m, torque); };
+  motion.run = [&](session::Motion& m, const session::MotionPlan& plan) {
+    return session::run_torque(m, torque, plan);
+  };
+  return run_motion(context, arguments, motion);
+}
+
+}  // namespace
+
+extern const Command kTorque;
+const Command kTorque{
+    .path = "torque",
+    .summary = "Push with a torque for a time",
+    .details =
+        "Torque mode, watched and ended like `jog`. --limit is the speed the motor must not exceed: it goes "
+        "to the "
+        "drive where the family has a limit for this mode, and servoctl stops above it in any case. Example: "
+        "`torque 5% --limit 60rpm --for 1s -n 1`.",
+    .parameters = kParameters,
+    .needs = Needs::node | Needs::dictionary,
+    .effect = Effect::moves,
+    .run = run,
+};
+
+}  // namespace servoctl::commands

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <termios.h>
+
+#include <memory>
+
+#include "commands/keys.hpp"
+
+namespace servoctl::cli {
+
+/// Takes the keys of a terminal one by one while it lives: no echo, no Enter; Ctrl-C stays a signal.
+class TerminalKeys final : public commands::Keys {
+ public:
+  /// Null when `descriptor` is no terminal.
+  static std::unique_ptr<commands::Keys> open(int descriptor);
+  ~TerminalKeys() override;
+
+  Key take() override;
+
+ private:
+  TerminalKeys(int descriptor, const termios& before) : descriptor_(descriptor), before_(before) {}
+  /// The next byte that was typed; -1 for none, -2 when the terminal is gone.
+  int next_byte();
+
+  int descriptor_;
+  termios before_;
+};
+
+}  // namespace servoctl::cli

@@ -1,0 +1,31 @@
+#include "drive/soft_ramp.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace servoctl::drive {
+namespace {
+
+struct Row {
+  std::string_view ramp;
+  std::string_view speed;
+};
+constexpr std::array kRows{Row{"rpm/s", "rpm"}, Row{"inc/s2", "inc/s"}, Row{"rad/s2", "rad/s"}};
+
+constexpr double kSpeedOfTimes = 3000;
+constexpr double kShortestMs = 200;
+constexpr double kLongestMs = 5000;
+
+}  // namespace
+
+std::optional<double> soft_ramp(std::string_view ramp_unit, std::string_view speed_unit, double speed,
+                                double seconds) {
+  if (speed == 0 || seconds <= 0) return std::nullopt;
+  for (const auto& row : kRows)
+    if (row.ramp == ramp_unit && row.speed == speed_unit) return std::abs(speed) / seconds;
+  if (ramp_unit != "ms" || speed_unit != "rpm") return std::nullopt;
+  return std::clamp(seconds * 1000 * kSpeedOfTimes / std::abs(speed), kShortestMs, kLongestMs);
+}
+
+}  // namespace servoctl::drive

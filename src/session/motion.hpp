@@ -1,0 +1,114 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "session/motion_guard.hpp"
+#include "session/motion_monitor.hpp"
+#include "session/preflight.hpp"
+
+namespace servoctl::session {
+
+/// What a user says about a motion, as it was written: units are known to the drive alone.
+struct MotionOptions {
+  std::optional<std::uint8_t> producer;  ///< servoctl's own node-ID for the watchdog.
+  std::optional<double> turn;            ///< Increments in one turn, where the drive does not tell.
+  std::string speed_limit;               ///< Of 60FFh.
+  std::string acceleration;              ///< Of 6083h.
+  std::string max_torque;                ///< Of 6077h.
+  std::string max_following_error;       ///< Of 60F4h.
+  std::string window;                    ///< Of 6064h.
+  std::function<void(const MotionSample&)> on_sample;
+  std::function<bool()> unheard;  ///< Nobody takes the samples any more: the motion ends. May be empty.
+};
+
+/// What came of a motion.
+struct MotionReport {
+  Result<void> outcome;
+  MotionEnd end;
+  WatchdogPlan watchdog;
+  std::vector<MotionSample> samples;
+  std::vector<Series> series;
+  std::vector<canopen::NodeEvent> events;
+};
+
+/// An object and what is to be written to it.
+using MotionSetting = std::pair<ObjectAddress, Bytes>;
+
+/// One motion of one drive, from the first look at it to its verified end. Used in this order: prepare(),
+/// begin(), then watch() as often as needed, finish().
+class Motion {
+ public:
+  /// Speed that needs no --limit, where it can be told in rpm.
+  static constexpr double kSafeRpm = 300;
+  /// Else this part of the drive's own maximum.
+  static constexpr double kSafePart = 0.1;
+  /// Time in which a motion reaches its speed, and comes to rest, unless told otherwise.
+  static constexpr double kRampSeconds = 0.5;
+
+  Motion(Session& session, const drive::Profile& profile, std::uint8_t node, MotionOptions options);
+
+  /// Only reads: units, the limits the user gave, which watchdog there is.
+  Result<void> prepare();
+  Result<std::vector<PreflightItem>> look(bool chinese);
+
+  /// Arms the watchdog, sets the mode, makes the targets harmless, writes the settings, and enables.
+  Result<void> begin(std::int8_t mode, const std::vector<MotionSetting>& settings,
+                     std::optional<ObjectAddress> kept_target = {});
+  /// Writes an object that is put back in the end.
+  Result<void> write(ObjectAddress object, const Bytes& data) { return guard_->change(object, data); }
+  Result<void> command(std::uint16_t controlword) { return power_.command(controlword); }
+  /// Samples until `done` says so; false when the time is over first. An error when the motion has to end.
+  Result<bool> watch(const std::function<Result<bool>(const MotionSample&)>& done, Duration longest);
+  /// Stops the drive, takes its power away, puts everything back.
+  MotionReport finish(Result<void> outcome);
+
+  /// The speed in the unit of 60FFh that must not be exceeded: the user's, else a safe one. Errc::usage when
+  /// none is known; Errc::refused when the user's is above the drive's own maximum.
+  Result<double> speed_cap() const { return speed_cap_; }
+  /// Errc::refused when the speed is above speed_cap().
+  Result<void> check_speed(double speed) const;
+  /// 6083h and 6084h (or 609Ah) for this speed, as far as the family has them.
+  std::vector<MotionSetting> ramps(double speed, std::initializer_list<ObjectAddress> objects) const;
+  /// Time that the way takes at the speed with its ramps; empty when their units do not fit.
+  std::optional<Duration> duration(double way, double speed) const;
+  /// The way in units of 6064h between which and nothing there is no difference at this speed.
+  void set_standstill(double speed);
+  /// Below this the motor stands still, in the unit of 606Ch.
+  bool stands_still(const MotionSample& sample) const;
+
+  const MotionUnits& units() const { return *units_; }
+  const MotionMonitor& monitor() const { return *monitor_; }
+  MotionLimits& limits() { return monitor_->limits(); }
+  const drive::MotionRules& rules() const { return profile_->rules.motion; }
+  std::uint8_t node() const { return node_; }
+  Session& session() { return *session_; }
+  const WatchdogPlan& watchdog() const { return watchdog_; }
+  Error error(Errc code, const std::string& what, std::string hint = {}) const {
+    return drive_error(code, node_, what, std::move(hint));
+  }
+
+ private:
+  Result<void> read_limits();
+  Result<double> find_speed_cap();
+  std::optional<double> read_speed(ObjectAddress object);
+
+  Session* session_;
+  const drive::Profile* profile_;
+  std::uint8_t node_;
+  MotionOptions options_;
+  Power power_;
+  std::unique_ptr<MotionUnits> units_;
+  std::unique_ptr<MotionMonitor> monitor_;
+  std::unique_ptr<MotionGuard> guard_;
+  WatchdogPlan watchdog_;
+  Result<double> speed_cap_ = 0.0;
+  double standstill_ = 0;
+};
+
+}  // namespace servoctl::session

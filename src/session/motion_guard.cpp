@@ -1,0 +1,246 @@
+#include "session/motion_guard.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "session/deaf.hpp"
+#include "session/operation_mode.hpp"
+
+namespace servoctl::session {
+namespace {
+
+using drive::DriveState;
+
+constexpr std::uint16_t kConsumerIndex = 0x1016;
+constexpr ObjectAddress kGuardTime{0x100C, 0};
+constexpr ObjectAddress kLifeFactor{0x100D, 0};
+constexpr std::uint32_t kLife = 5;  ///< Guard times in the life time.
+
+constexpr std::uint16_t kHalted = 0x010F;
+constexpr std::uint16_t kQuickStop = 0x0002;
+constexpr std::uint16_t kDisableVoltage = 0x0000;
+
+/// A ramp of servoctl's own takes half a second.
+constexpr Duration kHaltPatience = std::chrono::seconds(2);
+constexpr Duration kQuickStopPatience = std::chrono::seconds(1);
+/// A drive that obeys has lost a tenth of its speed by then.
+constexpr Duration kMostDelay = std::chrono::milliseconds(250);
+constexpr double kSlower = 0.9;
+constexpr Duration kPause = std::chrono::milliseconds(10);
+constexpr int kTries = 3;
+
+bool is_lost(const Error& error) { return error.code == Errc::timeout || error.code == Errc::bus; }
+
+}  // namespace
+
+MotionGuard::MotionGuard(Session& session, const MotionUnits& units, std::uint8_t node)
+    : session_(&session), units_(&units), node_(node), power_(session, units.profile(), node) {
+  if (session.options().protect) session.options().protect(true);
+}
+
+MotionGuard::~MotionGuard() { (void)end(); }
+
+Result<void> MotionGuard::change(ObjectAddress object, const Bytes& data) {
+  const auto before = session_->upload(node_, object);
+  if (!before) return tl::unexpected<Error>(before.error());
+  if (*before == data) return {};
+  // Noted first: an answer that is lost may belong to a write that was done.
+  const bool known =
+      std::any_of(changed_.begin(), changed_.end(), [&](const Changed& c) { return c.object == object; });
+  if (!known) changed_.push_back({object, *before});
+  return session_->download(node_, object, data);
+}
+
+Result<void> MotionGuard::change_mode(std::int8_t mode) {
+  const auto before = read_mode(*session_, node_);
+  if (!before) return tl::unexpected<Error>(before.error());
+  if (*before == mode) return {};
+  if (!mode_before_) mode_before_ = *before;
+  return set_mode(*session_, units_->profile(), node_, mode);
+}
+
+Result<void> MotionGuard::neutral_targets(std::optional<ObjectAddress> except) {
+  for (const auto object : {kTargetVelocity, kTargetTorque}) {
+    if (!units_->has(object) || object == except) continue;
+    const auto size = od::size_of(units_->meaning(object).type).value_or(4);
+    if (const auto done = change(object, Bytes(size, 0)); !done) return done;
+  }
+  if (!units_->has(kTargetPosition) || !units_->has(kPositionActual)) return {};
+  const auto here = session_->upload(node_, kPositionActual);
+  if (!here) return tl::unexpected<Error>(here.error());
+  return change(kTargetPosition, *here);
+}
+
+Result<void> MotionGuard::arm(const WatchdogPlan& plan) {
+  watchdog_ = plan;
+  if (plan.reaction_off)
+    if (const auto done = change(kAbortConnectionOption, store_le(kReactWithFault, 2)); !done) return done;
+  const auto ms =
+      static_cast<std::uint32_t>(std::chrono::duration_cast<std::chrono::milliseconds>(plan.time).count());
+  if (plan.kind == WatchdogPlan::Kind::heartbeat) {
+    if (const auto done =
+            change({kConsumerIndex, plan.entry}, store_le(std::uint32_t{plan.producer} << 16U | ms, 4));
+        !done)
+      return done;
+    session_->produce_heartbeat(plan.producer, plan.time / kLife);
+  }
+  if (plan.kind == WatchdogPlan::Kind::guarding) {
+    for (const auto& [object, value, size] :
+         {std::tuple{kGuardTime, ms / kLife, 2U}, std::tuple{kLifeFactor, kLife, 1U}})
+      if (const auto done = change(object, store_le(value, size)); !done) return done;
+    session_->guard(node_, {plan.time / kLife, kLife});
+  }
+  // The drive watches from the first message on.
+  return pause(*session_, Duration::zero());
+}
+
+Result<void> MotionGuard::enable() {
+  energised_ = true;
+  return power_.reach(DriveState::operation_enabled);
+}
+
+Result<bool> MotionGuard::wait_for_standstill(Duration patience) {
+  const auto begin = session_->now();
+  std::optional<double> first;
+  for (;;) {
+    const auto state = power_.state();
+    if (!state) return tl::unexpected<Error>(state.error());
+    if (!drive::is_energised(*state)) return true;
+    const auto answer = session_->upload(node_, kVelocityActual);
+    if (!answer && is_lost(answer.error())) return tl::unexpected<Error>(answer.error());
+    const auto speed = answer ? units_->physical(kVelocityActual, *answer) : std::nullopt;
+    if (speed && std::abs(speed->value) <= standstill_.value_or(0)) return true;
+    if (speed && !first) first = std::abs(speed->value);
+    const bool slower = speed && std::abs(speed->value) < *first * kSlower;
+    if (session_->now() >= begin + (slower ? patience : kMostDelay)) return false;
+    if (const auto paused = pause(*session_, kPause); !paused) return tl::unexpected<Error>(paused.error());
+  }
+}
+
+/// Halt where there is one, targets to zero, and a quick stop when that does not help.
+void MotionGuard::stop() {
+  const auto state = power_.state();
+  if (!state) {
+    lost_ = is_lost(state.error());
+    return;
+  }
+  if (!drive::is_energised(*state)) return;
+  const auto& rules = units_->profile().rules.motion;
+  const auto mode = read_mode(*session_, node_);
+  const bool by_target = mode && (*mode == rules.velocity || *mode == rules.torque);
+  if (*state == DriveState::operation_enabled) {
+    if (rules.halt) (void)power_.command(kHalted);
+    const auto target = mode && *mode == rules.torque ? kTargetTorque : kTargetVelocity;
+    if (by_target) {
+      const auto size = od::size_of(units_->meaning(target).type).value_or(4);
+      (void)session_->download(node_, target, Bytes(size, 0));
+    }
+  }
+  auto stopped = rules.halt || by_target ? wait_for_standstill(kHaltPatience) : Result<bool>(false);
+  if (stopped && !*stopped) {
+    result_.quick_stop = true;
+    (void)power_.command(kQuickStop);
+    stopped = wait_for_standstill(kQuickStopPatience);
+  }
+  result_.stopped = stopped.value_or(false);
+  lost_ = !stopped && is_lost(stopped.error());
+}
+
+/// By "switched on", so that the drive can set its brake; at once where it does not follow.
+void MotionGuard::take_power_away() {
+  if (!lost_ && result_.stopped && power_.state() == DriveState::operation_enabled)
+    (void)power_.reach(DriveState::switched_on);
+  for (int i = 0; i < kTries; ++i) {
+    const auto state = power_.state();
+    if (state && !drive::is_energised(*state) && *state != DriveState::switched_on &&
+        *state != DriveState::ready_to_switch_on)
+      return;
+    const auto written = power_.command(kDisableVoltage);
+    if (written && power_.wait_for(DriveState::switch_on_disabled).value_or(false)) return;
+    if (!written && written.error().code == Errc::bus) return;
+  }
+}
+
+void MotionGuard::note(const std::string& what, const Error& error) {
+  result_.notes.push_back(fmt::format("{}: {}", what, error.message));
+}
+
+void MotionGuard::put_back() {
+  for (auto changed = changed_.rbegin(); changed != changed_.rend(); ++changed) {
+    if (lost_) {
+      result_.notes.push_back(fmt::format("object {} was not put back to {}", to_string(changed->object),
+                                          to_hex(changed->before)));
+      continue;
+    }
+    const auto done = session_->download(node_, changed->object, changed->before);
+    if (!done)
+      note(fmt::format("object {} could not be put back to {}", to_string(changed->object),
+                       to_hex(changed->before)),
+           done.error());
+    lost_ = lost_ || (!done && is_lost(done.error()));
+  }
+  changed_.clear();
+  if (!mode_before_) return;
+  const auto mode = *std::exchange(mode_before_, std::nullopt);
+  if (lost_) {
+    result_.notes.push_back(fmt::format("mode {} was not put back", mode));
+  } else if (const auto done = set_mode(*session_, units_->profile(), node_, mode); !done) {
+    note(fmt::format("mode {} could not be put back", mode), done.error());
+  }
+}
+
+void MotionGuard::disarm() {
+  if (!watchdog_) return;
+  session_->stop_heartbeat();
+  if (watchdog_->kind == WatchdogPlan::Kind::guarding) session_->stop_guarding();
+  watchdog_.reset();
+}
+
+void MotionGuard::verify() {
+  const auto word = power_.statusword();
+  if (!word) {
+    note("the statusword could not be read", word.error());
+    return;
+  }
+  result_.statusword = *word;
+  result_.state = drive::decode_state(*word);
+  result_.verified = !drive::is_energised(result_.state);
+}
+
+MotionEnd MotionGuard::end() {
+  if (end_) return *end_;
+  const Deaf deaf(*session_);
+  if (energised_) {
+    stop();
+    take_power_away();
+  }
+  // A drive that cannot be reached is left to its own watchdog.
+  if (lost_) disarm();
+  put_back();
+  disarm();
+  verify();
+  end_ = result_;
+  if (session_->options().protect) session_->options().protect(false);
+  return *end_;
+}
+
+Result<void> MotionGuard::release() {
+  const Deaf deaf(*session_);
+  Result<void> done;
+  for (const auto& changed : changed_) {
+    if (changed.object.index < 0x1000 || changed.object.index >= 0x2000) continue;
+    done = session_->download(node_, changed.object, changed.before);
+  }
+  disarm();
+  changed_.clear();
+  mode_before_.reset();
+  energised_ = false;
+  result_.state = power_.state().value_or(DriveState::unknown);
+  end_ = result_;
+  if (session_->options().protect) session_->options().protect(false);
+  return done;
+}
+
+}  // namespace servoctl::session

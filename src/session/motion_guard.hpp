@@ -1,0 +1,83 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "session/motion_units.hpp"
+#include "session/power.hpp"
+#include "session/watchdog.hpp"
+
+namespace servoctl::session {
+
+/// In which state a motion left the drive.
+struct MotionEnd {
+  bool verified = false;  ///< The statusword was read afterwards and shows no energised state.
+  drive::DriveState state = drive::DriveState::unknown;
+  std::uint16_t statusword = 0;
+  bool stopped = false;            ///< It stood still before its power was taken away.
+  bool quick_stop = false;         ///< It needed a quick stop for that.
+  std::vector<std::string> notes;  ///< What could not be put back, and why.
+};
+
+/// Holds a drive while it is energised: whatever way the owner is left by, the drive is stopped, its power is
+/// taken away, what was changed is put back, and the end state is verified. While that goes on, nothing is
+/// interrupted.
+class MotionGuard {
+ public:
+  MotionGuard(Session& session, const MotionUnits& units, std::uint8_t node);
+  MotionGuard(const MotionGuard&) = delete;
+  MotionGuard& operator=(const MotionGuard&) = delete;
+  ~MotionGuard();
+
+  /// Writes an object, after its value was kept; end() puts it back. One that holds the bytes already is not
+  /// written.
+  Result<void> change(ObjectAddress object, const Bytes& data);
+  /// The same for the mode of operation, which comes last in end().
+  Result<void> change_mode(std::int8_t mode);
+  /// Sets the targets so that enabling does not move the motor: 60FFh and 6071h to 0, 607Ah to where it
+  /// stands. Objects in `except` are left alone.
+  Result<void> neutral_targets(std::optional<ObjectAddress> except = {});
+  /// Makes the drive watch servoctl until end().
+  Result<void> arm(const WatchdogPlan& plan);
+  /// "Operation enabled", by the shortest legal way.
+  Result<void> enable();
+
+  /// The speed below which the motor counts as standing still, in the unit of 606Ch.
+  void set_standstill(double speed) { standstill_ = speed; }
+
+  /// Ends the motion; the first call does it, further ones tell the same.
+  MotionEnd end();
+  /// Leaves the drive energised and its objects as they are, because that was asked for. Takes the watchdog
+  /// back.
+  Result<void> release();
+
+ private:
+  struct Changed {
+    ObjectAddress object;
+    Bytes before;
+  };
+
+  void stop();
+  Result<bool> wait_for_standstill(Duration patience);
+  void take_power_away();
+  void put_back();
+  void disarm();
+  void verify();
+  void note(const std::string& what, const Error& error);
+
+  Session* session_;
+  const MotionUnits* units_;
+  std::uint8_t node_;
+  Power power_;
+  std::vector<Changed> changed_;
+  std::optional<std::int8_t> mode_before_;
+  std::optional<WatchdogPlan> watchdog_;
+  bool energised_ = false;  ///< It was commanded up, so it may be.
+  bool lost_ = false;       ///< The drive or the bus does not answer any more.
+  std::optional<double> standstill_;
+  std::optional<MotionEnd> end_;
+  MotionEnd result_;
+};
+
+}  // namespace servoctl::session

@@ -1,0 +1,148 @@
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+
+#include "session/motion_kinds.hpp"
+#include "session/operation_mode.hpp"
+
+namespace servoctl::session {
+namespace {
+
+constexpr ObjectAddress kHomeOffset{0x607C, 0};
+constexpr ObjectAddress kMethod{0x6098, 0};
+constexpr ObjectAddress kFast{0x6099, 1};
+constexpr ObjectAddress kSlow{0x6099, 2};
+constexpr ObjectAddress kAcceleration{0x609A, 0};
+
+/// Methods that take the present position for home (CiA 402-2): they may be done before anybody looks.
+constexpr std::array<std::int64_t, 2> kAtOnce{35, 37};
+constexpr Duration kStart = std::chrono::seconds(1);
+
+class Homing {
+ public:
+  Homing(Motion& motion, const Home& home, const MotionPlan& plan)
+      : motion_(&motion), home_(&home), plan_(&plan) {}
+
+  Result<void> run() {
+    const auto before = motion_->watch([](const MotionSample&) -> Result<bool> { return true; }, {});
+    if (!before) return tl::unexpected<Error>(before.error());
+    // "Homed" may stand there from an earlier run: it counts when it was seen to go.
+    const auto word_before = motion_->monitor().samples().back().statusword;
+    begun_ = !is_done(word_before);
+    stale_error_ = is_error(word_before);
+    started_at_ = motion_->session().now();
+    for (const auto word : motion_->rules().start_homing)
+      if (const auto written = motion_->command(word); !written) return written;
+    const auto ended = motion_->watch([this](const MotionSample& s) { return look(s); }, home_->longest);
+    if (!ended) return tl::unexpected<Error>(ended.error());
+    if (*ended) return {};
+    return fail(
+        motion_->error(Errc::negative,
+                       fmt::format("found no home in {} s; it is stopped now",
+                                   std::chrono::duration<double>(home_->longest).count()),
+                       "does the switch or the index pulse come at all? `--within` gives it more time"));
+  }
+
+ private:
+  bool is_done(std::uint16_t word) const {
+    const auto& rules = motion_->rules();
+    return (word & rules.homing_done_mask) == rules.homing_done;
+  }
+
+  bool is_error(std::uint16_t word) const { return (word & motion_->rules().homing_error) != 0; }
+
+  Result<bool> look(const MotionSample& sample) {
+    stale_error_ = stale_error_ && is_error(sample.statusword) && sample.time - started_at_ < kStart;
+    if (is_error(sample.statusword) && !stale_error_)
+      return fail(motion_->error(
+          Errc::negative, fmt::format("ended homing with an error (statusword 0x{:04X})", sample.statusword),
+          "switch stuck, wrong method or a limit in the way; `fault show` may tell more"));
+    const bool done = is_done(sample.statusword);
+    begun_ = begun_ || !done;
+    if (done && begun_) return motion_->stands_still(sample);
+    if (begun_ || sample.time - started_at_ < kStart) return false;
+    const bool at_once =
+        std::find(kAtOnce.begin(), kAtOnce.end(), static_cast<std::int64_t>(plan_->value)) != kAtOnce.end();
+    if (at_once && motion_->stands_still(sample)) return true;
+    return fail(motion_->error(Errc::negative,
+                               "does not begin to look for home: what it says is from an earlier run",
+                               "is this method one the drive knows (6098h)?"));
+  }
+
+  Motion* motion_;
+  const Home* home_;
+  const MotionPlan* plan_;
+  bool begun_ = false;
+  bool stale_error_ = false;
+  TimePoint started_at_{};
+};
+
+/// A setting the user gave goes into the plan.
+Result<void> add(const Motion& motion, ObjectAddress object, const std::string& text, MotionPlan& plan) {
+  if (text.empty()) return {};
+  if (!motion.units().has(object))
+    return fail(motion.error(Errc::usage, fmt::format("this family has no object {}", to_string(object))));
+  const auto data = motion.units().parse(object, text);
+  if (!data) return tl::unexpected<Error>(data.error());
+  plan.settings.emplace_back(object, *data);
+  return {};
+}
+
+/// The number that will stand in the object: the new one, else what the drive holds.
+Result<Bytes> value_of(Motion& motion, ObjectAddress object, const MotionPlan& plan) {
+  for (const auto& [changed, data] : plan.settings)
+    if (changed == object) return data;
+  return motion.session().upload(motion.node(), object);
+}
+
+Result<void> check_method(Motion& motion, MotionPlan& plan) {
+  const auto method = value_of(motion, kMethod, plan);
+  if (!method) return tl::unexpected<Error>(method.error());
+  const auto meaning = motion.units().meaning(kMethod);
+  const auto value = od::decode(meaning.type, *method);
+  if (!value) return tl::unexpected<Error>(value.error());
+  const auto number = static_cast<std::int64_t>(od::to_double(*value));
+  const auto& nothing = motion.rules().no_homing;
+  if (std::find(nothing.begin(), nothing.end(), number) != nothing.end())
+    return fail(
+        motion.error(Errc::refused, fmt::format("method {} means \"no homing\" on this family", number)));
+  const auto* label = drive::label_of(meaning, *value);
+  if (meaning.labels != nullptr && label == nullptr)
+    return fail(motion.error(Errc::refused, fmt::format("this family has no homing method {}", number),
+                             "`objects 0x6098` lists them"));
+  plan.value = static_cast<double>(number);
+  plan.summary = fmt::format("home by method {}{}", number, label != nullptr ? " " + label->label : "");
+  return {};
+}
+
+}  // namespace
+
+Result<MotionPlan> plan_home(Motion& motion, const Home& home) {
+  const auto mode = motion.rules().homing;
+  if (!mode)
+    return fail(motion.error(Errc::refused, "this family cannot home by itself: it has no such mode"));
+  MotionPlan plan;
+  plan.mode = *mode;
+  for (const auto& [object, text] : {std::pair(kMethod, &home.method), std::pair(kFast, &home.fast),
+                                     std::pair(kSlow, &home.slow), std::pair(kHomeOffset, &home.offset)})
+    if (const auto added = add(motion, object, *text, plan); !added)
+      return tl::unexpected<Error>(added.error());
+  if (const auto known = check_method(motion, plan); !known) return tl::unexpected<Error>(known.error());
+  const auto fast = value_of(motion, kFast, plan);
+  if (!fast) return tl::unexpected<Error>(fast.error());
+  const auto speed = motion.units().physical(kFast, *fast).value_or(Physical{});
+  if (const auto allowed = motion.check_speed(speed.value); !allowed)
+    return tl::unexpected<Error>(allowed.error());
+  plan.speed = speed.value;
+  plan.unit = speed.unit;
+  plan.summary += fmt::format(" at {:g} {}", speed.value, speed.unit);
+  motion.set_standstill(speed.value);
+  return plan;
+}
+
+MotionReport run_home(Motion& motion, const Home& home, const MotionPlan& plan) {
+  auto begun = motion.begin(plan.mode, plan.settings);
+  return motion.finish(begun ? Homing(motion, home, plan).run() : begun);
+}
+
+}  // namespace servoctl::session

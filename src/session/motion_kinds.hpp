@@ -1,0 +1,69 @@
+#pragma once
+
+#include "session/motion.hpp"
+
+/// The four ways in which servoctl moves a motor. Each checks what it is asked before anything is written
+/// (plan_…: only reads), and then runs to its verified end (run_…). A plan belongs to the Motion it was made
+/// with.
+namespace servoctl::session {
+
+/// What a person holds down.
+enum class HoldKey : std::uint8_t { none, plus, minus, stop };
+
+/// Turning at a speed: for a time, for a way, or while a key is held. One of the three.
+struct Jog {
+  std::string speed;  ///< Of 60FFh; the sign is the direction.
+  std::optional<Duration> length;
+  std::optional<double> turns;
+  std::function<HoldKey()> keys;
+};
+
+/// Going to a position.
+struct Move {
+  std::string target;  ///< Of 607Ah.
+  bool relative = false;
+  std::string speed;  ///< Empty: a fifth of the safe speed.
+};
+
+/// Finding the home position.
+struct Home {
+  std::string method;  ///< Of 6098h; empty: the drive's present one.
+  std::string fast;    ///< Of 6099h:01; empty: the drive's present one.
+  std::string slow;    ///< Of 6099h:02; empty: the drive's present one.
+  std::string offset;  ///< Of 607Ch; empty: the drive's present one.
+  Duration longest = std::chrono::seconds(60);
+};
+
+/// Pushing with a torque; MotionOptions::speed_limit must be set.
+struct Torque {
+  std::string torque;  ///< Of 6071h.
+  Duration length{};
+};
+
+/// What a motion will do: the mode, what is written before it is enabled, and numbers for the message.
+struct MotionPlan {
+  std::int8_t mode = 0;
+  std::vector<MotionSetting> settings;
+  std::optional<ObjectAddress> kept_target;  ///< Limits the speed here, so it is not set to zero.
+  Bytes command;                             ///< Speed, position or torque as it is written.
+  double value = 0;                          ///< The same as a number; the method in homing.
+  std::string unit;
+  double speed = 0;     ///< In the unit of 60FFh; 0 where it is not known.
+  double way = 0;       ///< In the unit of 6064h.
+  std::string summary;  ///< `turn at 60 rpm for 2 s`
+  std::vector<std::string> notes;
+};
+
+Result<MotionPlan> plan_jog(Motion& motion, const Jog& jog);
+MotionReport run_jog(Motion& motion, const Jog& jog, const MotionPlan& plan);
+
+Result<MotionPlan> plan_move(Motion& motion, const Move& move);
+MotionReport run_move(Motion& motion, const Move& move, const MotionPlan& plan);
+
+Result<MotionPlan> plan_home(Motion& motion, const Home& home);
+MotionReport run_home(Motion& motion, const Home& home, const MotionPlan& plan);
+
+Result<MotionPlan> plan_torque(Motion& motion, const Torque& torque);
+MotionReport run_torque(Motion& motion, const Torque& torque, const MotionPlan& plan);
+
+}  // namespace servoctl::session

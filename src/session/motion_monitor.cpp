@@ -1,0 +1,136 @@
+#include "session/motion_monitor.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+
+#include "session/power.hpp"
+
+namespace servoctl::session {
+namespace {
+
+using canopen::NodeEvent;
+
+constexpr std::array kEvery{Channel::position, Channel::velocity, Channel::torque, Channel::following_error};
+
+tl::unexpected<Error> stopped_by(std::uint8_t node, const std::string& what, std::string hint) {
+  return fail(drive_error(Errc::negative, node, what, std::move(hint)));
+}
+
+}  // namespace
+
+std::string_view name(Channel channel) {
+  constexpr std::array<std::string_view, kChannels> kNames{"position", "velocity", "torque",
+                                                           "following_error"};
+  return kNames[static_cast<std::size_t>(channel)];
+}
+
+ObjectAddress object_of(Channel channel) {
+  constexpr std::array<ObjectAddress, kChannels> kObjects{kPositionActual, kVelocityActual, kTorqueActual,
+                                                          kFollowingError};
+  return kObjects[static_cast<std::size_t>(channel)];
+}
+
+MotionMonitor::MotionMonitor(Session& session, const MotionUnits& units, std::uint8_t node)
+    : session_(&session), units_(&units), node_(node) {
+  for (const auto channel : kEvery)
+    if (units.has(object_of(channel))) channels_.push_back(channel);
+}
+
+Result<MotionSample> MotionMonitor::sample() {
+  std::vector<SdoRequest> requests{{.node = node_, .object = kStatusword, .size = 2}};
+  for (const auto channel : channels_) requests.push_back({.node = node_, .object = object_of(channel)});
+  const auto answers = session_->transfer(requests);
+  if (!answers[0]) return tl::unexpected<Error>(answers[0].error());
+  MotionSample out;
+  out.time = session_->now();
+  out.statusword = static_cast<std::uint16_t>(load_le(*answers[0]));
+  std::vector<Channel> known;
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    const auto& answer = answers[i + 1];
+    if (!answer && answer.error().code != Errc::sdo_abort) return tl::unexpected<Error>(answer.error());
+    if (!answer) continue;  // The dictionary promises more than the drive has.
+    known.push_back(channels_[i]);
+    if (const auto number = units_->physical(object_of(channels_[i]), *answer))
+      out.values[static_cast<std::size_t>(channels_[i])] = number->value;
+  }
+  channels_ = std::move(known);
+  if (!begin_) begin_ = out[Channel::position];
+  samples_.push_back(out);
+  for (const auto& done : {check_events(), check_state(out), check_limits(out)})
+    if (!done) return tl::unexpected<Error>(done.error());
+  return out;
+}
+
+Result<void> MotionMonitor::wait_for_next() {
+  const auto due = samples_.empty() ? session_->now() : samples_.back().time + kPeriod;
+  const auto waited = session_->wait([] { return false; }, due);
+  if (!waited) return tl::unexpected<Error>(waited.error());
+  return {};
+}
+
+Result<void> MotionMonitor::check_events() {
+  Result<void> out;
+  for (const auto& event : session_->take_events()) {
+    events_.push_back(event);
+    if (event.node != node_ || !out) continue;
+    if (const auto* told = std::get_if<canopen::Emergency>(&event.what)) {
+      const auto& profile = units_->profile();
+      const auto faults = drive::faults_of(profile.faults, profile.rules.emergency, told->code, told->vendor);
+      const bool message = !faults.empty() && faults.front()->kind == drive::Fault::Kind::status;
+      if (told->code != 0 && !message)
+        out = stopped_by(node_, fmt::format("sent an emergency, 0x{:04X}, while it moved", told->code),
+                         "`fault show` tells what it means");
+    }
+    if (std::holds_alternative<NodeEvent::BootUp>(event.what))
+      out = stopped_by(node_, "restarted while it moved", "is its supply steady?");
+    if (std::holds_alternative<NodeEvent::HeartbeatLost>(event.what) ||
+        std::holds_alternative<NodeEvent::GuardingLost>(event.what))
+      out = fail(drive_error(Errc::timeout, node_, "its heartbeat was lost while it moved",
+                             "check cable, termination and supply"));
+  }
+  return out;
+}
+
+Result<void> MotionMonitor::check_state(const MotionSample& sample) const {
+  const auto state = drive::decode_state(sample.statusword);
+  if (state == drive::DriveState::operation_enabled) return {};
+  return stopped_by(node_,
+                    fmt::format("left \"operation enabled\" while it moved: {} (statusword 0x{:04X})",
+                                drive::name(state), sample.statusword),
+                    "`fault show` tells a fault; an input, another master or the panel may have disabled it");
+}
+
+Result<void> MotionMonitor::check_limits(const MotionSample& sample) const {
+  const auto beyond = [&](Channel channel, std::optional<double> limit, double from, std::string_view what) {
+    const auto value = sample[channel];
+    if (!limit || !value || std::abs(*value - from) <= *limit) return Result<void>{};
+    return Result<void>(stopped_by(node_,
+                                   fmt::format("{} of {:g} {} is beyond its limit of {:g}", what,
+                                               *value - from, units_->unit(object_of(channel)), *limit),
+                                   "the motion was stopped; raise the limit when it is meant"));
+  };
+  for (const auto& done :
+       {beyond(Channel::torque, limits_.torque, 0, "the torque"),
+        beyond(Channel::following_error, limits_.following_error, 0, "the following error"),
+        beyond(Channel::position, limits_.travel, begin_.value_or(0), "the way"),
+        beyond(Channel::velocity, limits_.speed, 0, "the speed")})
+    if (!done) return done;
+  return {};
+}
+
+std::vector<Series> MotionMonitor::series() const {
+  std::vector<Series> out;
+  for (const auto channel : kEvery) {
+    Series one{std::string(name(channel)), units_->unit(object_of(channel)), {}, {}};
+    for (const auto& sample : samples_) {
+      if (!sample[channel]) continue;
+      one.seconds.push_back(std::chrono::duration<double>(sample.time - samples_.front().time).count());
+      one.values.push_back(*sample[channel]);
+    }
+    if (!one.values.empty()) out.push_back(std::move(one));
+  }
+  return out;
+}
+
+}  // namespace servoctl::session

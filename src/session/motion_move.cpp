@@ -1,0 +1,162 @@
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+
+#include "session/motion_kinds.hpp"
+#include "session/operation_mode.hpp"
+
+namespace servoctl::session {
+namespace {
+
+constexpr ObjectAddress kAcceleration{0x6083, 0};
+constexpr ObjectAddress kDeceleration{0x6084, 0};
+constexpr ObjectAddress kPositionWindow{0x6067, 0};
+
+constexpr std::uint16_t kEnabled = 0x000F;
+constexpr std::uint16_t kNewSetpoint = 0x001F;
+constexpr std::uint16_t kAcknowledged = 1U << 12U;
+constexpr std::uint16_t kFollowingErrorBit = 1U << 13U;
+
+constexpr Duration kHandshake = std::chrono::seconds(1);
+constexpr Duration kSettling = std::chrono::seconds(2);
+constexpr Duration kUnknownDuration = std::chrono::seconds(60);
+/// Nearer than this part of the way counts as there, unless 6067h says otherwise.
+constexpr double kPartOfWay = 0.01;
+constexpr double kDefaultPart = 0.2;
+
+class Moving {
+ public:
+  Moving(Motion& motion, const MotionPlan& plan) : motion_(&motion), plan_(&plan) {}
+
+  Result<void> run() {
+    if (const auto window = read_window(); !window) return window;
+    if (const auto written = motion_->write(kTargetPosition, plan_->command); !written) return written;
+    if (motion_->rules().handshake)
+      if (const auto taken = hand_over(); !taken) return taken;
+    const auto longest = motion_->duration(plan_->way, plan_->speed).value_or(kUnknownDuration) * 3 / 2;
+    const auto arrived =
+        motion_->watch([this](const MotionSample& s) { return is_there(s); }, longest + kSettling);
+    if (!arrived) return tl::unexpected<Error>(arrived.error());
+    if (*arrived) return {};
+    return fail(
+        motion_->error(Errc::negative,
+                       fmt::format("did not arrive at {:g} {} in the time it needs; it is at {:g}",
+                                   plan_->value, plan_->unit, last_),
+                       "is it blocked, is its speed limited, or is the position window (6067h) too narrow?"));
+  }
+
+ private:
+  Result<void> read_window() {
+    window_ = std::abs(plan_->way) * kPartOfWay;
+    if (!motion_->units().has(kPositionWindow)) return {};
+    const auto answer = motion_->session().upload(motion_->node(), kPositionWindow);
+    if (!answer && answer.error().code != Errc::sdo_abort) return tl::unexpected<Error>(answer.error());
+    const auto told = answer ? motion_->units().physical(kPositionWindow, *answer) : std::nullopt;
+    if (told && told->unit == plan_->unit) window_ = std::max(window_, told->value);
+    return {};
+  }
+
+  /// Bit 4 rises, bit 12 answers; bit 4 falls, bit 12 falls (CiA 402-2, 10.4.2).
+  Result<void> hand_over() {
+    const auto wait = [this](bool high) {
+      return motion_->watch(
+          [high](const MotionSample& s) -> Result<bool> {
+            return ((s.statusword & kAcknowledged) != 0) == high;
+          },
+          kHandshake);
+    };
+    for (const auto word : {kEnabled, kNewSetpoint, kEnabled}) {
+      if (const auto written = motion_->command(word); !written) return written;
+      const bool taken = word == kNewSetpoint;
+      const auto answered = wait(taken);
+      if (!answered) return tl::unexpected<Error>(answered.error());
+      if (!*answered)
+        return fail(
+            motion_->error(Errc::negative,
+                           taken ? "did not take the target: bit 12 of the statusword stayed low"
+                                 : "does not become ready for a target: bit 12 of the statusword stayed high",
+                           "does another master command it?"));
+    }
+    return {};
+  }
+
+  Result<bool> is_there(const MotionSample& sample) {
+    if (motion_->rules().handshake && (sample.statusword & kFollowingErrorBit) != 0)
+      return fail(motion_->error(Errc::negative, "reports a following error (bit 13 of the statusword)",
+                                 "is it blocked, or are its ramps too steep for the load?"));
+    const auto position = sample[Channel::position];
+    last_ = position.value_or(last_);
+    const bool near = !position || std::abs(*position - plan_->value) <= window_;
+    return (sample.statusword & kTargetReached) != 0 && near && motion_->stands_still(sample);
+  }
+
+  Motion* motion_;
+  const MotionPlan* plan_;
+  double window_ = 0;
+  double last_ = 0;
+};
+
+/// The target, counted from where the motor stands when it is relative.
+Result<void> find_target(Motion& motion, const Move& move, MotionPlan& plan) {
+  const auto& units = motion.units();
+  const auto asked = units.parse_physical(kTargetPosition, move.target);
+  if (!asked) return tl::unexpected<Error>(asked.error());
+  const auto answer = motion.session().upload(motion.node(), kPositionActual);
+  if (!answer) return tl::unexpected<Error>(answer.error());
+  const auto here = units.physical(kPositionActual, *answer).value_or(Physical{});
+  plan.value = asked->value + (move.relative ? here.value : 0);
+  plan.unit = asked->unit;
+  plan.way = plan.value - here.value;
+  const auto data = units.bytes(kTargetPosition, plan.value);
+  const auto said = data ? units.physical(kTargetPosition, *data) : std::nullopt;
+  // Kept within limits silently it would go elsewhere.
+  if (!said || std::abs(said->value - plan.value) > std::max(1e-3, std::abs(plan.value) * 1e-6))
+    return fail(motion.error(Errc::usage,
+                             fmt::format("{:g} {} is beyond what 607Ah can hold", plan.value, plan.unit)));
+  plan.command = *data;
+  return {};
+}
+
+}  // namespace
+
+Result<MotionPlan> plan_move(Motion& motion, const Move& move) {
+  const auto mode = motion.rules().position;
+  if (!mode) return fail(motion.error(Errc::refused, "this family has no position mode"));
+  const auto& units = motion.units();
+  const auto speed_object = units.object(motion.rules().position_speed);
+  if (!speed_object || !units.has(*speed_object))
+    return fail(motion.error(Errc::refused, "this family tells no object for the speed of a move"));
+  MotionPlan plan;
+  plan.mode = *mode;
+  if (const auto found = find_target(motion, move, plan); !found) return tl::unexpected<Error>(found.error());
+  std::optional<Bytes> speed;
+  if (move.speed.empty()) {
+    const auto cap = motion.speed_cap();
+    if (!cap) return tl::unexpected<Error>(cap.error());
+    speed = units.bytes(*speed_object, *cap * kDefaultPart);
+  } else {
+    const auto asked = units.parse(*speed_object, move.speed);
+    if (!asked) return tl::unexpected<Error>(asked.error());
+    speed = *asked;
+  }
+  const auto fast = speed ? units.physical(*speed_object, *speed) : std::nullopt;
+  if (!fast || fast->value <= 0)
+    return fail(Errc::usage, "a move needs a speed above 0", "add --speed 60rpm");
+  if (const auto allowed = motion.check_speed(fast->value); !allowed)
+    return tl::unexpected<Error>(allowed.error());
+  plan.speed = fast->value;
+  plan.settings = motion.ramps(plan.speed, {kAcceleration, kDeceleration});
+  plan.settings.emplace_back(*speed_object, *speed);
+  if (speed_object == kTargetVelocity) plan.kept_target = *speed_object;
+  plan.summary = fmt::format("go {:g} {} to {:g} {} at {:g} {}", plan.way, plan.unit, plan.value, plan.unit,
+                             plan.speed, fast->unit);
+  motion.set_standstill(plan.speed);
+  return plan;
+}
+
+MotionReport run_move(Motion& motion, const Move&, const MotionPlan& plan) {
+  auto begun = motion.begin(plan.mode, plan.settings, plan.kept_target);
+  return motion.finish(begun ? Moving(motion, plan).run() : begun);
+}
+
+}  // namespace servoctl::session

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+
+#include "drive/profile.hpp"
+#include "session/session.hpp"
+
+namespace servoctl::session {
+
+inline constexpr ObjectAddress kModeOfOperation{0x6060, 0};
+inline constexpr ObjectAddress kModeDisplay{0x6061, 0};
+
+/// The mode the drive is in, by 6061h.
+Result<std::int8_t> read_mode(Session& session, std::uint8_t node);
+
+/// Errc::refused when the family's list (labels of 6060h) or the drive itself (6502h, where it tells) does
+/// not have the mode. Reads one object at most.
+Result<void> check_mode(Session& session, const drive::Profile& profile, std::uint8_t node, std::int8_t mode);
+
+/// Writes 6060h and waits until 6061h follows. Errc::negative when it does not in a second.
+Result<void> set_mode(Session& session, const drive::Profile& profile, std::uint8_t node, std::int8_t mode);
+
+/// `3 Profile velocity (pv)`.
+std::string mode_text(const drive::Profile& profile, std::int8_t mode, bool chinese = false);
+
+}  // namespace servoctl::session

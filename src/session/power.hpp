@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+
+#include "drive/power_path.hpp"
+#include "drive/profile.hpp"
+#include "session/session.hpp"
+
+namespace servoctl::session {
+
+inline constexpr ObjectAddress kControlword{0x6040, 0};
+inline constexpr ObjectAddress kStatusword{0x6041, 0};
+
+/// Bits of the statusword that are no part of the state (CiA 402-2, 8.4.2).
+inline constexpr std::uint16_t kVoltageEnabled = 1U << 4U;
+inline constexpr std::uint16_t kWarning = 1U << 7U;
+inline constexpr std::uint16_t kRemote = 1U << 9U;
+inline constexpr std::uint16_t kTargetReached = 1U << 10U;
+inline constexpr std::uint16_t kInternalLimit = 1U << 11U;
+
+/// The power state of one drive, read and changed by SDO.
+class Power {
+ public:
+  /// Longest wait for one transition; manuals name none, and a brake takes some tenths of a second.
+  static constexpr Duration kPatience = std::chrono::seconds(1);
+
+  Power(Session& session, const drive::Profile& profile, std::uint8_t node)
+      : session_(&session), profile_(&profile), node_(node) {}
+
+  Result<std::uint16_t> statusword();
+  Result<drive::DriveState> state();
+  /// Writes the controlword (6040h) as it is; nothing is waited for.
+  Result<void> command(std::uint16_t controlword);
+  /// Goes to the state by the shortest legal way and waits in every state on it until the statusword shows
+  /// it. Errc::refused where there is no way: out of a fault (`fault reset` is asked for separately);
+  /// Errc::negative when the drive does not follow, with what its statusword says of the reason.
+  Result<void> reach(drive::DriveState goal);
+  /// Waits until the drive is in this state; false when it is not after kPatience.
+  Result<bool> wait_for(drive::DriveState state);
+
+  /// Whether the family sets this bit of the statusword whenever it is ready, so that a low one says
+  /// something.
+  bool tells(std::uint16_t bit) const;
+
+ private:
+  Result<void> step(drive::DriveState from, const drive::PowerStep& next);
+  Error stuck(drive::DriveState from, const drive::PowerStep& next) const;
+  bool resumes();
+
+  Session* session_;
+  const drive::Profile* profile_;
+  std::uint8_t node_;
+  std::uint16_t statusword_ = 0;  ///< Read last.
+};
+
+/// An error about one drive.
+Error drive_error(Errc code, std::uint8_t node, const std::string& what, std::string hint = {});
+
+/// Waits without doing anything; heartbeats go on and events are heard.
+Result<void> pause(Session& session, Duration time);
+
+}  // namespace servoctl::session

@@ -1,0 +1,103 @@
+#include "session/watchdog.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <vector>
+
+#include "base/duration.hpp"
+#include "canopen/cob_id.hpp"
+#include "drive/quantity.hpp"
+#include "session/power.hpp"
+
+namespace servoctl::session {
+namespace {
+
+constexpr std::uint16_t kConsumerIndex = 0x1016;
+constexpr ObjectAddress kGuardTime{0x100C, 0};
+constexpr ObjectAddress kLifeFactor{0x100D, 0};
+constexpr std::uint8_t kMostEntries = 8;
+
+bool has(const drive::Profile& profile, ObjectAddress object) {
+  return profile.dictionary.find(object) != nullptr;
+}
+
+std::uint8_t node_of(std::uint64_t entry) { return static_cast<std::uint8_t>(entry >> 16U & 0x7FU); }
+bool is_free(std::uint64_t entry) { return node_of(entry) == 0 || (entry & 0xFFFFU) == 0; }
+
+/// Node-ID for servoctl: not the drive's, not one that was heard or that the drive watches already.
+std::optional<std::uint8_t> free_producer(Session& session, std::uint8_t node,
+                                          const std::vector<std::uint64_t>& entries) {
+  for (std::uint8_t id = canopen::kLastNode; id >= canopen::kFirstNode; --id) {
+    const bool watched =
+        std::any_of(entries.begin(), entries.end(), [&](auto e) { return !is_free(e) && node_of(e) == id; });
+    if (id != node && !watched && !session.watch().state(id)) return id;
+  }
+  return std::nullopt;
+}
+
+Result<WatchdogPlan> plan_heartbeat(Session& session, const drive::Profile& profile, std::uint8_t node,
+                                    std::optional<std::uint8_t> producer) {
+  std::vector<SdoRequest> requests;
+  for (std::uint8_t sub = 1; sub <= kMostEntries; ++sub)
+    if (has(profile, {kConsumerIndex, sub}))
+      requests.push_back({.node = node, .object = {kConsumerIndex, sub}});
+  const auto answers = session.transfer(requests);
+  std::vector<std::uint64_t> entries;
+  WatchdogPlan plan;
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    if (!answers[i] && answers[i].error().code != Errc::sdo_abort)
+      return tl::unexpected<Error>(answers[i].error());
+    if (!answers[i]) continue;
+    entries.push_back(load_le(*answers[i]));
+    if (plan.entry == 0 && is_free(entries.back())) plan.entry = requests[i].object.sub;
+  }
+  const auto id = producer ? producer : free_producer(session, node, entries);
+  if (plan.entry == 0 || !id) return WatchdogPlan{};
+  plan.kind = WatchdogPlan::Kind::heartbeat;
+  plan.time = kWatchdogTime;
+  plan.producer = *id;
+  return plan;
+}
+
+}  // namespace
+
+Result<WatchdogPlan> plan_watchdog(Session& session, const drive::Profile& profile, std::uint8_t node,
+                                   std::optional<std::uint8_t> producer) {
+  if (producer && *producer == node)
+    return fail(Errc::usage, fmt::format("{} is the drive's own node-ID", node),
+                "give servoctl another one, such as 127");
+  auto plan = plan_heartbeat(session, profile, node, producer);
+  if (!plan) return plan;
+  if (plan->kind == WatchdogPlan::Kind::none && has(profile, kGuardTime) && has(profile, kLifeFactor)) {
+    plan->kind = WatchdogPlan::Kind::guarding;
+    plan->time = 2 * kWatchdogTime;
+  }
+  if (plan->kind == WatchdogPlan::Kind::none || !has(profile, kAbortConnectionOption)) return plan;
+  const auto option = session.upload(node, kAbortConnectionOption);
+  if (!option) return plan;
+  const auto meaning = drive::meaning(drive::target_at(&profile, kAbortConnectionOption), node);
+  plan->reaction_off = load_le(*option) == 0;
+  const auto value =
+      od::decode(meaning.type, plan->reaction_off ? store_le(kReactWithFault, option->size()) : *option);
+  const auto* label = value ? drive::label_of(meaning, *value) : nullptr;
+  if (label != nullptr) plan->reaction = label->label;
+  return plan;
+}
+
+std::string to_string(const WatchdogPlan& plan) {
+  const auto then =
+      plan.reaction.empty() ? std::string() : fmt::format("; it reacts with: {}", plan.reaction);
+  switch (plan.kind) {
+    case WatchdogPlan::Kind::heartbeat:
+      return fmt::format(
+          "heartbeat of servoctl as node {}: the drive stops by itself {} after the last one{}",
+          plan.producer, servoctl::to_string(plan.time), then);
+    case WatchdogPlan::Kind::guarding:
+      return fmt::format("life guarding by servoctl: the drive stops by itself {} after the last question{}",
+                         servoctl::to_string(plan.time), then);
+    case WatchdogPlan::Kind::none: break;
+  }
+  return "none: nothing stops the drive when the cable is cut or servoctl dies";
+}
+
+}  // namespace servoctl::session

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "drive/profile.hpp"
+#include "session/session.hpp"
+
+namespace servoctl::session {
+
+/// What stops the drive when servoctl or the cable dies.
+struct WatchdogPlan {
+  enum class Kind : std::uint8_t {
+    none,       ///< The family has neither: nothing stops the drive.
+    heartbeat,  ///< Heartbeat consumer, 1016h; servoctl is the producer.
+    guarding,   ///< Life guarding, 100Ch and 100Dh; servoctl asks.
+  };
+  Kind kind = Kind::none;
+  Duration time{};            ///< From the last message until the drive reacts.
+  std::uint8_t producer = 0;  ///< Node-ID under which servoctl sends heartbeats.
+  std::uint8_t entry = 0;     ///< Sub-index of 1016h.
+  std::string reaction;       ///< What the drive does then, by 6007h; empty when it does not tell.
+  bool reaction_off = false;  ///< 6007h is 0, no action: it has to be set as well.
+};
+
+/// 6007h, and its value for a fault (CiA 402-2, abort connection option code).
+inline constexpr ObjectAddress kAbortConnectionOption{0x6007, 0};
+inline constexpr std::uint8_t kReactWithFault = 1;
+
+/// Time of the watchdog unless asked otherwise; servoctl sends five messages in it.
+inline constexpr Duration kWatchdogTime = std::chrono::milliseconds(500);
+
+/// Finds out which watchdog the drive has; only reads. `producer`: servoctl's node-ID, where the user names
+/// one; else the highest that nobody was heard under.
+Result<WatchdogPlan> plan_watchdog(Session& session, const drive::Profile& profile, std::uint8_t node,
+                                   std::optional<std::uint8_t> producer);
+
+/// `heartbeat: the drive stops by itself after 500 ms without servoctl (fault)`.
+std::string to_string(const WatchdogPlan& plan);
+
+}  // namespace servoctl::session
