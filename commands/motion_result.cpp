@@ -36,8 +36,8 @@ Value summary_of(const std::vector<Series>& series) {
   table.columns = {{"quantity"}, {"unit"}, {"first"}, {"last"}, {"least"}, {"greatest"}};
   for (const auto& one : series) {
     const auto [least, greatest] = std::minmax_element(one.values.begin(), one.values.end());
-    table.rows.push_back(
-        {one.name, report::text_or_null(one.unit), one.values.front(), one.values.back(), *least, *greatest});
+    table.rows.push_back({one.name, report::text_or_null(one.unit), rounded(one.values.front()),
+                          rounded(one.values.back()), rounded(*least), rounded(*greatest)});
   }
   return table;
 }

@@ -15,7 +15,7 @@ constexpr std::array kRows{Row{"rpm/s", "rpm"}, Row{"inc/s2", "inc/s"}, Row{"rad
 
 constexpr double kSpeedOfTimes = 3000;
 constexpr double kShortestMs = 200;
-constexpr double kLongestMs = 5000;
+constexpr double kLongestMs = 30000;
 
 }  // namespace
 

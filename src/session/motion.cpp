@@ -16,6 +16,8 @@ constexpr ObjectAddress kAcceleration{0x6083, 0};
 /// A motor at rest shows some noise: this part of the commanded speed, and 3 rpm where it is told in rpm.
 constexpr double kNoisePart = 0.02;
 constexpr double kNoiseRpm = 3;
+/// What conversions of units may add to a number.
+constexpr double kRounding = 1 + 1e-6;
 
 }  // namespace
 
@@ -96,7 +98,7 @@ Result<double> Motion::find_speed_cap() {
 
 Result<void> Motion::check_speed(double speed) const {
   if (!speed_cap_) return tl::unexpected<Error>(speed_cap_.error());
-  if (std::abs(speed) <= *speed_cap_) return {};
+  if (std::abs(speed) <= *speed_cap_ * kRounding) return {};
   const auto unit = units_->unit(kTargetVelocity);
   return fail(error(
       Errc::refused,

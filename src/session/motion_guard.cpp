@@ -54,10 +54,10 @@ Result<void> MotionGuard::change(ObjectAddress object, const Bytes& data) {
 }
 
 Result<void> MotionGuard::change_mode(std::int8_t mode) {
-  const auto before = read_mode(*session_, node_);
+  // 6061h may show another one: a drive starts in none and has one waiting.
+  const auto before = session_->upload(node_, kModeOfOperation);
   if (!before) return tl::unexpected<Error>(before.error());
-  if (*before == mode) return {};
-  if (!mode_before_) mode_before_ = *before;
+  changed_.push_back({kModeOfOperation, *before});
   return set_mode(*session_, units_->profile(), node_, mode);
 }
 
@@ -174,6 +174,15 @@ void MotionGuard::put_back() {
                                           to_hex(changed->before)));
       continue;
     }
+    const auto meaning = units_->meaning(changed->object);
+    const auto value = od::decode(meaning.type, changed->before);
+    if (meaning.type_known && value && !drive::check_limits(meaning, *value)) {
+      // Some drives take a refused write for a fault.
+      result_.notes.push_back(
+          fmt::format("object {} keeps its new value: the one before, {}, is out of its range",
+                      to_string(changed->object), to_hex(changed->before)));
+      continue;
+    }
     const auto done = session_->download(node_, changed->object, changed->before);
     if (!done)
       note(fmt::format("object {} could not be put back to {}", to_string(changed->object),
@@ -182,13 +191,6 @@ void MotionGuard::put_back() {
     lost_ = lost_ || (!done && is_lost(done.error()));
   }
   changed_.clear();
-  if (!mode_before_) return;
-  const auto mode = *std::exchange(mode_before_, std::nullopt);
-  if (lost_) {
-    result_.notes.push_back(fmt::format("mode {} was not put back", mode));
-  } else if (const auto done = set_mode(*session_, units_->profile(), node_, mode); !done) {
-    note(fmt::format("mode {} could not be put back", mode), done.error());
-  }
 }
 
 void MotionGuard::disarm() {
@@ -199,14 +201,16 @@ void MotionGuard::disarm() {
 }
 
 void MotionGuard::verify() {
-  const auto word = power_.statusword();
-  if (!word) {
-    note("the statusword could not be read", word.error());
-    return;
+  const auto end = session_->now() + Power::kPatience;
+  for (;;) {
+    const auto word = power_.statusword();
+    if (!word) return note("the statusword could not be read", word.error());
+    result_.statusword = *word;
+    result_.state = drive::decode_state(*word);
+    result_.verified = !drive::is_energised(result_.state);
+    // A fault reaction takes its time.
+    if (result_.verified || session_->now() >= end || !pause(*session_, kPause)) return;
   }
-  result_.statusword = *word;
-  result_.state = drive::decode_state(*word);
-  result_.verified = !drive::is_energised(result_.state);
 }
 
 MotionEnd MotionGuard::end() {
@@ -235,7 +239,6 @@ Result<void> MotionGuard::release() {
   }
   disarm();
   changed_.clear();
-  mode_before_.reset();
   energised_ = false;
   result_.state = power_.state().value_or(DriveState::unknown);
   end_ = result_;

@@ -33,7 +33,7 @@ class MotionGuard {
   /// Writes an object, after its value was kept; end() puts it back. One that holds the bytes already is not
   /// written.
   Result<void> change(ObjectAddress object, const Bytes& data);
-  /// The same for the mode of operation, which comes last in end().
+  /// The same for the mode of operation; waits until the drive is in it.
   Result<void> change_mode(std::int8_t mode);
   /// Sets the targets so that enabling does not move the motor: 60FFh and 6071h to 0, 607Ah to where it
   /// stands. Objects in `except` are left alone.
@@ -71,7 +71,6 @@ class MotionGuard {
   std::uint8_t node_;
   Power power_;
   std::vector<Changed> changed_;
-  std::optional<std::int8_t> mode_before_;
   std::optional<WatchdogPlan> watchdog_;
   bool energised_ = false;  ///< It was commanded up, so it may be.
   bool lost_ = false;       ///< The drive or the bus does not answer any more.

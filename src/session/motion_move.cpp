@@ -56,7 +56,8 @@ class Moving {
     return {};
   }
 
-  /// Bit 4 rises, bit 12 answers; bit 4 falls, bit 12 falls (CiA 402-2, 10.4.2).
+  /// Bit 12 is low, bit 4 rises, bit 12 answers, bit 4 falls (CiA 402-2, 10.4.2). A drive that holds one
+  /// target only keeps bit 12 high until it is there.
   Result<void> hand_over() {
     const auto wait = [this](bool high) {
       return motion_->watch(
@@ -65,7 +66,7 @@ class Moving {
           },
           kHandshake);
     };
-    for (const auto word : {kEnabled, kNewSetpoint, kEnabled}) {
+    for (const auto word : {kEnabled, kNewSetpoint}) {
       if (const auto written = motion_->command(word); !written) return written;
       const bool taken = word == kNewSetpoint;
       const auto answered = wait(taken);
@@ -77,7 +78,7 @@ class Moving {
                                  : "does not become ready for a target: bit 12 of the statusword stayed high",
                            "does another master command it?"));
     }
-    return {};
+    return motion_->command(kEnabled);
   }
 
   Result<bool> is_there(const MotionSample& sample) {

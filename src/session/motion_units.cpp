@@ -30,7 +30,17 @@ drive::Meaning MotionUnits::meaning(ObjectAddress object) const {
 
 Result<Bytes> MotionUnits::parse(ObjectAddress object, std::string_view text) const {
   const auto what = meaning(object);
-  const auto value = drive::parse_quantity(what, text);
+  auto value = drive::parse_quantity(what, text);
+  if (!value && what.encoding == od::Encoding::plain) {
+    // 250 rpm need not be a whole number of counts a second: for a motion the nearest is as good.
+    auto real = what;
+    real.type = od::DataType::f64;
+    if (const auto number = drive::parse_quantity(real, text)) {
+      value = od::Value(static_cast<std::int64_t>(std::llround(od::to_double(*number))));
+      if (const auto fits = drive::check_limits(what, *value); !fits)
+        return tl::unexpected<Error>(fits.error());
+    }
+  }
   if (!value) {
     auto error = value.error();
     if (what.measure == drive::Measure::increments_per_turn && !what.bridge)

@@ -34,7 +34,8 @@ class MotionUnits {
 
   bool has(ObjectAddress object) const;
   drive::Meaning meaning(ObjectAddress object) const;
-  /// The bytes to write for what a user wrote (`60rpm`); errors as drive::parse_quantity().
+  /// The bytes to write for what a user wrote (`60rpm`), the nearest step there is; errors as
+  /// drive::parse_quantity().
   Result<Bytes> parse(ObjectAddress object, std::string_view text) const;
   /// The number in these bytes in the unit people think in; empty when they are none.
   std::optional<Physical> physical(ObjectAddress object, ByteSpan bytes) const;

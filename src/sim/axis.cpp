@@ -177,6 +177,7 @@ void Axis::step(double seconds) {
     case Kind::torque:
       torque_ = halted ? 0 : read(kTargetTorque);
       velocity_ += torque_ / 100 * kTurnsPerSecondOfRatedTorque * units_per_turn() * seconds;
+      velocity_ = std::clamp(velocity_, -fastest_by_torque(), fastest_by_torque());
       break;
     case Kind::homing:
       approach(homing_ends_ && !halted ? read(kHomingSpeed) * speed_factor(kHomingSpeed) : 0, seconds);

@@ -58,6 +58,7 @@ class Axis {
   void write(ObjectAddress object, double value);
   double read(ObjectAddress object) const;
   double units_per_turn() const;
+  double fastest_by_torque() const;  ///< What the family's limits leave in torque mode.
   ObjectAddress speed_object() const;               ///< Holds the speed of a move to a position.
   double speed_factor(ObjectAddress object) const;  ///< One of the object's speed unit in units a second.
   double ramp(ObjectAddress object) const;          ///< Units a second a second.

@@ -1,5 +1,7 @@
 // The numbers of a simulated axis in the units of the family's own objects.
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "drive/quantity.hpp"
 #include "sim/axis.hpp"
@@ -35,6 +37,17 @@ void Axis::write(ObjectAddress object, double number) {
           : od::encode_number(meaning.encoding, meaning.type, number);
   const auto bytes = raw ? od::encode(meaning.type, *raw) : tl::unexpected<Error>(raw.error());
   if (bytes) values_->set(object, *bytes);
+}
+
+double Axis::fastest_by_torque() const {
+  double out = std::numeric_limits<double>::infinity();
+  for (const auto& name : profile_->rules.motion.speed_limit) {
+    const auto target = drive::resolve(profile_, name);
+    if (!target) continue;
+    const double limit = std::abs(read(target->address) * speed_factor(target->address));
+    if (limit > 0) out = std::min(out, limit);
+  }
+  return out;
 }
 
 ObjectAddress Axis::speed_object() const {

@@ -33,7 +33,10 @@ std::uint32_t SimDrive::check_state(ObjectAddress object, ByteSpan data) const {
   const auto target = drive::target_at(profile_, object);
   const auto effect = drive::meaning(target, node_).effect;
   if (effect == od::Effect::standstill && drive::is_energised(power_.state())) return abort::kDeviceState;
-  if (object == kModes && target.entry != nullptr && !target.entry->labels.empty()) {
+  // Mode 0 is "no mode": what a drive without a default starts in (CiA 402-2, 6060h).
+  const bool no_mode = target.entry != nullptr && load_le(data) == 0 &&
+                       (!target.entry->default_value || load_le(values_.get(kModeDisplay)) == 0);
+  if (object == kModes && !no_mode && target.entry != nullptr && !target.entry->labels.empty()) {
     const auto value = od::decode(target.entry->type, data);
     if (!value || drive::label_of(drive::meaning(target, node_), *value) == nullptr) return abort::kRange;
   }

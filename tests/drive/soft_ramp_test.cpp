@@ -14,7 +14,7 @@ TEST(SoftRamp, IsTheAccelerationThatReachesTheSpeedInTheTime) {
 TEST(SoftRamp, GivenAsATimeToFullSpeedIsLongerForASlowerMoveWithinBounds) {
   EXPECT_EQ(soft_ramp("ms", "rpm", 3000, 0.5), 500);
   EXPECT_EQ(soft_ramp("ms", "rpm", 600, 0.5), 2500);
-  EXPECT_EQ(soft_ramp("ms", "rpm", 60, 0.5), 5000);
+  EXPECT_EQ(soft_ramp("ms", "rpm", 30, 0.5), 30000);
   EXPECT_EQ(soft_ramp("ms", "rpm", 30000, 0.5), 200);
 }
 
