@@ -18,13 +18,15 @@ constexpr Parameter kParameters[] = {kTurnOption};
 Result<void> energise(Context& context, session::Motion& motion) {
   session::MotionGuard guard(*context.session, motion.units(), motion.node());
   if (const auto done = guard.neutral_targets(); !done) return done;
+  if (const auto done = guard.start_node(); !done) return done;
   if (const auto done = guard.enable(); !done) return done;
   return guard.release();
 }
 
 Result<session::PreflightItem> enable_one(Context& context, session::Motion& motion) {
   if (const auto ready = motion.prepare(); !ready) return tl::unexpected<Error>(ready.error());
-  const auto items = motion.look(context.chinese);
+  // It stays energised after servoctl has gone, so nothing can watch servoctl.
+  const auto items = session::preflight(*context.session, motion.units(), motion.node(), {}, context.chinese);
   if (!items) return tl::unexpected<Error>(items.error());
   if (context.tell) context.tell(preflight_text(*items));
   if (context.dry_run) return session::PreflightItem{};

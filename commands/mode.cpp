@@ -41,10 +41,9 @@ Result<std::int8_t> parse_mode(const drive::Profile& profile, std::string_view t
       }
   }
   const auto value = od::parse_value(od::DataType::i8, text);
-  if (!value)
-    return fail(Errc::usage,
-                fmt::format("'{}' is no mode of this family. {}", text, did_you_mean(text, offered)),
-                "`objects 0x6060` lists them");
+  const auto near = did_you_mean(text, offered);
+  const auto hint = near.empty() ? std::string("`objects 0x6060` lists them") : near;
+  if (!value) return fail(Errc::usage, fmt::format("'{}' is no mode of this family", text), hint);
   return static_cast<std::int8_t>(od::to_double(*value));
 }
 

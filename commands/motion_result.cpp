@@ -126,7 +126,8 @@ report::Table preflight_table(const std::vector<session::PreflightItem>& items) 
 std::string preflight_text(const std::vector<session::PreflightItem>& items) {
   std::string out;
   for (const auto& item : items)
-    out += fmt::format("{}  {}: {}\n", pad_right(session::name(item.weight), 7), item.what, item.text);
+    out += fmt::format("{}  {}{}{}\n", pad_right(session::name(item.weight), 7), item.what,
+                       item.what.empty() ? "" : ": ", item.text);
   return out;
 }
 

@@ -43,10 +43,8 @@ const Command kMove{
     .summary = "Go to a position",
     .details =
         "Profile position with the set-point handshake, watched and ended like `jog`. The motion counts as "
-        "done when "
-        "the drive reports the target reached, stands still, and is where it was sent. Negative targets need "
-        "`--` "
-        "before them or a unit: `move --relative -- -90deg`. Example: `move 90deg --speed 30rpm -n 1`.",
+        "done when the drive reports the target reached, stands still, and is where it was sent. Example: "
+        "`move 90deg --speed 30rpm -n 1`.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,

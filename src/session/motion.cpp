@@ -160,6 +160,7 @@ Result<void> Motion::begin(std::int8_t mode, const std::vector<MotionSetting>& s
   if (const auto done = guard_->neutral_targets(kept_target); !done) return done;
   for (const auto& [object, data] : settings)
     if (const auto done = guard_->change(object, data); !done) return done;
+  if (const auto started = guard_->start_node(); !started) return started;
   (void)session_->take_events();  // What was told before is no news of this motion.
   return guard_->enable();
 }

@@ -28,6 +28,8 @@ constexpr Duration kQuickStopPatience = std::chrono::seconds(1);
 /// A drive that obeys has lost a tenth of its speed by then.
 constexpr Duration kMostDelay = std::chrono::milliseconds(250);
 constexpr double kSlower = 0.9;
+/// An NMT command is not answered; CiA 301 names no time.
+constexpr Duration kNmtPause = std::chrono::milliseconds(20);
 constexpr Duration kPause = std::chrono::milliseconds(10);
 constexpr int kTries = 3;
 
@@ -94,6 +96,29 @@ Result<void> MotionGuard::arm(const WatchdogPlan& plan) {
   }
   // The drive watches from the first message on.
   return pause(*session_, Duration::zero());
+}
+
+Result<void> MotionGuard::start_node() {
+  nmt_before_ = session_->watch().state(node_);
+  if (!units_->profile().rules.nmt.disables_outside_operational ||
+      nmt_before_ == canopen::NmtState::operational)
+    return {};
+  started_ = true;
+  if (const auto sent = session_->send(canopen::nmt_frame(canopen::NmtCommand::start, node_)); !sent)
+    return sent;
+  return pause(*session_, kNmtPause);
+}
+
+/// Where it is not known in which state it was, it is not taken out of another master's hands.
+void MotionGuard::put_node_back() {
+  if (!std::exchange(started_, false)) return;
+  if (!nmt_before_) {
+    result_.notes.emplace_back(
+        "the node was started (NMT) and stays operational: its state before is not known");
+    return;
+  }
+  const auto sent = session_->send(canopen::nmt_frame(canopen::NmtCommand::enter_pre_operational, node_));
+  if (!sent) note("the node could not be put back to pre-operational", sent.error());
 }
 
 Result<void> MotionGuard::enable() {
@@ -223,6 +248,7 @@ MotionEnd MotionGuard::end() {
   // A drive that cannot be reached is left to its own watchdog.
   if (lost_) disarm();
   put_back();
+  put_node_back();
   disarm();
   verify();
   end_ = result_;

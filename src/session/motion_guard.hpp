@@ -40,6 +40,8 @@ class MotionGuard {
   Result<void> neutral_targets(std::optional<ObjectAddress> except = {});
   /// Makes the drive watch servoctl until end().
   Result<void> arm(const WatchdogPlan& plan);
+  /// Starts the node (NMT) where the family is energised in Operational only.
+  Result<void> start_node();
   /// "Operation enabled", by the shortest legal way.
   Result<void> enable();
 
@@ -63,6 +65,7 @@ class MotionGuard {
   void take_power_away();
   void put_back();
   void disarm();
+  void put_node_back();
   void verify();
   void note(const std::string& what, const Error& error);
 
@@ -72,6 +75,8 @@ class MotionGuard {
   Power power_;
   std::vector<Changed> changed_;
   std::optional<WatchdogPlan> watchdog_;
+  bool started_ = false;  ///< It was sent NMT "start".
+  std::optional<canopen::NmtState> nmt_before_;
   bool energised_ = false;  ///< It was commanded up, so it may be.
   bool lost_ = false;       ///< The drive or the bus does not answer any more.
   std::optional<double> standstill_;

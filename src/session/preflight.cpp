@@ -120,7 +120,7 @@ class Preflight {
         if (!value && value.error().code != Errc::sdo_abort) return tl::unexpected<Error>(value.error());
         if (!value || static_cast<std::int64_t>(load_le(*value)) != *caution.value) continue;
       }
-      add(Weight::caution, "caution", chinese_ && !caution.text_zh.empty() ? caution.text_zh : caution.text);
+      add(Weight::caution, "", chinese_ && !caution.text_zh.empty() ? caution.text_zh : caution.text);
     }
     return {};
   }

@@ -17,7 +17,7 @@ struct PreflightItem {
     stop,     ///< Nothing may move.
   };
   Weight weight = Weight::note;
-  std::string what;  ///< `state`, `watchdog`, `inputs`, …
+  std::string what;  ///< `state`, `watchdog`, `inputs`, …; empty for a caution of the family.
   std::string text;
 };
 std::string_view name(PreflightItem::Weight weight);  ///< `ok note caution stop`

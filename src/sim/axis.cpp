@@ -105,6 +105,7 @@ void Axis::start_homing(TimePoint now) {
   if (std::find(nothing.begin(), nothing.end(), method) != nothing.end()) return;
   homed_ = false;
   homing_failed_ = false;
+  homing_moves_ = method != 35 && method != 37;  // They take the present position (CiA 402-2).
   homing_ends_ = faults_.no_index ? kNever : now + kHomingTime;
 }
 
@@ -180,7 +181,8 @@ void Axis::step(double seconds) {
       velocity_ = std::clamp(velocity_, -fastest_by_torque(), fastest_by_torque());
       break;
     case Kind::homing:
-      approach(homing_ends_ && !halted ? read(kHomingSpeed) * speed_factor(kHomingSpeed) : 0, seconds);
+      approach(homing_ends_ && !halted && homing_moves_ ? read(kHomingSpeed) * speed_factor(kHomingSpeed) : 0,
+               seconds);
       break;
     case Kind::interpolated:
     case Kind::none: approach(0, seconds); break;

@@ -58,7 +58,7 @@ class Axis {
   void write(ObjectAddress object, double value);
   double read(ObjectAddress object) const;
   double units_per_turn() const;
-  double fastest_by_torque() const;  ///< What the family's limits leave in torque mode.
+  double fastest_by_torque() const;                 ///< What the family's limits leave in torque mode.
   ObjectAddress speed_object() const;               ///< Holds the speed of a move to a position.
   double speed_factor(ObjectAddress object) const;  ///< One of the object's speed unit in units a second.
   double ramp(ObjectAddress object) const;          ///< Units a second a second.
@@ -78,6 +78,7 @@ class Axis {
   bool at_once_ = false;       ///< The present set-point gives way to a new one at once.
   bool homed_ = false;
   bool homing_failed_ = false;
+  bool homing_moves_ = true;
   std::optional<TimePoint> homing_ends_;
   double behind_ = 0;  ///< Demand minus actual position.
   AxisFaults faults_;
