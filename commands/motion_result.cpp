@@ -28,7 +28,9 @@ double seconds_since(const MotionSample& sample, TimePoint begin) {
 /// Six digits are more than any sensor has, and fewer than the noise of the conversion.
 std::string short_number(double value) { return fmt::format("{:.6g}", value); }
 
-double rounded(double value) { return parse_real(short_number(value)).value_or(value); }
+double rounded(double value, int digits = 6) {
+  return parse_real(fmt::format("{:.{}g}", value, digits)).value_or(value);
+}
 
 /// First, last, least and greatest value of one quantity.
 Value summary_of(const std::vector<Series>& series) {
@@ -46,7 +48,8 @@ Value samples_of(const std::vector<Series>& series) {
   report::List out;
   for (const auto& one : series) {
     report::List seconds(one.seconds.begin(), one.seconds.end());
-    report::List values(one.values.begin(), one.values.end());
+    report::List values;
+    for (const double value : one.values) values.emplace_back(rounded(value, 9));
     out.emplace_back(Record{{"name", one.name},
                             {"unit", report::text_or_null(one.unit)},
                             {"seconds", std::move(seconds)},
@@ -66,9 +69,9 @@ Value end_record(const session::MotionEnd& end) {
 }
 
 /// A drive that may still be energised is worse than whatever ended the motion.
-Error unverified(std::uint8_t node, const std::string& text) {
+Error unverified(std::uint8_t node, const std::string& text, Errc code) {
   Error error;
-  error.code = Errc::negative;
+  error.code = code;
   error.node = node;
   error.message = fmt::format("node {}: {}", node, text);
   error.hint = "do not go near the machine before its power is off";
@@ -91,10 +94,12 @@ std::string end_text(const session::MotionEnd& end, const session::WatchdogPlan&
 Value motion_result(Context& context, std::uint8_t node, const session::MotionPlan& plan,
                     const std::vector<session::PreflightItem>& items, const session::MotionReport& done) {
   const auto end = end_text(done.end, done.watchdog);
-  if (!done.end.verified) context.errors.push_back(unverified(node, end));
+  if (!done.end.verified)
+    context.errors.push_back(
+        unverified(node, end, done.outcome ? Errc::negative : done.outcome.error().code));
   if (!done.outcome) {
     auto error = done.outcome.error();
-    error.message += fmt::format("; the drive is in {}", end);
+    if (done.end.verified) error.message += fmt::format("; the drive is in {}", end);
     if (!error.node) error.node = node;
     context.errors.push_back(std::move(error));
   }
@@ -134,7 +139,8 @@ std::string preflight_text(const std::vector<session::PreflightItem>& items) {
 Record sample_record(const MotionSample& sample, TimePoint begin) {
   Record out{{"time", seconds_since(sample, begin)}, {"statusword", sample.statusword}};
   for (const auto channel : kEvery)
-    if (const auto value = sample[channel]) out.push_back({std::string(session::name(channel)), *value});
+    if (const auto value = sample[channel])
+      out.push_back({std::string(session::name(channel)), rounded(*value, 9)});
   return out;
 }
 

@@ -155,6 +155,7 @@ Result<void> Motion::begin(std::int8_t mode, const std::vector<MotionSetting>& s
       return tl::unexpected<Error>(data.error());
   guard_ = std::make_unique<MotionGuard>(*session_, *units_, node_);
   guard_->set_standstill(standstill_);
+  if (const auto done = guard_->spare_flash(); !done) return done;
   if (const auto done = guard_->arm(watchdog_); !done) return done;
   if (const auto done = guard_->change_mode(mode); !done) return done;
   if (const auto done = guard_->neutral_targets(kept_target); !done) return done;

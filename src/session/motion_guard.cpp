@@ -98,6 +98,15 @@ Result<void> MotionGuard::arm(const WatchdogPlan& plan) {
   return pause(*session_, Duration::zero());
 }
 
+Result<void> MotionGuard::spare_flash() {
+  const auto& store = units_->profile().rules.store;
+  const auto object = units_->object(store.flash_switch);
+  if (!object || !store.to_ram) return {};
+  const auto data = od::encode(units_->meaning(*object).type, od::Value(*store.to_ram));
+  if (!data) return tl::unexpected<Error>(data.error());
+  return change(*object, *data);
+}
+
 Result<void> MotionGuard::start_node() {
   nmt_before_ = session_->watch().state(node_);
   if (!units_->profile().rules.nmt.disables_outside_operational ||

@@ -40,6 +40,8 @@ class MotionGuard {
   Result<void> neutral_targets(std::optional<ObjectAddress> except = {});
   /// Makes the drive watch servoctl until end().
   Result<void> arm(const WatchdogPlan& plan);
+  /// Where the family chooses by a switch whether writes go to its flash: to the RAM, until end().
+  Result<void> spare_flash();
   /// Starts the node (NMT) where the family is energised in Operational only.
   Result<void> start_node();
   /// "Operation enabled", by the shortest legal way.

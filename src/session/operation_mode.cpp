@@ -24,7 +24,7 @@ std::string known_modes(const drive::Meaning& meaning) {
 std::string mode_text(const drive::Profile& profile, std::int8_t mode, bool chinese) {
   const auto meaning = drive::meaning(drive::target_at(&profile, kModeDisplay), 0);
   const auto* label = drive::label_of(meaning, od::Value(std::int64_t{mode}));
-  if (label == nullptr) return fmt::format("{}", mode);
+  if (label == nullptr) return mode == 0 ? std::string("0 none") : fmt::format("{}", mode);
   return fmt::format("{} {}", mode, chinese && !label->label_zh.empty() ? label->label_zh : label->label);
 }
 

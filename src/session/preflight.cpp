@@ -12,6 +12,8 @@ namespace {
 using Weight = PreflightItem::Weight;
 
 constexpr ObjectAddress kInputs{0x60FD, 0};
+constexpr ObjectAddress kSupply{0x6079, 0};
+constexpr ObjectAddress kFollowingErrorWindow{0x6065, 0};
 
 /// Settings and readings that are shown as they are.
 struct Shown {
@@ -19,8 +21,8 @@ struct Shown {
   std::string_view what;
 };
 constexpr std::array kShown{
-    Shown{{0x6079, 0}, "supply"},
-    Shown{{0x6065, 0}, "following error window"},
+    Shown{kSupply, "supply"},
+    Shown{kFollowingErrorWindow, "following error window"},
     Shown{{0x607F, 0}, "max speed"},
     Shown{{0x6080, 0}, "max motor speed"},
     Shown{{0x607D, 1}, "lower position limit"},
@@ -89,7 +91,8 @@ class Preflight {
       if (requests[i].object == kInputs) {
         add_inputs(static_cast<std::uint32_t>(load_le(*answers[i])));
       } else if (const auto value = units_->physical(requests[i].object, *answers[i])) {
-        add(Weight::note, names[i], fmt::format("{:g} {}", value->value, value->unit));
+        if (value->value != 0 || requests[i].object == kFollowingErrorWindow || requests[i].object == kSupply)
+          add(Weight::note, names[i], fmt::format("{:.9g} {}", value->value, value->unit));
       }
     }
     return {};

@@ -19,7 +19,7 @@ void PrintTo(const Family& family, std::ostream* out) { *out << family.name; }
 
 constexpr Family kFamilies[] = {
     {"cia402", 10000, "1", "100%"}, {"gsd600", 131072, "1", "5%"}, {"da200", 10000, "1", "5%"},
-    {"sv2", 0, "17", "5%"},       {"ts", 10000, "1", "5%"},      {"dm", 0, "", "0.1Nm"},
+    {"sv2", 0, "17", "5%"},         {"ts", 10000, "1", "5%"},      {"dm", 0, "", "0.1Nm"},
 };
 
 class MotionOfFamily : public testing::TestWithParam<Family> {

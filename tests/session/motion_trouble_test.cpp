@@ -169,6 +169,23 @@ TEST_F(MotionTrouble, AWatchdogWithoutReactionIsGivenOneForTheTime) {
   EXPECT_EQ(own.changed(), std::vector<std::string>{});
 }
 
+TEST_F(MotionTrouble, NothingOfAMotionIsWrittenToAFlashThatWears) {
+  MotionBench own("ts", 10000);
+  const auto before = own.drive().flash_writes();
+  ASSERT_TRUE(own.jog(jog_for("60rpm", 500ms)).outcome);
+  EXPECT_EQ(own.changed(), std::vector<std::string>{});
+  EXPECT_EQ(own.drive().flash_writes(), before);
+}
+
+TEST_F(MotionTrouble, ANodeThatMustBeOperationalIsStartedAndPutBack) {
+  MotionBench own("da200", 10000);
+  auto while_moving = canopen::NmtState::stopped;
+  own.options.on_sample = [&](const MotionSample&) { while_moving = own.drive().nmt_state(); };
+  ASSERT_TRUE(own.jog(jog_for("60rpm", 200ms)).outcome);
+  EXPECT_EQ(while_moving, canopen::NmtState::operational);
+  EXPECT_EQ(own.drive().nmt_state(), canopen::NmtState::pre_operational);
+}
+
 TEST_F(MotionTrouble, KeysTurnWhileTheyAreHeld) {
   int looks = 0;
   Jog jog = jog_for("60rpm", 0s);
