@@ -18,6 +18,8 @@ constexpr ObjectAddress kGuardTime{0x100C, 0};
 constexpr ObjectAddress kLifeFactor{0x100D, 0};
 constexpr std::uint32_t kLife = 5;  ///< Guard times in the life time.
 
+constexpr std::uint32_t kNoSuchObject = 0x0602'0000;  ///< CiA 301, table of SDO abort codes.
+
 constexpr std::uint16_t kHalted = 0x010F;
 constexpr std::uint16_t kQuickStop = 0x0002;
 constexpr std::uint16_t kDisableVoltage = 0x0000;
@@ -67,7 +69,9 @@ Result<void> MotionGuard::neutral_targets(std::optional<ObjectAddress> except) {
   for (const auto object : {kTargetVelocity, kTargetTorque}) {
     if (!units_->has(object) || object == except) continue;
     const auto size = od::size_of(units_->meaning(object).type).value_or(4);
-    if (const auto done = change(object, Bytes(size, 0)); !done) return done;
+    const auto done = change(object, Bytes(size, 0));
+    // The dictionary may promise more than the drive has.
+    if (!done && done.error().abort_code != kNoSuchObject) return done;
   }
   if (!units_->has(kTargetPosition) || !units_->has(kPositionActual)) return {};
   const auto here = session_->upload(node_, kPositionActual);

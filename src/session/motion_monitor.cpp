@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "session/hurry.hpp"
 #include "session/power.hpp"
 
 namespace servoctl::session {
@@ -12,6 +13,9 @@ namespace {
 using canopen::NodeEvent;
 
 constexpr std::array kEvery{Channel::position, Channel::velocity, Channel::torque, Channel::following_error};
+
+/// Longest wait for one answer of a drive that moves: meanwhile nothing is supervised.
+constexpr Duration kPatience = std::chrono::milliseconds(200);
 
 tl::unexpected<Error> stopped_by(std::uint8_t node, const std::string& what, std::string hint) {
   return fail(drive_error(Errc::negative, node, what, std::move(hint)));
@@ -40,7 +44,10 @@ MotionMonitor::MotionMonitor(Session& session, const MotionUnits& units, std::ui
 Result<MotionSample> MotionMonitor::sample() {
   std::vector<SdoRequest> requests{{.node = node_, .object = kStatusword, .size = 2}};
   for (const auto channel : channels_) requests.push_back({.node = node_, .object = object_of(channel)});
-  const auto answers = session_->transfer(requests);
+  const auto answers = [&] {
+    const Hurry hurry(*session_, kPatience, 1);
+    return session_->transfer(requests);
+  }();
   if (!answers[0]) return tl::unexpected<Error>(answers[0].error());
   MotionSample out;
   out.time = session_->now();

@@ -22,6 +22,9 @@ constexpr Duration kSettling = std::chrono::seconds(2);
 constexpr Duration kUnknownDuration = std::chrono::seconds(60);
 /// Nearer than this part of the way counts as there, unless 6067h says otherwise.
 constexpr double kPartOfWay = 0.01;
+/// A motor that holds a position trembles a little.
+constexpr double kLeastDegrees = 0.5;
+constexpr double kLeastCounts = 10;
 constexpr double kDefaultPart = 0.2;
 
 class Moving {
@@ -47,7 +50,8 @@ class Moving {
 
  private:
   Result<void> read_window() {
-    window_ = std::abs(plan_->way) * kPartOfWay;
+    const double least = plan_->unit == "deg" ? kLeastDegrees : kLeastCounts;
+    window_ = std::max(least, std::abs(plan_->way) * kPartOfWay);
     if (!motion_->units().has(kPositionWindow)) return {};
     const auto answer = motion_->session().upload(motion_->node(), kPositionWindow);
     if (!answer && answer.error().code != Errc::sdo_abort) return tl::unexpected<Error>(answer.error());

@@ -7,6 +7,7 @@
 #include "base/duration.hpp"
 #include "canopen/cob_id.hpp"
 #include "drive/quantity.hpp"
+#include "session/hurry.hpp"
 #include "session/power.hpp"
 
 namespace servoctl::session {
@@ -15,7 +16,10 @@ namespace {
 constexpr std::uint16_t kConsumerIndex = 0x1016;
 constexpr ObjectAddress kGuardTime{0x100C, 0};
 constexpr ObjectAddress kLifeFactor{0x100D, 0};
+constexpr ObjectAddress kDeviceType{0x1000, 0};
 constexpr std::uint8_t kMostEntries = 8;
+/// A node answers within some milliseconds.
+constexpr Duration kProbe = std::chrono::milliseconds(50);
 
 bool has(const drive::Profile& profile, ObjectAddress object) {
   return profile.dictionary.find(object) != nullptr;
@@ -24,13 +28,20 @@ bool has(const drive::Profile& profile, ObjectAddress object) {
 std::uint8_t node_of(std::uint64_t entry) { return static_cast<std::uint8_t>(entry >> 16U & 0x7FU); }
 bool is_free(std::uint64_t entry) { return node_of(entry) == 0 || (entry & 0xFFFFU) == 0; }
 
+/// Whether a node is there that has not been heard: its heartbeats must not be sent by two.
+bool answers(Session& session, std::uint8_t node) {
+  const Hurry hurry(session, kProbe, 0);
+  const auto answer = session.upload(node, kDeviceType);
+  return answer || answer.error().code == Errc::sdo_abort;
+}
+
 /// Node-ID for servoctl: not the drive's, not one that was heard or that the drive watches already.
 std::optional<std::uint8_t> free_producer(Session& session, std::uint8_t node,
                                           const std::vector<std::uint64_t>& entries) {
   for (std::uint8_t id = canopen::kLastNode; id >= canopen::kFirstNode; --id) {
     const bool watched =
         std::any_of(entries.begin(), entries.end(), [&](auto e) { return !is_free(e) && node_of(e) == id; });
-    if (id != node && !watched && !session.watch().state(id)) return id;
+    if (id != node && !watched && !session.watch().state(id) && !answers(session, id)) return id;
   }
   return std::nullopt;
 }

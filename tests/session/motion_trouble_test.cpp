@@ -159,6 +159,16 @@ TEST_F(MotionTrouble, TheDriveWatchesServoctlOnlyWhileItMoves) {
   EXPECT_TRUE(bench.bus->frames.empty());
 }
 
+TEST_F(MotionTrouble, ServoctlTakesNoNodeIdThatSomebodyHas) {
+  MotionBench own("gsd600@127,gsd600", 131072);
+  const auto plan = plan_watchdog(*own.session, own.profile(), 1, {});
+  ASSERT_TRUE(plan);
+  EXPECT_EQ(plan->producer, 126);
+  const auto of_the_drive = plan_watchdog(*own.session, own.profile(), 1, 1);
+  ASSERT_FALSE(of_the_drive);
+  EXPECT_EQ(of_the_drive.error().code, Errc::usage);
+}
+
 TEST_F(MotionTrouble, AWatchdogWithoutReactionIsGivenOneForTheTime) {
   MotionBench own("cia402", 10000);
   ASSERT_EQ(load_le(own.drive().value({0x6007, 0})), 0U);
