@@ -45,6 +45,7 @@ Result<void> add_dictionary(Profile& profile, const fs::path& path) {
   if (!file) return tl::unexpected<Error>(file.error());
   if (is_drive(file->dictionary)) od::inherit(file->dictionary, profile.dictionary);
   profile.dictionary = std::move(file->dictionary);
+  profile.data_sheet = path;
   if (!file->diagnostics.empty())
     profile.warnings.push_back(fmt::format("{0}: {1} errors, {2} warnings; `eds check {0}` lists them",
                                            path.string(), file->error_count(), file->warning_count()));

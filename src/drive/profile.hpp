@@ -25,6 +25,7 @@ struct Profile {
   std::vector<od::Parameter> parameters;
   std::vector<Fault> faults;
   std::vector<std::string> warnings;  ///< Findings in the files that did not stop them from being used.
+  std::filesystem::path data_sheet;   ///< The EDS or DCF the dictionary comes from; empty: none.
 
   /// The parameter with this id, in any of the ways people write it (`Pn0202`, `pn202`).
   const od::Parameter* parameter(std::string_view id) const;

@@ -1,0 +1,130 @@
+#include <fmt/format.h>
+#include <algorithm>
+#include <unordered_map>
+
+#include "base/number.hpp"
+#include "base/text.hpp"
+#include "od/dcf.hpp"
+#include "od/eds.hpp"
+#include "od/eds_compact.hpp"
+#include "od/eds_section.hpp"
+#include "od/ini.hpp"
+#include "od/text_encoding.hpp"
+
+namespace servoctl::od {
+namespace {
+
+/// Where a value stands in the text, and whether an entry has taken it.
+struct Place {
+  const IniSection* section = nullptr;
+  const IniKey* key = nullptr;
+  bool taken = false;
+};
+
+/// Of a value in [1600Value]: the object's index and the number of the line's key.
+std::uint32_t list_key(std::uint16_t index, std::uint8_t sub) { return std::uint32_t{index} << 8U | sub; }
+
+class Reader {
+ public:
+  Reader(std::string_view text, const EdsFile& eds, std::string_view file)
+      : ini_(parse_ini(text)), eds_(&eds), file_(file) {}
+
+  Result<Dcf> read() {
+    for (const auto& section : ini_.sections)
+      if (const auto found = find_places(section); !found) return tl::unexpected<Error>(found.error());
+    Dcf out{eds_->node_id, {}};
+    for (const auto& object : eds_->dictionary.objects())
+      for (const auto& entry : object.entries) {
+        auto* place = place_of(entry);
+        if (place == nullptr) continue;
+        place->taken = entry.configured || entry.type == DataType::domain;
+        if (entry.configured)
+          out.values.push_back({entry.address, entry.type, *entry.configured, place->key->line});
+      }
+    if (const auto all = check_taken(); !all) return tl::unexpected<Error>(all.error());
+    if (places_.empty())
+      return fail(Errc::file, fmt::format("{}: there is no ParameterValue in it", file_),
+                  "it is a data sheet (EDS), or a DCF in which nothing is configured");
+    return out;
+  }
+
+ private:
+  Result<void> find_places(const IniSection& section) {
+    const auto name = parse_section_name(section.name);
+    if (name && name->kind == SectionKind::values) return find_listed(section, name->index);
+    // A section with a name that only resembles one of the standard is found as well.
+    for (const auto& key : section.keys) {
+      if (!equals_nocase(key.key, "ParameterValue") || key.value.empty()) continue;
+      if (!sections_.emplace(section.line, places_.size()).second)
+        return refuse(key.line, fmt::format("[{}] has a second ParameterValue", section.name),
+                      "remove one of them");
+      places_.push_back({&section, &key});
+    }
+    return {};
+  }
+
+  Result<void> find_listed(const IniSection& section, std::uint16_t index) {
+    for (const auto& key : section.keys) {
+      if (equals_nocase(key.key, "NrOfEntries") || key.value.empty()) continue;
+      const auto sub = parse_digits(key.key, 10);
+      if (!sub || *sub > 0xFF)
+        return refuse(key.line, fmt::format("[{}] has no entry '{}'", section.name, clip(key.key, 40)),
+                      "its keys are the decimal numbers of sub-indexes");
+      if (!listed_.emplace(list_key(index, static_cast<std::uint8_t>(*sub)), places_.size()).second)
+        return refuse(key.line, fmt::format("[{}] has a second entry {}", section.name, *sub),
+                      "remove one of them");
+      places_.push_back({&section, &key});
+    }
+    return {};
+  }
+
+  Place* place_of(const Entry& entry) {
+    const auto own = sections_.find(entry.line);
+    if (own != sections_.end() && !has_compact_subs(*places_[own->second].section))
+      return &places_[own->second];
+    const auto listed = listed_.find(list_key(entry.address.index, entry.address.sub));
+    return listed == listed_.end() ? nullptr : &places_[listed->second];
+  }
+
+  Result<void> check_taken() const {
+    for (const auto& place : places_) {
+      if (place.taken) continue;
+      const auto first = place.section->line;
+      const auto last = place.section->keys.back().line;
+      const auto& all = eds_->diagnostics;
+      const auto why = std::find_if(all.begin(), all.end(), [&](const Diagnostic& d) {
+        return d.severity == Severity::error && d.line >= first && d.line <= last &&
+               (d.line == place.key->line || d.rule != "bad-value");
+      });
+      if (why != all.end()) return refuse(why->line, why->message, why->remedy);
+      return refuse(place.key->line,
+                    fmt::format("[{}] describes no object that could hold the value", place.section->name),
+                    "give the object its section, with DataType and AccessType");
+    }
+    return {};
+  }
+
+  tl::unexpected<Error> refuse(std::uint32_t line, std::string_view what, std::string hint) const {
+    auto error = fail(Errc::file, fmt::format("{}:{}: {}", file_, line, what), std::move(hint)).value();
+    error.line = line;
+    return fail(std::move(error));
+  }
+
+  IniText ini_;
+  const EdsFile* eds_;
+  std::string_view file_;
+  std::vector<Place> places_;
+  std::unordered_map<std::uint32_t, std::size_t> sections_;  ///< Position in places_ by line of the section.
+  std::unordered_map<std::uint32_t, std::size_t> listed_;
+};
+
+}  // namespace
+
+Result<Dcf> read_dcf(std::string_view text, std::string_view file) {
+  const auto eds = read_eds(text, file);
+  if (!eds) return tl::unexpected<Error>(eds.error());
+  const auto decoded = to_utf8(text);
+  return Reader(decoded.text(text), *eds, file).read();
+}
+
+}  // namespace servoctl::od
