@@ -27,4 +27,7 @@ struct CsvTable {
 /// unclosed quote or a column named twice is an error of Errc::file with its line.
 Result<CsvTable> parse_csv(std::string_view text, std::string_view file);
 
+/// A cell as parse_csv() reads it: in quotes where it holds a comma, a quote or a line break.
+std::string csv_cell(std::string_view text);
+
 }  // namespace servoctl
