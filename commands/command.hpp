@@ -78,6 +78,17 @@ class Arguments {
   std::map<std::string, std::vector<std::string>, std::less<>> values_;
 };
 
+struct Command;
+
+/// A line of a batch file that is read and not run.
+struct BatchLine {
+  std::uint32_t line = 0;  ///< Of the file, from 1.
+  const Command* command = nullptr;
+  Arguments arguments;
+  std::vector<std::uint8_t> nodes;  ///< That the file names for this line; empty: it does not say.
+  std::string family;               ///< The same.
+};
+
 /// What a command works with and where it leaves what it has to tell beside its result.
 struct Context {
   session::Session* session = nullptr;  ///< Set when the command needs a bus.
@@ -99,6 +110,13 @@ struct Context {
   std::function<bool()> output_lost;
   /// The keys of the terminal, until the answer is destroyed; null where there is none. May be empty.
   std::function<std::unique_ptr<Keys>()> open_keys;
+  /// Opens the bus for a command whose words decide whether it needs one; sets `session`.
+  std::function<Result<session::Session*>()> open_bus;
+  /// The data of a family, loaded once; errors as load_profile().
+  std::function<Result<const drive::Profile*>(const std::string& family)> family;
+  /// Takes a batch file apart into its command lines, loops unrolled. Errc::file with the line of the first
+  /// that is wrong, or is no command.
+  std::function<Result<std::vector<BatchLine>>(std::string_view text, const std::string& file)> batch_lines;
 
   bool keeps_samples = false;  ///< `--json`: the result carries what emit() was given.
 

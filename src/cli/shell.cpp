@@ -8,6 +8,7 @@
 #include "base/text.hpp"
 #include "can/socketcan.hpp"
 #include "canopen/cob_id.hpp"
+#include "cli/batch_lines.hpp"
 #include "cli/signals.hpp"
 #include "commands/help.hpp"
 #include "commands/notice.hpp"
@@ -107,6 +108,15 @@ Result<Value> Shell::execute(Run& run, const commands::Arguments& arguments) {
                   "add --yes when you mean it");
     if (console_->ask(question)) return {};
     return fail(Errc::refused, "not confirmed; nothing was sent");
+  };
+  context.open_bus = [this, &run]() -> Result<session::Session*> {
+    const auto opened = open(run.settings);
+    if (opened) run.context.session = *opened;
+    return opened;
+  };
+  context.family = [this](const std::string& family) { return profile(family); };
+  context.batch_lines = [this](std::string_view text, const std::string& file) {
+    return batch_lines(*this, text, file);
   };
   context.keeps_samples = run.settings.json && !run.settings.samples;
   context.emit = [this, &run](const report::Record& sample, std::string_view line) {
@@ -224,6 +234,9 @@ Result<session::Session*> Shell::open(const Settings& settings) {
     session_->options().progress = [this](std::size_t done, std::optional<std::size_t> total, TimePoint now) {
       progress_.update(done, total, now);
     };
+    session_->options().list_progress = [this](std::size_t done, std::size_t total, TimePoint now) {
+      progress_.update_list(done, total, now);
+    };
     // Boot-ups of drives that are simulated in this process are no news.
     if (const auto heard = session_->listen(); !heard) return tl::unexpected<Error>(heard.error());
     (void)session_->take_events();
@@ -268,7 +281,7 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
   if (!errors.empty() && errors.front().code == Errc::bus) close_bus();
   return {.command = std::string(run.command->path),
           .settings = std::move(run.settings),
-          .uses_bus = includes(run.command->needs, Needs::bus),
+          .uses_bus = includes(run.command->needs, Needs::bus) || run.context.session != nullptr,
           .result = result ? *result : Value(),
           .errors = std::move(errors),
           .notices = std::move(run.context.notices)};

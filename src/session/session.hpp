@@ -40,6 +40,8 @@ struct Options {
   /// Told how many bytes of a long transfer have gone, of how many in all where that is known, on the bus's
   /// clock; may be empty.
   std::function<void(std::size_t done, std::optional<std::size_t> total, TimePoint now)> progress;
+  /// Told how many requests of a long list are done, of how many in all; may be empty.
+  std::function<void(std::size_t done, std::size_t total, TimePoint now)> list_progress;
 };
 
 /// A bus with its nodes. One pump drives any number of protocol machines; listeners see every frame in every

@@ -11,6 +11,8 @@ namespace {
 constexpr int kNone = -1;
 /// Bytes from which on a transfer is worth a word while it goes on.
 constexpr std::size_t kLongTransfer = 1000;
+/// Requests from which on a list is; a scan asks 127 nodes at once.
+constexpr std::size_t kLongList = 128;
 
 std::string silence_hint(std::uint8_t node) {
   return fmt::format(
@@ -110,6 +112,9 @@ void TransferRun::finish(Channel& channel, Result<Bytes> result) {
   if (silent && result.error().hint.empty()) result.error().hint = silence_hint(request.node);
   results_[channel.current] = result;
   --open_;
+  const auto& options = session_->options();
+  if (options.list_progress && requests_.size() >= kLongList)
+    options.list_progress(requests_.size() - open_, requests_.size(), session_->received_at_);
   if (!result && (silent || request.data)) skip_rest(channel, result.error(), silent);
   start(channel);
 }

@@ -33,6 +33,15 @@ TEST(Progress, KnowsNoShareOfAnUnknownWhole) {
   EXPECT_EQ(console.progress, std::vector<std::string>{"2000 bytes, 2.0 kB/s"});
 }
 
+TEST(Progress, CountsTheObjectsOfALongList) {
+  RecordingConsole console;
+  Progress progress(console);
+  progress.update_list(1, 400, TimePoint{5s});
+  progress.update_list(100, 400, TimePoint{6s});
+  EXPECT_EQ(console.progress,
+            std::vector<std::string>{"[#######.......................]  25% of 400 objects"});
+}
+
 TEST(Progress, IsSilentAboutWhatIsQuick) {
   RecordingConsole console;
   Progress progress(console);

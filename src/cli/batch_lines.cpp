@@ -1,0 +1,64 @@
+#include "cli/batch_lines.hpp"
+
+#include <fmt/format.h>
+
+#include "cli/batch.hpp"
+#include "cli/batch_plan.hpp"
+#include "cli/prompt_words.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+tl::unexpected<Error> in_line(const std::string& file, std::uint32_t line, Error error) {
+  error.code = Errc::file;
+  error.message = fmt::format("{}:{}: {}", file, line, error.message);
+  error.line = line;
+  return fail(std::move(error));
+}
+
+Result<commands::BatchLine> line_of(const Settings& base, const std::vector<std::string>& words) {
+  auto parsed = parse_line(words);
+  if (!parsed) return tl::unexpected<Error>(parsed.error());
+  const auto settings = apply_options(base, parsed->arguments);
+  if (!settings) return tl::unexpected<Error>(settings.error());
+  commands::BatchLine out{.line = 0,
+                          .command = parsed->command,
+                          .arguments = std::move(parsed->arguments),
+                          .nodes = {},
+                          .family = settings->drive};
+  if (settings->nodes.empty()) return out;
+  auto nodes = parse_nodes(settings->nodes);
+  if (!nodes) return tl::unexpected<Error>(nodes.error());
+  out.nodes = std::move(*nodes);
+  return out;
+}
+
+}  // namespace
+
+Result<std::vector<commands::BatchLine>> batch_lines(Shell& shell, std::string_view text,
+                                                     const std::string& file) {
+  const auto batch = parse_batch(text);
+  const auto plan = plan_batch(batch, Variables{}, std::filesystem::path(file).parent_path());
+  for (const auto* errors : {&batch.errors, &plan.errors})
+    if (!errors->empty()) return in_line(file, errors->front().line.value_or(1), errors->front());
+  Settings settings;
+  std::vector<commands::BatchLine> out;
+  for (const auto& step : plan.steps) {
+    if (step.kind != Step::Kind::command || is_exit(step.words))
+      return in_line(file, step.line,
+                     fail(Errc::file, fmt::format("'{}' writes no value", step.text),
+                          "to be read as settings, a batch file holds lines that write")
+                         .value());
+    auto next = chosen(shell, settings, step.words);
+    if (!next) return in_line(file, step.line, next.error());
+    settings = std::move(*next);
+    if (is_choice(step.words)) continue;
+    auto line = line_of(settings, step.words);
+    if (!line) return in_line(file, step.line, line.error());
+    line->line = step.line;
+    out.push_back(std::move(*line));
+  }
+  return out;
+}
+
+}  // namespace servoctl::cli
