@@ -1,11 +1,13 @@
 #include <fmt/format.h>
-#include <array>
+#include <algorithm>
 #include <system_error>
 
 #include "base/file.hpp"
 #include "commands/backup_file.hpp"
 #include "commands/command.hpp"
+#include "commands/comparison.hpp"
 #include "commands/records.hpp"
+#include "commands/selection.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -13,32 +15,39 @@ namespace {
 using report::Show;
 using report::Value;
 
+constexpr std::string_view kChanged = "changed";
+
 constexpr Parameter kParameters[] = {
     {.name = "file", .help = "file of one drive, folder of several", .kind = Kind::file, .required = true},
-    {.name = "--only", .help = "communication, pdo, params, or a group of parameters", .kind = Kind::text},
+    {.name = "--format",
+     .help = "json, dcf, csv or batch (default: by the file's extension, else json)",
+     .kind = Kind::choice,
+     .choices = kBackupFormats},
+    {.name = "--only",
+     .help = "communication, pdo, params, changed (other than from the factory), or a group of parameters",
+     .kind = Kind::text},
 };
 
-bool is_pdo(std::uint16_t index) { return index >= 0x1400 && index <= 0x1BFF; }
-
-Result<session::SettingFilter> filter_of(const Context& context, const Arguments& arguments) {
-  if (!arguments.has("--only")) return session::SettingFilter{};
-  const std::string word(arguments.text("--only"));
-  if (word == "communication")
-    return session::SettingFilter{[](const auto& s) { return s.entry->address.index < 0x2000; }};
-  if (word == "pdo")
-    return session::SettingFilter{[](const auto& s) { return is_pdo(s.entry->address.index); }};
-  if (word == "params") return session::SettingFilter{[](const auto& s) { return s.parameter != nullptr; }};
-  bool known = false;
-  for (const auto& parameter : context.profile->parameters) known = known || parameter.group == word;
-  if (!known)
-    return fail(Errc::usage, fmt::format("'{}' is no part of a backup", word),
-                "there are communication, pdo, params and the groups that `param list --json` shows");
+Result<session::SettingFilter> filter_of(const Context& context, std::string_view word) {
+  if (word.empty() || word == kChanged) return session::SettingFilter{};
+  auto selection = selection_of(*context.profile, word);
+  if (!selection) {
+    auto error = selection.error();
+    if (const auto place = error.hint.find("params,"); place != std::string::npos)
+      error.hint.insert(place, "changed, ");
+    return tl::unexpected<Error>(std::move(error));
+  }
   return session::SettingFilter{
-      [word](const auto& s) { return s.parameter != nullptr && s.parameter->group == word; }};
+      [chosen = std::move(*selection)](const auto& setting) { return chosen(setting.entry->address); }};
 }
 
-std::filesystem::path file_for(const std::filesystem::path& path, std::uint8_t node, bool many) {
-  return many ? path / fmt::format("node-{}.json", node) : path;
+/// Takes away what is as the factory left it. A value whose default no manual states stays.
+void keep_changed(const drive::Profile& profile, Backup& backup) {
+  const auto factory = factory_side(profile, backup.identity.node);
+  std::erase_if(backup.entries, [&](const Backup::Entry& entry) {
+    const auto found = factory.values.find(entry.object);
+    return !entry.bytes || (found != factory.values.end() && found->second == *entry.bytes);
+  });
 }
 
 Result<void> make_folder(const std::filesystem::path& folder) {
@@ -48,11 +57,30 @@ Result<void> make_folder(const std::filesystem::path& folder) {
   return {};
 }
 
+struct Saved {
+  std::size_t values = 0;
+  std::size_t left_out = 0;
+};
+
+Result<Saved> save(Context& context, Backup backup, bool changed, BackupFormat format,
+                   const std::filesystem::path& file) {
+  if (changed) keep_changed(*context.profile, backup);
+  Saved out;
+  for (const auto& entry : backup.entries) ++(entry.bytes ? out.values : out.left_out);
+  const auto text = backup_text(context, backup, format, file);
+  if (!text) return tl::unexpected<Error>(text.error());
+  if (const auto written = write_file_atomically(file, *text); !written)
+    return tl::unexpected<Error>(written.error());
+  return out;
+}
+
 Result<Value> run(Context& context, const Arguments& arguments) {
-  const auto wanted = filter_of(context, arguments);
+  const auto only = arguments.text("--only");
+  const auto wanted = filter_of(context, only);
   if (!wanted) return tl::unexpected<Error>(wanted.error());
   const std::filesystem::path path(arguments.text("file"));
   const bool many = context.nodes.size() > 1;
+  const auto format = format_of(path, arguments.text("--format"));
   if (many)
     if (const auto made = make_folder(path); !made) return tl::unexpected<Error>(made.error());
   const auto snapshots = session::take_snapshots(*context.session, *context.profile, context.nodes, *wanted);
@@ -60,20 +88,14 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   table.columns = {{"node"}, {"file"}, {"values"}, {"left_out", "left out"}, {"error", "", Show::json}};
   for (std::size_t i = 0; i < snapshots.size(); ++i) {
     const auto node = context.nodes[i];
-    const auto file = file_for(path, node, many);
-    Result<void> written;
-    std::size_t values = 0;
-    std::size_t left_out = 0;
-    if (snapshots[i]) {
-      const auto backup = make_backup(context, *snapshots[i]);
-      for (const auto& entry : backup.entries) ++(entry.bytes ? values : left_out);
-      written = write_file_atomically(file, backup_text(context, backup));
-    } else {
-      written = tl::unexpected<Error>(snapshots[i].error());
-    }
-    if (!written) context.errors.push_back(written.error());
-    table.rows.push_back({node, written ? Value(file.string()) : Value("not written"), values, left_out,
-                          written ? Value() : error_record(written.error())});
+    const auto file = many ? path / fmt::format("node-{}{}", node, extension_of(format)) : path;
+    const auto saved =
+        snapshots[i] ? save(context, make_backup(context, *snapshots[i]), only == kChanged, format, file)
+                     : Result<Saved>(tl::unexpected<Error>(snapshots[i].error()));
+    if (!saved) context.errors.push_back(saved.error());
+    table.rows.push_back({node, saved ? Value(file.string()) : Value("not written"),
+                          saved ? saved->values : 0U, saved ? saved->left_out : 0U,
+                          saved ? Value() : error_record(saved.error())});
   }
   table.json_only = context.errors.size() == snapshots.size();
   return Value(std::move(table));
@@ -86,11 +108,11 @@ const Command kBackup{
     .path = "backup",
     .summary = "Save the settings of a drive into a file",
     .details =
-        "Parameters and writable objects, as JSON, one a line, with identity and checksum; several nodes are "
-        "read at "
-        "the same time and go into a folder, node-N.json each. What is no setting (commands, readings, "
-        "targets) or is "
-        "refused by the drive stands in the file with the reason. A file is written whole or not at all.",
+        "Parameters and writable objects, one a line; several nodes are read at the same time and go into a "
+        "folder, node-N.json each. What is no setting (commands, readings, targets) or is refused by the "
+        "drive is named with the reason. A file is written whole or not at all. JSON holds identity and "
+        "checksum and is what to keep; a DCF (CiA 306) goes into other tools, a table into a spreadsheet, "
+        "and a batch is command lines for `run`. `restore`, `diff` and `verify` read all of them.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::reads,

@@ -2,23 +2,23 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <cctype>
 #include <cstdlib>
 #include <ctime>
-#include <unordered_set>
+#include <iterator>
 
 #include "base/file.hpp"
 #include "base/number.hpp"
-#include "commands/field_reader.hpp"
+#include "base/text.hpp"
+#include "commands/backup_formats.hpp"
 #include "commands/reading.hpp"
+#include "od/eds_section.hpp"
+#include "od/text_encoding.hpp"
 
 namespace servoctl::commands {
 namespace {
 
-using report::List;
-using report::Record;
-using report::Value;
-
-constexpr std::int64_t kVersion = 1;
+constexpr std::string_view kExtensions[] = {".json", ".dcf", ".csv", ".servoctl"};
 
 /// $SOURCE_DATE_EPOCH stands for the present where output has to be the same every time.
 std::string now_text() {
@@ -31,138 +31,99 @@ std::string now_text() {
   return {text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc)};
 }
 
-/// FNV-1a of everything a restore would use: an edited or cut file is noticed.
-class Checksum {
- public:
-  void add(std::string_view text) {
-    for (const char c : text) {
-      hash_ ^= static_cast<unsigned char>(c);
-      hash_ *= 0x100'0000'01B3U;
-    }
-  }
-  std::string text() const { return fmt::format("fnv1a64:{:016x}", hash_); }
-
- private:
-  std::uint64_t hash_ = 0xCBF2'9CE4'8422'2325U;
-};
-
-Value number_or_null(const std::optional<std::uint32_t>& number) { return number ? Value(*number) : Value(); }
-
-Record identity_record(const session::Identity& i) {
-  return {{"device_type", number_or_null(i.device_type)},
-          {"vendor_id", number_or_null(i.vendor_id)},
-          {"product_code", number_or_null(i.product_code)},
-          {"revision", number_or_null(i.revision)},
-          {"serial", number_or_null(i.serial)},
-          {"device_name", report::text_or_null(i.device_name)},
-          {"hardware_version", report::text_or_null(i.hardware_version)},
-          {"software_version", report::text_or_null(i.software_version)}};
-}
-
-Record entry_record(const Context& context, const Backup& backup, const Backup::Entry& entry) {
-  Record out{{"id", report::text_or_null(entry.id)},
-             {"index", entry.object.index},
-             {"sub", entry.object.sub},
-             {"name", report::text_or_null(entry.name)},
-             {"type", od::name(entry.type)},
-             {"bytes", entry.bytes ? Value(to_hex(*entry.bytes)) : Value()}};
-  if (entry.bytes) {
-    const Reading reading{backup.identity.node, drive::target_at(context.profile, entry.object), entry.type,
-                          *entry.bytes};
-    const auto decoded = decode_value(reading, *entry.bytes);
-    out.push_back({"value", decoded.value});
-    out.push_back({"unit", report::text_or_null(decoded.unit)});
-    out.push_back({"label", decoded.label});
-  }
-  if (!entry.left_out.empty()) out.push_back({"left_out", entry.left_out});
-  return out;
-}
-
-std::optional<std::uint32_t> narrow(std::optional<std::uint64_t> number) {
-  return number ? std::optional(static_cast<std::uint32_t>(*number)) : std::nullopt;
-}
-
-session::Identity read_identity(const Value& record, std::uint8_t node, FieldReader& header) {
-  session::Identity out;
-  out.node = node;
-  const auto* inside = report::find(record, "identity");
-  if (inside == nullptr) {
-    header.refuse("identity");
-    return out;
-  }
-  FieldReader fields(*inside, "identity");
-  out.device_type = narrow(fields.number("device_type"));
-  out.vendor_id = narrow(fields.number("vendor_id"));
-  out.product_code = narrow(fields.number("product_code"));
-  out.revision = narrow(fields.number("revision"));
-  out.serial = narrow(fields.number("serial"));
-  out.device_name = fields.text("device_name");
-  out.hardware_version = fields.text("hardware_version");
-  out.software_version = fields.text("software_version");
-  if (fields.error()) header.refuse("identity");
-  return out;
-}
-
-Result<Backup::Entry> read_entry(const Value& record, std::uint32_t line, std::string_view file) {
-  const auto where = fmt::format("{}:{}", file, line);
-  FieldReader fields(record, where);
-  Backup::Entry out;
-  out.line = line;
-  out.id = fields.text("id");
-  out.name = fields.text("name");
-  out.left_out = fields.text("left_out");
-  const auto index = fields.number("index", true).value_or(0);
-  const auto sub = fields.number("sub", true).value_or(0);
-  if (index > 0xFFFF) fields.refuse("index");
-  if (sub > 0xFF) fields.refuse("sub");
-  out.object = {static_cast<std::uint16_t>(index), static_cast<std::uint8_t>(sub)};
-  const auto type = od::parse_data_type(fields.text("type", true));
-  if (!type) fields.refuse("type");
-  out.type = type.value_or(od::DataType::bytes);
-  if (const auto hex = fields.text("bytes"); !hex.empty()) {
-    out.bytes = parse_hex_bytes(hex);
-    const auto size = od::size_of(out.type);
-    if (!out.bytes || (size && out.bytes->size() != *size)) fields.refuse("bytes");
-  } else if (out.left_out.empty()) {
-    fields.refuse("bytes");
-  }
-  if (fields.error()) return fail(Errc::file, *fields.error(), "take the backup anew");
-  return out;
-}
-
-/// Where the entries begin in the text, a line each: what backup_text() writes.
-std::uint32_t first_entry_line(std::string_view text) {
-  const auto place = text.find("\"entries\"");
-  return static_cast<std::uint32_t>(
-      2 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(std::min(place, text.size())),
-                     '\n'));
-}
-
-Result<void> read_entries(const Value& document, std::uint32_t line, std::string_view file, Backup& out) {
-  const auto* list = report::find(document, "entries");
-  const auto* entries = list == nullptr ? nullptr : std::get_if<List>(&list->data());
-  if (entries == nullptr) return fail(Errc::file, fmt::format("{}: 'entries' is missing or wrong", file));
-  std::unordered_set<ObjectAddress> seen;
-  for (const auto& record : *entries) {
-    auto entry = read_entry(record, line++, file);
-    if (!entry) return tl::unexpected<Error>(entry.error());
-    if (!seen.insert(entry->object).second)
-      return fail(Errc::file,
-                  fmt::format("{}:{}: {} stands here twice", file, entry->line, to_string(entry->object)));
-    out.entries.push_back(std::move(*entry));
+/// The first line that is neither empty nor a comment of INI files or of batch files.
+std::string_view first_line(std::string_view text) {
+  while (!text.empty()) {
+    const auto end = std::min(text.find('\n'), text.size());
+    const auto line = trim(text.substr(0, end));
+    if (!line.empty() && line.front() != ';' && line.front() != '#') return line;
+    text.remove_prefix(std::min(end + 1, text.size()));
   }
   return {};
 }
 
+/// `[FileInfo]`, and not the `[7]` before a line of CiA 309-3 nor a JSON list.
+bool begins_section(std::string_view line) {
+  return line.size() > 2 && line.front() == '[' && line.back() == ']' &&
+         std::all_of(line.begin() + 1, line.end() - 1,
+                     [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
+}
+
+bool is_table_head(std::string_view line) {
+  const auto columns = split(line, ',');
+  return std::any_of(columns.begin(), columns.end(), [](std::string_view column) {
+    const auto name = trim(column);
+    return equals_nocase(name, "index") || equals_nocase(name, "\"index\"");
+  });
+}
+
+BackupFormat guess_format(std::string_view bytes, const std::string& extension) {
+  if (extension == ".json") return BackupFormat::json;
+  // Every number of a concise DCF has bytes that no text has; UTF-16 has them as well, and a mark before.
+  const auto encoding = od::guess_encoding(bytes);
+  const bool wide = encoding == od::TextEncoding::utf16le || encoding == od::TextEncoding::utf16be;
+  if (!wide && bytes.find('\0') != std::string_view::npos) return BackupFormat::concise_dcf;
+  const auto decoded = od::to_utf8(bytes);
+  const auto line = first_line(decoded.text(bytes));
+  if (line.empty() || line.front() == '{') return BackupFormat::json;
+  if (begins_section(line) || extension == ".dcf" || extension == ".eds") return BackupFormat::dcf;
+  if (is_table_head(line) || extension == ".csv") return BackupFormat::csv;
+  return line == "[]" || line.starts_with("[[") ? BackupFormat::json : BackupFormat::batch;
+}
+
+std::string_view title_of(BackupFormat format) {
+  switch (format) {
+    case BackupFormat::json: return "backup of servoctl";
+    case BackupFormat::dcf: return "DCF";
+    case BackupFormat::csv: return "table";
+    case BackupFormat::batch: return "list of command lines";
+    case BackupFormat::concise_dcf: return "concise DCF";
+  }
+  return {};
+}
+
+Result<Backup> read_foreign(const Context& context, const BackupSource& source, const drive::Profile& profile,
+                            std::uint8_t node) {
+  switch (source.format) {
+    case BackupFormat::dcf: return read_dcf_backup(source.text, source.file, node);
+    case BackupFormat::csv: return read_csv_backup(source.text, source.file, profile, node);
+    case BackupFormat::batch: return read_batch_backup(context, source.text, source.file, profile, node);
+    default: return read_concise_dcf(source.text, source.file);
+  }
+}
+
+/// What the reader of a restore must know: no checksum, no identity, and what is not written.
+void tell(Context& context, const BackupSource& source, const Backup& backup) {
+  context.notices.push_back(fmt::format(
+      "{} is a {}: it proves neither its drive nor that it is whole; its objects and values fit {}",
+      source.file, title_of(source.format), backup.family));
+  constexpr std::size_t kMostNamed = 4;
+  std::size_t left_out = 0;
+  std::string names;
+  for (const auto& entry : backup.entries) {
+    if (entry.bytes || ++left_out > kMostNamed) continue;
+    names += fmt::format("{}{} {} ({})", names.empty() ? "" : ", ", to_string(entry.object), entry.name,
+                         entry.left_out);
+  }
+  if (left_out > 0)
+    context.notices.push_back(fmt::format("{}: {} entries are no settings and are left out: {}{}",
+                                          source.file, left_out, names, left_out > kMostNamed ? ", …" : ""));
+}
+
 }  // namespace
 
-std::string checksum(const Backup& backup) {
-  Checksum sum;
-  sum.add(backup.family);
-  for (const auto& entry : backup.entries)
-    sum.add(fmt::format("\n{} {} {} {}", to_string(entry.object), od::name(entry.type),
-                        entry.bytes ? to_hex(*entry.bytes, "") : "-", entry.left_out));
-  return sum.text();
+BackupFormat format_of(const std::filesystem::path& file, std::string_view word) {
+  const auto extension = lower(file.extension().string());
+  if (word.empty() && extension == ".txt") return BackupFormat::batch;
+  for (std::size_t i = 0; i < std::size(kBackupFormats); ++i)
+    if (word.empty() ? kExtensions[i] == extension : kBackupFormats[i] == word)
+      return static_cast<BackupFormat>(i);
+  return BackupFormat::json;
+}
+
+std::string_view extension_of(BackupFormat format) {
+  const auto place = static_cast<std::size_t>(format);
+  return place < std::size(kExtensions) ? kExtensions[place] : std::string_view();
 }
 
 Backup make_backup(const Context& context, const session::Snapshot& snapshot) {
@@ -190,54 +151,68 @@ Backup make_backup(const Context& context, const session::Snapshot& snapshot) {
 }
 
 std::string backup_text(const Context& context, const Backup& backup) {
-  const Record head{{"servoctl_backup", kVersion},
-                    {"tool", backup.tool},
-                    {"time", backup.time},
-                    {"bus", backup.bus},
-                    {"node", backup.identity.node},
-                    {"family", backup.family},
-                    {"identity", identity_record(backup.identity)},
-                    {"checksum", checksum(backup)}};
-  auto out = report::to_json(head);
-  out.pop_back();
-  out += ",\n\"entries\":[\n";
-  for (std::size_t i = 0; i < backup.entries.size(); ++i)
-    out += report::to_json(entry_record(context, backup, backup.entries[i])) +
-           (i + 1 < backup.entries.size() ? ",\n" : "\n");
-  return out + "]}\n";
+  return json_text(context.profile, backup);
 }
 
-Result<Backup> read_backup(const std::filesystem::path& path) {
-  const auto file = path.string();
-  const auto text = read_file(path);
+Result<std::string> backup_text(Context& context, const Backup& backup, BackupFormat format,
+                                const std::filesystem::path& file) {
+  switch (format) {
+    case BackupFormat::dcf:
+      return dcf_text(*context.profile, backup, file.filename().string(), context.notices);
+    case BackupFormat::csv: return csv_text(*context.profile, backup);
+    case BackupFormat::batch: return batch_text(*context.profile, backup);
+    default: return json_text(context.profile, backup);
+  }
+}
+
+Result<BackupSource> open_backup(const std::filesystem::path& file) {
+  auto text = read_file(file);
   if (!text) return tl::unexpected<Error>(text.error());
-  const auto document = report::parse_json(*text, file);
-  if (!document) return tl::unexpected<Error>(document.error());
-  FieldReader fields(*document, file);
-  const auto version = fields.number("servoctl_backup", true);
-  if (!version) return fail(Errc::file, fmt::format("{}: this is no backup of servoctl", file));
-  if (*version > static_cast<std::uint64_t>(kVersion))
-    return fail(
-        Errc::file,
-        fmt::format("{}: its version {} is newer than this program knows ({})", file, *version, kVersion),
-        "read it with the servoctl that wrote it, or a newer one");
-  Backup out;
-  out.tool = fields.text("tool");
-  out.time = fields.text("time");
-  out.bus = fields.text("bus");
-  out.family = fields.text("family", true);
-  const auto node = fields.number("node", true).value_or(0);
-  if (node < 1 || node > 127) fields.refuse("node");
-  out.identity = read_identity(*document, static_cast<std::uint8_t>(node), fields);
-  const auto sum = fields.text("checksum", true);
-  if (fields.error()) return fail(Errc::file, *fields.error(), "take the backup anew");
-  if (const auto read = read_entries(*document, first_entry_line(*text), file, out); !read)
-    return tl::unexpected<Error>(read.error());
-  if (sum != checksum(out))
-    return fail(Errc::file,
-                fmt::format("{}: its checksum does not fit: the file was changed after it was written", file),
-                "take the backup anew");
-  return out;
+  const auto format = guess_format(*text, lower(file.extension().string()));
+  return BackupSource{file.string(), std::move(*text), format};
+}
+
+std::string family_of(const Context& context, const BackupSource& source) {
+  if (source.format == BackupFormat::json) {
+    const auto document = report::parse_json(source.text, source.file);
+    const auto* family = document ? report::find(*document, "family") : nullptr;
+    const auto* name = family == nullptr ? nullptr : std::get_if<std::string>(&family->data());
+    return name == nullptr ? std::string() : *name;
+  }
+  if (source.format != BackupFormat::batch || !context.batch_lines) return {};
+  const auto lines = context.batch_lines(source.text, source.file);
+  if (lines)
+    for (const auto& line : *lines)
+      if (!line.family.empty()) return line.family;
+  return {};
+}
+
+Result<Backup> read_backup(Context& context, const BackupSource& source, const drive::Profile* profile,
+                           std::uint8_t node) {
+  if (source.format == BackupFormat::json) return read_json_backup(source.text, source.file);
+  if (profile == nullptr)
+    return fail(Errc::usage, fmt::format("{} does not say of which family it is", source.file),
+                "add -d FAMILY; `drives` lists families");
+  auto backup = read_foreign(context, source, *profile, node);
+  if (!backup) return backup;
+  if (backup->identity.node == 0) backup->identity.node = node;
+  const bool procedure = source.format == BackupFormat::batch || source.format == BackupFormat::concise_dcf;
+  if (const auto settled = settle(*backup, source.file, *profile, procedure); !settled)
+    return tl::unexpected<Error>(settled.error());
+  tell(context, source, *backup);
+  return backup;
+}
+
+Result<Backup> read_backup(Context& context, const std::filesystem::path& file, std::uint8_t node) {
+  const auto source = open_backup(file);
+  if (!source) return tl::unexpected<Error>(source.error());
+  return read_backup(context, *source, context.profile, node);
+}
+
+Result<Backup> read_backup(const std::filesystem::path& file) {
+  const auto text = read_file(file);
+  if (!text) return tl::unexpected<Error>(text.error());
+  return read_json_backup(*text, file.string());
 }
 
 }  // namespace servoctl::commands

@@ -20,7 +20,7 @@ struct Backup {
     od::DataType type = od::DataType::bytes;
     std::optional<Bytes> bytes;
     std::string left_out;
-    std::uint32_t line = 0;  ///< Of the file; from 1.
+    std::uint32_t line = 0;  ///< Of the file, or number of the entry where it has no lines; from 1.
   };
   std::string family;
   std::string tool;
@@ -30,17 +30,61 @@ struct Backup {
   std::vector<Entry> entries;
 };
 
+/// The forms settings are kept in. All are read; the last one is not written.
+enum class BackupFormat : std::uint8_t {
+  json,        ///< Ours: with identity and checksum.
+  dcf,         ///< Device configuration file, CiA 306-1.
+  csv,         ///< A table.
+  batch,       ///< Command lines, ours or of CiA 309-3.
+  concise_dcf  ///< The value of object 1F22h, CiA 302-3.
+};
+
+/// The words of `--format`, in the order of BackupFormat.
+inline constexpr std::string_view kBackupFormats[] = {"json", "dcf", "csv", "batch"};
+
+/// The format a file of this name is written in: by `word` (of kBackupFormats) unless empty, else by the
+/// extension, else JSON.
+BackupFormat format_of(const std::filesystem::path& file, std::string_view word);
+/// `.json .dcf .csv .servoctl`
+std::string_view extension_of(BackupFormat format);
+
 /// The backup of a snapshot, with names and types of the family.
 Backup make_backup(const Context& context, const session::Snapshot& snapshot);
 
 /// A checksum of everything a restore would use.
 std::string checksum(const Backup& backup);
 
-/// The file's text: JSON, one entry a line, with a checksum over node-independent content.
+/// The file's text as JSON: one entry a line, with a checksum over node-independent content.
 std::string backup_text(const Context& context, const Backup& backup);
 
-/// Reads a backup. Errc::file, with line and entry, when it is truncated, edited (the checksum does not fit),
-/// of a newer version, or has an entry twice.
+/// The file's text in any format; the others than JSON are told in backup_formats.hpp. `file` stands in a DCF
+/// as its name. What cannot stand in the format is told in `context.notices`.
+Result<std::string> backup_text(Context& context, const Backup& backup, BackupFormat format,
+                                const std::filesystem::path& file);
+
+/// A file that is to be read as a backup.
+struct BackupSource {
+  std::string file;  ///< For messages.
+  std::string text;
+  BackupFormat format = BackupFormat::json;
+};
+
+/// Reads the file and tells its format by what stands in it. Errc::file.
+Result<BackupSource> open_backup(const std::filesystem::path& file);
+
+/// The family the file names; empty when it names none.
+std::string family_of(const Context& context, const BackupSource& source);
+
+/// Takes a backup apart. Errc::file, with line and entry, when it is truncated, edited (the checksum does not
+/// fit), of a newer version, has an entry twice, or in another format than JSON an entry the family does not
+/// know or whose value does not fit. What is no setting (commands, targets, readings) is left out, with the
+/// reason. A file that says no node is taken as of `node`; `profile` may be null for JSON alone. What a
+/// format cannot prove is told in `context.notices`.
+Result<Backup> read_backup(Context& context, const BackupSource& source, const drive::Profile* profile,
+                           std::uint8_t node);
+/// The same, with the family of the context.
+Result<Backup> read_backup(Context& context, const std::filesystem::path& file, std::uint8_t node);
+/// A backup in JSON: what servoctl keeps for itself.
 Result<Backup> read_backup(const std::filesystem::path& file);
 
 }  // namespace servoctl::commands

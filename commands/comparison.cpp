@@ -32,6 +32,14 @@ Shown show(const drive::Profile* profile, const Side& side, ObjectAddress object
                                   {"bytes", to_hex(found->second)}}};
 }
 
+/// Whether a mapping entry is above the count of its PDO: it is nothing, whatever it holds.
+bool is_unused(const Side& side, ObjectAddress object) {
+  const bool mapping = (object.index >= 0x1600 && object.index <= 0x17FF) ||
+                       (object.index >= 0x1A00 && object.index <= 0x1BFF);
+  const auto count = side.values.find({object.index, 0});
+  return mapping && object.sub > 0 && count != side.values.end() && load_le(count->second) < object.sub;
+}
+
 }  // namespace
 
 Side side_of(const Backup& backup, std::string title) {
@@ -52,6 +60,26 @@ Side factory_side(const drive::Profile& profile, std::uint8_t node) {
   return out;
 }
 
+bool is_address(const drive::Profile* profile, ObjectAddress object) {
+  const auto* parameter = profile == nullptr ? nullptr : profile->parameter(object);
+  if (parameter == nullptr) return false;
+  const auto& rules = profile->rules.nmt;
+  return parameter == profile->parameter(rules.node_id) || parameter == profile->parameter(rules.bitrate);
+}
+
+Bytes for_node(const drive::Profile* profile, ObjectAddress object, const Bytes& bytes, std::uint8_t from,
+               std::uint8_t to) {
+  if (profile == nullptr || from == to) return bytes;
+  const auto number = load_le(bytes);
+  const auto* parameter = profile->parameter(object);
+  if (parameter != nullptr && parameter == profile->parameter(profile->rules.nmt.node_id))
+    return number == from ? store_le(to, bytes.size()) : bytes;
+  const auto* entry = profile->dictionary.find(object);
+  const bool with_node = entry != nullptr && entry->default_value && entry->default_value->plus_node_id;
+  if (!with_node || bytes.size() != 4 || (number & 0x7FU) != from) return bytes;
+  return store_le(number - from + to, 4);
+}
+
 Comparison compare(const drive::Profile* profile, const Side& a, const Side& b, bool whole, bool chinese) {
   Comparison out;
   report::Table table;
@@ -68,9 +96,10 @@ Comparison compare(const drive::Profile* profile, const Side& a, const Side& b, 
   for (const auto* side : {&a, &b})
     for (const auto& value : side->values) ++objects[value.first];
   for (const auto& [object, sides] : objects) {
-    if (sides < 2 && !whole) continue;
+    if (sides < 2 && (!whole || is_unused(a, object) || is_unused(b, object))) continue;
     ++out.compared;
-    if (sides == 2 && a.values.at(object) == b.values.at(object)) continue;
+    if (sides == 2 && for_node(profile, object, a.values.at(object), a.node, b.node) == b.values.at(object))
+      continue;
     ++out.different;
     const auto target = drive::target_at(profile, object);
     auto left = show(profile, a, object);

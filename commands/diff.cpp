@@ -1,5 +1,8 @@
 #include <fmt/format.h>
+#include <algorithm>
 
+#include "base/number.hpp"
+#include "canopen/cob_id.hpp"
 #include "commands/command.hpp"
 #include "commands/comparison.hpp"
 
@@ -9,93 +12,148 @@ namespace {
 using report::Value;
 
 constexpr std::string_view kFactory = "factory";
+constexpr std::string_view kNode = "node:";
 
-constexpr Parameter kDiffParameters[] = {
-    {.name = "a", .help = "a backup, or factory", .kind = Kind::file, .required = true},
-    {.name = "b", .help = "a backup, or factory", .kind = Kind::file, .required = true},
+constexpr Parameter kParameters[] = {
+    {.name = "a", .help = "a backup, node:N or factory", .kind = Kind::file, .required = true},
+    {.name = "b", .help = "a backup, node:N or factory", .kind = Kind::file, .required = true},
+    {.name = "--batch", .help = "the command lines that turn A into B", .kind = Kind::flag},
 };
 
-constexpr Parameter kVerifyParameters[] = {
-    {.name = "file", .help = "a backup, or factory", .kind = Kind::file, .required = true},
+/// One word of `diff`: a file, a drive on the bus, or the factory values.
+struct Operand {
+  std::string word;
+  std::optional<BackupSource> source;
+  std::uint8_t node = 0;  ///< Of a drive.
+
+  bool is_factory() const { return !source && node == 0; }
 };
 
-/// The family named on the line, else that of a backup, where its data is at hand.
-struct Family {
-  std::optional<drive::Profile> loaded;
-  const drive::Profile* profile = nullptr;
-
-  void take(const Context& context, const std::string& name) {
-    if (profile != nullptr || name.empty()) return;
-    auto found = drive::load_profile(name, context.drive_folders);
-    if (!found) return;
-    loaded = std::move(*found);
-    profile = &*loaded;
+Result<Operand> parse_operand(std::string_view word) {
+  Operand out{std::string(word), {}, 0};
+  if (word == kFactory) return out;
+  if (word.starts_with(kNode)) {
+    const auto number = parse_digits(word.substr(kNode.size()), 10);
+    if (!number || *number < canopen::kFirstNode || *number > canopen::kLastNode)
+      return fail(Errc::usage, fmt::format("'{}' is no node", word), "write node:1 to node:127");
+    out.node = static_cast<std::uint8_t>(*number);
+    return out;
   }
-};
-
-Result<Value> run_diff(Context& context, const Arguments& arguments) {
-  Family family{{}, context.profile};
-  std::optional<Backup> backups[2];
-  const std::string_view names[] = {arguments.text("a"), arguments.text("b")};
-  for (std::size_t i = 0; i < 2; ++i) {
-    if (names[i] == kFactory) continue;
-    auto read = read_backup(names[i]);
-    if (!read) return tl::unexpected<Error>(read.error());
-    family.take(context, read->family);
-    backups[i] = std::move(*read);
+  auto source = open_backup(word);
+  if (!source) {
+    if (parse_digits(word, 10)) source.error().hint = fmt::format("a drive is named {}{}", kNode, word);
+    return tl::unexpected<Error>(source.error());
   }
-  if (backups[0] && backups[1] && backups[0]->family != backups[1]->family)
-    return fail(Errc::negative, fmt::format("{} is of {}, {} of {}: they have nothing to compare", names[0],
-                                            backups[0]->family, names[1], backups[1]->family));
-  std::vector<Side> sides;
-  for (std::size_t i = 0; i < 2; ++i) {
-    if (backups[i]) {
-      sides.push_back(side_of(*backups[i], std::string(names[i])));
-      continue;
-    }
-    if (family.profile == nullptr)
-      return fail(Errc::usage, "factory values of which family?", "add -d FAMILY");
-    const auto& other = backups[1 - i];
-    sides.push_back(factory_side(*family.profile, other ? other->identity.node : std::uint8_t{1}));
-  }
-  // A backup of a part is compared by what it has.
-  auto comparison = compare(family.profile, sides[0], sides[1], backups[0] && backups[1], context.chinese);
-  if (comparison.different > 0) context.errors.push_back(differences_error(comparison, sides[0], sides[1]));
-  return Value(std::move(comparison.record));
+  out.source = std::move(*source);
+  return out;
 }
 
-Result<Value> run_verify(Context& context, const Arguments& arguments) {
-  const auto name = arguments.text("file");
-  std::optional<Backup> backup;
-  if (name != kFactory) {
-    auto read = read_backup(name);
-    if (!read) return tl::unexpected<Error>(read.error());
-    if (read->family != context.profile->family)
-      return fail(Errc::refused,
-                  fmt::format("{} is of {}, not of {}", name, read->family, context.profile->family),
-                  "name the family of the backup with -d when the drive really is one");
-    backup = std::move(*read);
+/// One comparison of two operands.
+class Difference {
+ public:
+  Difference(Context& context, std::vector<Operand> operands)
+      : context_(&context), operands_(std::move(operands)) {}
+
+  Result<Value> run(bool batch) {
+    if (const auto found = find_family(); !found) return tl::unexpected<Error>(found.error());
+    // The files first: what is wrong in them is told before a bus is opened.
+    for (const bool files : {true, false})
+      for (std::size_t i = 0; i < operands_.size(); ++i) {
+        if (operands_[i].source.has_value() != files) continue;
+        auto side = side_of_operand(i);
+        if (!side) return tl::unexpected<Error>(side.error());
+        sides_[i] = std::move(*side);
+      }
+    const bool whole = std::none_of(operands_.begin(), operands_.end(),
+                                    [](const Operand& operand) { return operand.is_factory(); });
+    auto comparison = compare(profile_, sides_[0], sides_[1], whole, context_->chinese);
+    if (comparison.different > 0)
+      context_->errors.push_back(differences_error(comparison, sides_[0], sides_[1]));
+    if (!batch) return Value(std::move(comparison.record));
+    report::List lines;
+    for (auto& line : lines_between(profile_, sides_[0], sides_[1], whole))
+      lines.emplace_back(std::move(line));
+    return Value(std::move(lines));
   }
-  report::List out;
-  for (const auto node : context.nodes) {
-    const auto expected = backup ? side_of(*backup, std::string(name)) : factory_side(*context.profile, node);
-    std::vector<ObjectAddress> objects;
-    for (const auto& value : expected.values) objects.push_back(value.first);
-    const auto read = session::read_objects(*context.session, node, objects);
-    if (!read) {
-      context.errors.push_back(read.error());
-      continue;
+
+ private:
+  /// The family named on the line, else that of a file, where its data is at hand.
+  Result<void> find_family() {
+    profile_ = context_->profile;
+    for (const auto& operand : operands_) {
+      if (profile_ != nullptr || !operand.source) continue;
+      const auto name = family_of(*context_, *operand.source);
+      const auto found = name.empty() ? Result<const drive::Profile*>(nullptr) : context_->family(name);
+      if (found) profile_ = *found;
     }
-    Side actual{fmt::format("node {}", node), node, {}};
-    for (const auto& entry : *read)
-      if (entry.bytes) actual.values.emplace(entry.object, *entry.bytes);
-    auto comparison = compare(context.profile, expected, actual, true, context.chinese);
-    if (comparison.different > 0) context.errors.push_back(differences_error(comparison, expected, actual));
-    report::Record record{{"node", node}};
-    for (auto& field : comparison.record) record.push_back(std::move(field));
-    out.emplace_back(std::move(record));
+    const auto needy = std::find_if(operands_.begin(), operands_.end(),
+                                    [](const Operand& operand) { return !operand.source; });
+    if (profile_ != nullptr || needy == operands_.end()) return {};
+    return fail(Errc::usage, fmt::format("{}: of which family?", needy->word),
+                "add -d FAMILY; `drives` lists families");
   }
-  return Value(std::move(out));
+
+  Result<Side> side_of_operand(std::size_t i) {
+    const auto& operand = operands_[i];
+    if (operand.source) return side_of_file(i);
+    if (operand.node != 0) return side_of_node(i);
+    return factory_side(*profile_, other_node(i));
+  }
+
+  /// The node that a side without one of its own stands for.
+  std::uint8_t other_node(std::size_t i) const {
+    return operands_[1 - i].node != 0 ? operands_[1 - i].node : sides_[1 - i].node;
+  }
+
+  Result<Side> side_of_file(std::size_t i) {
+    const auto backup = read_backup(*context_, *operands_[i].source, profile_, other_node(i));
+    if (!backup) return tl::unexpected<Error>(backup.error());
+    if (!family_.empty() && family_ != backup->family)
+      return fail(Errc::negative,
+                  fmt::format("{} is of {}, {} of {}: they have nothing to compare", operands_[1 - i].word,
+                              family_, operands_[i].word, backup->family));
+    family_ = backup->family;
+    return side_of(*backup, operands_[i].word);
+  }
+
+  /// What a file holds is read from the drive; all settings are where there is no file.
+  Result<Side> side_of_node(std::size_t i) {
+    const auto& operand = operands_[i];
+    if (!family_.empty() && family_ != profile_->family)
+      return fail(Errc::refused,
+                  fmt::format("{} is of {}, not of {}", operands_[1 - i].word, family_, profile_->family),
+                  "name the family of the backup with -d when the drive really is one");
+    const auto session = context_->open_bus();
+    if (!session) return tl::unexpected<Error>(session.error());
+    std::vector<ObjectAddress> objects;
+    if (operands_[1 - i].source)
+      for (const auto& value : sides_[1 - i].values) objects.push_back(value.first);
+    else
+      for (const auto& setting : drive::settings_of(*profile_))
+        if (setting.left_out.empty()) objects.push_back(setting.entry->address);
+    const auto read = session::read_objects(**session, operand.node, objects);
+    if (!read) return tl::unexpected<Error>(read.error());
+    Side out{operand.word, operand.node, {}};
+    for (const auto& entry : *read)
+      if (entry.bytes) out.values.emplace(entry.object, *entry.bytes);
+    return out;
+  }
+
+  Context* context_;
+  std::vector<Operand> operands_;
+  const drive::Profile* profile_ = nullptr;
+  std::string family_;  ///< Of the files read so far.
+  Side sides_[2];
+};
+
+Result<Value> run(Context& context, const Arguments& arguments) {
+  std::vector<Operand> operands;
+  for (const auto word : {arguments.text("a"), arguments.text("b")}) {
+    auto operand = parse_operand(word);
+    if (!operand) return tl::unexpected<Error>(operand.error());
+    operands.push_back(std::move(*operand));
+  }
+  return Difference(context, std::move(operands)).run(arguments.has("--batch"));
 }
 
 }  // namespace
@@ -103,28 +161,21 @@ Result<Value> run_verify(Context& context, const Arguments& arguments) {
 extern const Command kDiff;
 const Command kDiff{
     .path = "diff",
-    .summary = "Compare two backups, or one with the factory values",
+    .summary = "Compare backups, drives and factory values",
     .details =
-        "Shows every value that differs, with unit and label; exit code 1 when there is one. `factory` "
-        "stands for the "
-        "defaults of the family's data; values whose default the manual does not state are not compared with "
-        "it.",
-    .parameters = kDiffParameters,
+        "Two of: a file (any format `restore` takes), node:N for a drive on the bus, `factory` for the "
+        "defaults of "
+        "the family's data. Shows every value that differs, with unit and label; exit code 1 when there is "
+        "one. "
+        "COB-IDs and the node-ID are compared as each node's own. Values whose default the manual does not "
+        "state are "
+        "not compared with `factory`. --batch prints the command lines that turn A into B instead: `diff "
+        "factory "
+        "node:1 --batch` is all that was set on a drive.",
+    .parameters = kParameters,
     .needs = Needs::nothing,
-    .effect = Effect::none,
-    .run = run_diff,
-};
-
-extern const Command kVerify;
-const Command kVerify{
-    .path = "verify",
-    .summary = "Compare a drive with a backup or the factory values",
-    .details =
-        "Reads every value of the backup from the drive; exit code 1 when one differs or is not there.",
-    .parameters = kVerifyParameters,
-    .needs = Needs::node | Needs::dictionary,
     .effect = Effect::reads,
-    .run = run_verify,
+    .run = run,
 };
 
 }  // namespace servoctl::commands

@@ -1,0 +1,183 @@
+#include <fmt/format.h>
+#include <algorithm>
+#include <cctype>
+#include <set>
+
+#include "commands/backup_formats.hpp"
+#include "commands/comparison.hpp"
+#include "commands/reading.hpp"
+#include "session/write_plan.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+constexpr std::uint64_t kInvalid = 0x8000'0000;
+
+bool is_cob_id(ObjectAddress object) {
+  return object.sub == 1 && ((object.index >= 0x1400 && object.index <= 0x15FF) ||
+                             (object.index >= 0x1800 && object.index <= 0x19FF));
+}
+bool is_mapping(ObjectAddress object) {
+  return (object.index >= 0x1600 && object.index <= 0x17FF) ||
+         (object.index >= 0x1A00 && object.index <= 0x1BFF);
+}
+
+/// A word as a batch file takes it: in quotes where it has anything but letters, digits and plain signs.
+std::string quoted(const std::string& word) {
+  const auto plain = [](unsigned char c) {
+    return std::isalnum(c) != 0 || c >= 0x80 ||
+           std::string_view("+-._:/").find(static_cast<char>(c)) != std::string_view::npos;
+  };
+  if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) return word;
+  std::string out = "\"";
+  for (const char c : word) {
+    if (c == '"' || c == '\\' || c == '$') out += '\\';
+    out += c;
+  }
+  return out + '"';
+}
+
+/// What of the text a line can carry: no control characters.
+bool fits_a_line(std::string_view text) {
+  return std::none_of(text.begin(), text.end(), [](unsigned char c) { return c < ' ' || c == 0x7F; });
+}
+
+/// What the value is called in a line, in a form that gives these bytes again.
+std::string value_text(const drive::Meaning& meaning, od::DataType type, ObjectAddress object,
+                       const Bytes& data) {
+  const auto value = od::decode(type, data);
+  const bool number = od::is_integer(type);
+  const auto bits = fmt::format("0x{:0{}X}", load_le(data), 2 * data.size());
+  // COB-IDs, mappings and heartbeat entries are made of fields: decimal says nothing.
+  if (number && object.index < 0x2000 && data.size() == 4 && meaning.unit.empty()) return bits;
+  const auto same = [&](const std::string& text) {
+    const auto parsed = drive::parse_quantity(meaning, text);
+    const auto bytes = parsed ? od::encode(meaning.type, *parsed) : Result<Bytes>(Bytes{});
+    return parsed && bytes && *bytes == data;
+  };
+  if (value) {
+    auto text = drive::plain_text(meaning, *value);
+    const bool plain = number && meaning.encoding == od::Encoding::plain;
+    if (fits_a_line(text) && (plain || same(text))) return text;
+  }
+  return number ? bits : "hex:" + to_hex(data, "");
+}
+
+bool is_locked(const drive::Profile& profile, const od::Parameter& parameter) {
+  const auto& locked = profile.rules.store.locked;
+  return std::find(locked.begin(), locked.end(), parameter.id) != locked.end();
+}
+
+/// The lines of a backup: settings in rising address, each PDO as a procedure.
+class Lines {
+ public:
+  Lines(const drive::Profile& profile, const Backup& backup) : profile_(&profile), backup_(&backup) {}
+
+  std::string text() {
+    out_ = fmt::format(
+        "# Settings of node {} ({}), saved by {} at {} from {}.\n"
+        "# `servoctl run` writes them into the drive, `restore` as well and with more care. They are not "
+        "stored:\n# add `store --yes` when they are to survive power-off.\ndrive {}\nuse {}\n",
+        backup_->identity.node, backup_->family, backup_->tool, backup_->time, backup_->bus,
+        quoted(backup_->family), backup_->identity.node);
+    add_values();
+    for (const auto& entry : backup_->entries)
+      if (!entry.bytes)
+        out_ += fmt::format("# left out: {} {} ({})\n", to_string(entry.object), entry.name, entry.left_out);
+    return std::move(out_);
+  }
+
+ private:
+  void add_values() {
+    session::Values wanted;
+    std::string comments;
+    for (const auto& entry : backup_->entries) {
+      if (!entry.bytes) continue;
+      const auto why = reason_to_comment(entry);
+      if (why.empty())
+        wanted.emplace(entry.object, *entry.bytes);
+      else
+        comments += fmt::format("# {}: {}\n", why, line(entry.object, *entry.bytes));
+    }
+    add_writes(wanted);
+    out_ += comments;
+  }
+
+  /// Why the line of a value is only shown; empty when it is one to be run.
+  std::string reason_to_comment(const Backup::Entry& entry) const {
+    const auto target = drive::target_at(profile_, entry.object);
+    if (is_address(profile_, entry.object)) return "for a drive that takes this one's place on the bus";
+    const auto meaning = drive::fitted(drive::meaning(target, backup_->identity.node), entry.bytes->size());
+    const auto value = od::decode(entry.type, *entry.bytes);
+    if (!value || drive::check_limits(meaning, *value)) return {};
+    return fmt::format("the drive's own value, outside of the limits {}", drive::range_text(meaning));
+  }
+
+  /// Nothing is known of the drive the lines will meet: all is planned as if it differed.
+  void add_writes(const session::Values& wanted) {
+    session::Values present;
+    for (const auto& [object, data] : wanted) present.emplace(object, before(wanted, object, data));
+    const auto plan = session::plan_writes(profile_, present, wanted);
+    std::set<ObjectAddress> planned;
+    for (const auto& step : plan) planned.insert(step.object);
+    for (const auto& [object, data] : wanted)
+      if (is_cob_id(object) && planned.count(object) == 0) add(object, data);
+    for (const auto& step : plan) add(step.object, step.data);
+  }
+
+  /// What stands for the value from before: another one, but for a COB-ID (the PDO is valid, and so made
+  /// invalid first) and for mapping entries that the count leaves unused.
+  static Bytes before(const session::Values& wanted, ObjectAddress object, const Bytes& data) {
+    if (is_cob_id(object)) return store_le(load_le(data) & ~kInvalid, data.size());
+    const auto count = wanted.find({object.index, 0});
+    if (is_mapping(object) && object.sub > 0 && count != wanted.end() && load_le(count->second) < object.sub)
+      return data;
+    auto out = data;
+    for (auto& byte : out) byte = static_cast<std::uint8_t>(~byte);
+    return out;
+  }
+
+  std::string line(ObjectAddress object, const Bytes& data) const {
+    return write_line(profile_, backup_->identity.node, object, data);
+  }
+  void add(ObjectAddress object, const Bytes& data) {
+    out_ += commented_line(profile_, backup_->identity.node, object, data) + "\n";
+  }
+
+  const drive::Profile* profile_;
+  const Backup* backup_;
+  std::string out_;
+};
+
+}  // namespace
+
+std::string write_line(const drive::Profile* profile, std::uint8_t node, ObjectAddress object,
+                       const Bytes& data) {
+  const auto target = drive::target_at(profile, object);
+  const auto* parameter = target.parameter;
+  const auto meaning = drive::fitted(drive::meaning(target, node), data.size());
+  const auto type = type_of({node, target, {}, data}, data);
+  const auto text = quoted(value_text(meaning, type, object, data));
+  std::string options;
+  if (!meaning.type_known || !meaning.size_known) options += fmt::format(" --type {}", od::name(type));
+  const bool typed = !options.empty();
+  if (parameter != nullptr && is_locked(*profile, *parameter)) options += " --unlock";
+  if (parameter == nullptr || typed)
+    return fmt::format("write {} {}{}", parameter != nullptr ? parameter->id : to_string(object), text,
+                       options);
+  return fmt::format("param set {}={}{}", parameter->id, text, options);
+}
+
+std::string commented_line(const drive::Profile* profile, std::uint8_t node, ObjectAddress object,
+                           const Bytes& data) {
+  const auto target = drive::target_at(profile, object);
+  const auto name = target.parameter != nullptr ? target.parameter->name : target.label();
+  const auto line = write_line(profile, node, object, data);
+  return name.empty() ? line : fmt::format("{}  # {}", line, name);
+}
+
+std::string batch_text(const drive::Profile& profile, const Backup& backup) {
+  return Lines(profile, backup).text();
+}
+
+}  // namespace servoctl::commands

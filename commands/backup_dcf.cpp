@@ -1,0 +1,105 @@
+#include <fmt/format.h>
+#include <cctype>
+
+#include "base/file.hpp"
+#include "base/number.hpp"
+#include "commands/backup_formats.hpp"
+#include "od/dcf.hpp"
+#include "od/eds.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+/// `500 kbit/s`, `1 Mbit/s`: the label of the family's bitrate parameter, in kbit/s.
+std::optional<std::uint32_t> kbps_of(const drive::Profile& profile, const Backup& backup) {
+  const auto* parameter = profile.parameter(profile.rules.nmt.bitrate);
+  if (parameter == nullptr || !parameter->object) return std::nullopt;
+  for (const auto& entry : backup.entries) {
+    if (entry.object != *parameter->object || !entry.bytes) continue;
+    const auto code = load_le(*entry.bytes);
+    for (const auto& label : parameter->labels) {
+      if (static_cast<std::uint64_t>(label.value) != code) continue;
+      const auto space = label.label.find(' ');
+      const auto number = parse_digits(std::string_view(label.label).substr(0, space), 10);
+      if (!number || space == std::string::npos) return std::nullopt;
+      return static_cast<std::uint32_t>(*number * (label.label[space + 1] == 'M' ? 1000 : 1));
+    }
+  }
+  return std::nullopt;
+}
+
+/// `2026-11-18T11:06:40Z` as CiA 306-1, 4.6.1 writes it: `11-18-2026` and `11:06AM`.
+void set_time(std::string_view iso, od::DcfSettings& out) {
+  const auto hour = iso.size() < 16 ? std::nullopt : parse_digits(iso.substr(11, 2), 10);
+  if (!hour) return;
+  out.date = fmt::format("{}-{}-{}", iso.substr(5, 2), iso.substr(8, 2), iso.substr(0, 4));
+  out.time = fmt::format("{:02}:{}{}", (*hour + 11) % 12 + 1, iso.substr(14, 2), *hour < 12 ? "AM" : "PM");
+}
+
+/// What the text says once it is read again differs from the backup in these entries.
+void tell_missing(const od::Dcf& dcf, const Backup& backup, std::vector<std::string>& notices) {
+  std::map<ObjectAddress, Bytes> said;
+  for (const auto& value : dcf.values)
+    if (auto bytes = od::encode(value.type, value.value.for_node(backup.identity.node)))
+      said.emplace(value.object, std::move(*bytes));
+  for (const auto& entry : backup.entries) {
+    if (!entry.bytes) continue;
+    const auto found = said.find(entry.object);
+    if (found == said.end() || found->second != *entry.bytes)
+      notices.push_back(
+          fmt::format("{} {} cannot stand in a DCF as the drive holds it ({}): use JSON to keep it",
+                      to_string(entry.object), entry.name, to_hex(*entry.bytes)));
+  }
+}
+
+}  // namespace
+
+Result<std::string> dcf_text(const drive::Profile& profile, const Backup& backup,
+                             const std::string& file_name, std::vector<std::string>& notices) {
+  if (profile.data_sheet.empty())
+    return fail(Errc::usage, fmt::format("{} has no data sheet (EDS) to make a DCF of", profile.family),
+                "take --format json, csv or batch");
+  const auto eds = read_file(profile.data_sheet, od::kMostEdsBytes);
+  if (!eds) return tl::unexpected<Error>(eds.error());
+  od::DcfSettings settings;
+  settings.file_name = file_name;
+  settings.node_id = backup.identity.node;
+  settings.node_name = fmt::format("Node {}", backup.identity.node);
+  settings.kbps = kbps_of(profile, backup);
+  set_time(backup.time, settings);
+  for (const auto& entry : backup.entries) {
+    const auto* known = profile.dictionary.find(entry.object);
+    if (!entry.bytes || known == nullptr) continue;
+    // By the data sheet's type: the drive may have told another length.
+    if (auto value = od::decode(known->type, *entry.bytes))
+      settings.values.emplace(entry.object, std::move(*value));
+  }
+  auto text = od::write_dcf(*eds, settings);
+  if (!text) return text;
+  const auto again = od::read_dcf(*text, file_name);
+  if (!again && !settings.values.empty()) return tl::unexpected<Error>(again.error());
+  tell_missing(again.value_or(od::Dcf{}), backup, notices);
+  return text;
+}
+
+Result<Backup> read_dcf_backup(std::string_view text, const std::string& file, std::uint8_t node) {
+  const auto dcf = od::read_dcf(text, file);
+  if (!dcf) return tl::unexpected<Error>(dcf.error());
+  Backup out;
+  out.identity.node = dcf->node_id;
+  for (const auto& value : dcf->values) {
+    Backup::Entry entry;
+    entry.object = value.object;
+    entry.type = value.type;
+    entry.line = value.line;
+    auto bytes = od::encode(value.type, value.value.for_node(dcf->node_id != 0 ? dcf->node_id : node));
+    if (!bytes)
+      return fail(Errc::file, fmt::format("{}:{}: {}: {}", file, value.line, to_string(value.object),
+                                          bytes.error().message));
+    entry.bytes = std::move(*bytes);
+    out.entries.push_back(std::move(entry));
+  }
+  return out;
+}
+
+}  // namespace servoctl::commands

@@ -1,0 +1,201 @@
+#include "commands/backup_formats.hpp"
+#include "commands/field_reader.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <unordered_set>
+
+#include "commands/reading.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using report::List;
+using report::Record;
+using report::Value;
+
+constexpr std::int64_t kVersion = 1;
+
+/// FNV-1a of everything a restore would use: an edited or cut file is noticed.
+class Checksum {
+ public:
+  void add(std::string_view text) {
+    for (const char c : text) {
+      hash_ ^= static_cast<unsigned char>(c);
+      hash_ *= 0x100'0000'01B3U;
+    }
+  }
+  std::string text() const { return fmt::format("fnv1a64:{:016x}", hash_); }
+
+ private:
+  std::uint64_t hash_ = 0xCBF2'9CE4'8422'2325U;
+};
+
+Value number_or_null(const std::optional<std::uint32_t>& number) { return number ? Value(*number) : Value(); }
+
+Record identity_record(const session::Identity& i) {
+  return {{"device_type", number_or_null(i.device_type)},
+          {"vendor_id", number_or_null(i.vendor_id)},
+          {"product_code", number_or_null(i.product_code)},
+          {"revision", number_or_null(i.revision)},
+          {"serial", number_or_null(i.serial)},
+          {"device_name", report::text_or_null(i.device_name)},
+          {"hardware_version", report::text_or_null(i.hardware_version)},
+          {"software_version", report::text_or_null(i.software_version)}};
+}
+
+Record entry_record(const drive::Profile* profile, const Backup& backup, const Backup::Entry& entry) {
+  Record out{{"id", report::text_or_null(entry.id)},
+             {"index", entry.object.index},
+             {"sub", entry.object.sub},
+             {"name", report::text_or_null(entry.name)},
+             {"type", od::name(entry.type)},
+             {"bytes", entry.bytes ? Value(to_hex(*entry.bytes)) : Value()}};
+  if (entry.bytes) {
+    const Reading reading{backup.identity.node, drive::target_at(profile, entry.object), entry.type,
+                          *entry.bytes};
+    const auto decoded = decode_value(reading, *entry.bytes);
+    out.push_back({"value", decoded.value});
+    out.push_back({"unit", report::text_or_null(decoded.unit)});
+    out.push_back({"label", decoded.label});
+  }
+  if (!entry.left_out.empty()) out.push_back({"left_out", entry.left_out});
+  return out;
+}
+
+std::optional<std::uint32_t> narrow(std::optional<std::uint64_t> number) {
+  return number ? std::optional(static_cast<std::uint32_t>(*number)) : std::nullopt;
+}
+
+session::Identity read_identity(const Value& record, std::uint8_t node, FieldReader& header) {
+  session::Identity out;
+  out.node = node;
+  const auto* inside = report::find(record, "identity");
+  if (inside == nullptr) {
+    header.refuse("identity");
+    return out;
+  }
+  FieldReader fields(*inside, "identity");
+  out.device_type = narrow(fields.number("device_type"));
+  out.vendor_id = narrow(fields.number("vendor_id"));
+  out.product_code = narrow(fields.number("product_code"));
+  out.revision = narrow(fields.number("revision"));
+  out.serial = narrow(fields.number("serial"));
+  out.device_name = fields.text("device_name");
+  out.hardware_version = fields.text("hardware_version");
+  out.software_version = fields.text("software_version");
+  if (fields.error()) header.refuse("identity");
+  return out;
+}
+
+Result<Backup::Entry> read_entry(const Value& record, std::uint32_t line, std::string_view file) {
+  const auto where = fmt::format("{}:{}", file, line);
+  FieldReader fields(record, where);
+  Backup::Entry out;
+  out.line = line;
+  out.id = fields.text("id");
+  out.name = fields.text("name");
+  out.left_out = fields.text("left_out");
+  const auto index = fields.number("index", true).value_or(0);
+  const auto sub = fields.number("sub", true).value_or(0);
+  if (index > 0xFFFF) fields.refuse("index");
+  if (sub > 0xFF) fields.refuse("sub");
+  out.object = {static_cast<std::uint16_t>(index), static_cast<std::uint8_t>(sub)};
+  const auto type = od::parse_data_type(fields.text("type", true));
+  if (!type) fields.refuse("type");
+  out.type = type.value_or(od::DataType::bytes);
+  if (const auto hex = fields.text("bytes"); !hex.empty()) {
+    out.bytes = parse_hex_bytes(hex);
+    const auto size = od::size_of(out.type);
+    if (!out.bytes || (size && out.bytes->size() != *size)) fields.refuse("bytes");
+  } else if (out.left_out.empty()) {
+    fields.refuse("bytes");
+  }
+  if (fields.error()) return fail(Errc::file, *fields.error(), "take the backup anew");
+  return out;
+}
+
+/// Where the entries begin in the text, a line each: what backup_text() writes.
+std::uint32_t first_entry_line(std::string_view text) {
+  const auto place = text.find("\"entries\"");
+  return static_cast<std::uint32_t>(
+      2 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(std::min(place, text.size())),
+                     '\n'));
+}
+
+Result<void> read_entries(const Value& document, std::uint32_t line, std::string_view file, Backup& out) {
+  const auto* list = report::find(document, "entries");
+  const auto* entries = list == nullptr ? nullptr : std::get_if<List>(&list->data());
+  if (entries == nullptr) return fail(Errc::file, fmt::format("{}: 'entries' is missing or wrong", file));
+  std::unordered_set<ObjectAddress> seen;
+  for (const auto& record : *entries) {
+    auto entry = read_entry(record, line++, file);
+    if (!entry) return tl::unexpected<Error>(entry.error());
+    if (!seen.insert(entry->object).second)
+      return fail(Errc::file,
+                  fmt::format("{}:{}: {} stands here twice", file, entry->line, to_string(entry->object)));
+    out.entries.push_back(std::move(*entry));
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string checksum(const Backup& backup) {
+  Checksum sum;
+  sum.add(backup.family);
+  for (const auto& entry : backup.entries)
+    sum.add(fmt::format("\n{} {} {} {}", to_string(entry.object), od::name(entry.type),
+                        entry.bytes ? to_hex(*entry.bytes, "") : "-", entry.left_out));
+  return sum.text();
+}
+
+std::string json_text(const drive::Profile* profile, const Backup& backup) {
+  const Record head{{"servoctl_backup", kVersion},
+                    {"tool", backup.tool},
+                    {"time", backup.time},
+                    {"bus", backup.bus},
+                    {"node", backup.identity.node},
+                    {"family", backup.family},
+                    {"identity", identity_record(backup.identity)},
+                    {"checksum", checksum(backup)}};
+  auto out = report::to_json(head);
+  out.pop_back();
+  out += ",\n\"entries\":[\n";
+  for (std::size_t i = 0; i < backup.entries.size(); ++i)
+    out += report::to_json(entry_record(profile, backup, backup.entries[i])) +
+           (i + 1 < backup.entries.size() ? ",\n" : "\n");
+  return out + "]}\n";
+}
+
+Result<Backup> read_json_backup(std::string_view text, const std::string& file) {
+  const auto document = report::parse_json(text, file);
+  if (!document) return tl::unexpected<Error>(document.error());
+  FieldReader fields(*document, file);
+  const auto version = fields.number("servoctl_backup", true);
+  if (!version) return fail(Errc::file, fmt::format("{}: this is no backup of servoctl", file));
+  if (*version > static_cast<std::uint64_t>(kVersion))
+    return fail(
+        Errc::file,
+        fmt::format("{}: its version {} is newer than this program knows ({})", file, *version, kVersion),
+        "read it with the servoctl that wrote it, or a newer one");
+  Backup out;
+  out.tool = fields.text("tool");
+  out.time = fields.text("time");
+  out.bus = fields.text("bus");
+  out.family = fields.text("family", true);
+  const auto node = fields.number("node", true).value_or(0);
+  if (node < 1 || node > 127) fields.refuse("node");
+  out.identity = read_identity(*document, static_cast<std::uint8_t>(node), fields);
+  const auto sum = fields.text("checksum", true);
+  if (fields.error()) return fail(Errc::file, *fields.error(), "take the backup anew");
+  if (const auto read = read_entries(*document, first_entry_line(text), file, out); !read)
+    return tl::unexpected<Error>(read.error());
+  if (sum != checksum(out))
+    return fail(Errc::file,
+                fmt::format("{}: its checksum does not fit: the file was changed after it was written", file),
+                "take the backup anew");
+  return out;
+}
+
+}  // namespace servoctl::commands

@@ -1,0 +1,65 @@
+#include <fmt/format.h>
+
+#include "commands/command.hpp"
+#include "commands/comparison.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using report::Value;
+
+constexpr std::string_view kFactory = "factory";
+
+constexpr Parameter kParameters[] = {
+    {.name = "file", .help = "a backup of any format, or factory", .kind = Kind::file, .required = true},
+};
+
+Result<Value> run(Context& context, const Arguments& arguments) {
+  const auto name = arguments.text("file");
+  std::optional<Backup> backup;
+  if (name != kFactory) {
+    auto read = read_backup(context, name, context.nodes.front());
+    if (!read) return tl::unexpected<Error>(read.error());
+    if (read->family != context.profile->family)
+      return fail(Errc::refused,
+                  fmt::format("{} is of {}, not of {}", name, read->family, context.profile->family),
+                  "name the family of the backup with -d when the drive really is one");
+    backup = std::move(*read);
+  }
+  report::List out;
+  for (const auto node : context.nodes) {
+    const auto expected = backup ? side_of(*backup, std::string(name)) : factory_side(*context.profile, node);
+    std::vector<ObjectAddress> objects;
+    for (const auto& value : expected.values) objects.push_back(value.first);
+    const auto read = session::read_objects(*context.session, node, objects);
+    if (!read) {
+      context.errors.push_back(read.error());
+      continue;
+    }
+    Side actual{fmt::format("node {}", node), node, {}};
+    for (const auto& entry : *read)
+      if (entry.bytes) actual.values.emplace(entry.object, *entry.bytes);
+    auto comparison = compare(context.profile, expected, actual, true, context.chinese);
+    if (comparison.different > 0) context.errors.push_back(differences_error(comparison, expected, actual));
+    report::Record record{{"node", node}};
+    for (auto& field : comparison.record) record.push_back(std::move(field));
+    out.emplace_back(std::move(record));
+  }
+  return Value(std::move(out));
+}
+
+}  // namespace
+
+extern const Command kVerify;
+const Command kVerify{
+    .path = "verify",
+    .summary = "Compare a drive with a backup or the factory values",
+    .details =
+        "Reads every value of the backup from the drive; exit code 1 when one differs or is not there.",
+    .parameters = kParameters,
+    .needs = Needs::node | Needs::dictionary,
+    .effect = Effect::reads,
+    .run = run,
+};
+
+}  // namespace servoctl::commands

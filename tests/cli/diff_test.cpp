@@ -1,0 +1,54 @@
+// diff of files, drives and factory values, and the command lines between them.
+#include "backup_fixture.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+TEST_F(BackupTest, IsComparedWithDrivesAndTheFactory) {
+  use("sim:gsd600@1,gsd600@2", "gsd600");
+  ASSERT_EQ(run("backup %one.json"), 0);
+  EXPECT_EQ(run("diff node:1 node:2"), 0) << "COB-IDs and node-ID are each node's own\n" << console.out_text;
+  ASSERT_EQ(run("param set Pn0214 450 -n 2"), 0);
+  EXPECT_EQ(run("diff node:1 node:2 --json"), 1);
+  EXPECT_NE(console.out_text.find("\"different\":1,"), std::string::npos) << console.out_text;
+  EXPECT_NE(console.out_text.find("\"bus\":\"sim:gsd600@1,gsd600@2\""), std::string::npos);
+  EXPECT_EQ(run("diff %one.json node:1"), 0) << console.out_text;
+  EXPECT_EQ(run("diff node:2 %one.json"), 1);
+  EXPECT_EQ(run("diff factory node:1 --json"), 1);
+  EXPECT_NE(console.out_text.find("\"different\":1,"), std::string::npos) << console.out_text;
+  EXPECT_EQ(run("diff node:2 factory"), 1);
+  EXPECT_EQ(run("diff node:200 factory"), 2);
+  EXPECT_EQ(run("diff node:9 factory --timeout 20ms"), 4);
+  EXPECT_EQ(run("diff 1 factory"), 7);
+  EXPECT_NE(console.err_text.find("node:1"), std::string::npos) << console.err_text;
+  use("", "");
+  EXPECT_EQ(run("diff factory factory"), 2);
+  EXPECT_EQ(run("diff %one.json factory"), 1) << console.out_text;
+  EXPECT_EQ(run("diff %one.json node:1"), 2) << "no bus is named";
+}
+
+TEST_F(BackupTest, GivesTheLinesThatLeadFromOneToAnother) {
+  use("sim:gsd600@1,gsd600@2", "gsd600");
+  ASSERT_EQ(run("param set Pn0214=450 Pn0202=321 -n 2"), 0);
+  for (const auto* line :
+       {"write 0x1800:1 0xC0000182 -n 2", "write 0x1A00:0 0 -n 2", "write 0x1A00:2 0x60640020 -n 2",
+        "write 0x1A00:0 2 -n 2", "write 0x1800:1 0x40000182 -n 2"})
+    ASSERT_EQ(run(line), 0) << console.err_text;
+  EXPECT_EQ(run("diff node:1 node:2 --batch"), 1);
+  EXPECT_EQ(console.out_text,
+            "drive gsd600\n"
+            "use 1\n"
+            "write 0x1800:1 0xC0000181  # COB-ID used by TPDO\n"
+            "write 0x1A00:0 0  # Number of mapped objects\n"
+            "write 0x1A00:2 0x60640020  # Mapped object 2\n"
+            "write 0x1A00:0 2  # Number of mapped objects\n"
+            "write 0x1800:1 0x40000181  # COB-ID used by TPDO\n"
+            "param set Pn0202=321  # Position loop gain 1\n"
+            "param set Pn0214=450  # Speed loop gain 1\n");
+  spill("change.servoctl", console.out_text);
+  ASSERT_EQ(run("run %change.servoctl"), 0) << console.err_text;
+  EXPECT_EQ(run("diff node:1 node:2"), 0) << console.out_text;
+}
+
+}  // namespace
+}  // namespace servoctl::cli
