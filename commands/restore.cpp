@@ -4,6 +4,7 @@
 #include "commands/command.hpp"
 #include "commands/restore_journal.hpp"
 #include "commands/restoring.hpp"
+#include "commands/selection.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -11,7 +12,8 @@ namespace {
 using report::Value;
 
 constexpr Parameter kParameters[] = {
-    {.name = "file", .help = "a backup", .kind = Kind::file, .required = true},
+    {.name = "file", .help = "a backup, of any format", .kind = Kind::file, .required = true},
+    kOnlyOption,
     {.name = "--with-address", .help = "node-ID and bitrate as well", .kind = Kind::flag},
     {.name = "--no-rollback", .help = "leave things as they are when a write fails", .kind = Kind::flag},
     {.name = "--force", .help = "although identity or family are others", .kind = Kind::flag},
@@ -20,13 +22,27 @@ constexpr Parameter kParameters[] = {
     kResumeOption,
 };
 
+/// Takes away what does not belong to the part.
+Result<void> keep_part(const Context& context, Backup& backup, const std::string& file,
+                       std::string_view only) {
+  const auto part = selection_of(*context.profile, only);
+  if (!part) return tl::unexpected<Error>(part.error());
+  if (!*part) return {};
+  std::erase_if(backup.entries, [&](const Backup::Entry& entry) { return !(*part)(entry.object); });
+  if (!backup.entries.empty()) return {};
+  return fail(Errc::usage, fmt::format("{} has nothing of '{}'", file, only));
+}
+
 Result<Value> run(Context& context, const Arguments& arguments) {
   if (context.nodes.size() != 1 || context.nodes.front() == 0)
     return fail(Errc::usage, "restore takes one node: each drive has a backup of its own", "-n 1");
   const std::string file(arguments.text("file"));
-  const auto backup = read_backup(file);
-  if (!backup) return tl::unexpected<Error>(backup.error());
   const auto node = context.nodes.front();
+  auto backup = read_backup(context, file, node);
+  if (backup)
+    if (const auto kept = keep_part(context, *backup, file, arguments.text("--only")); !kept)
+      return tl::unexpected<Error>(kept.error());
+  if (!backup) return tl::unexpected<Error>(backup.error());
   return put_into(
       context, *backup, file, node, fmt::format("{}.before-node-{}.json", file, node),
       {.choice = {.with_address = arguments.has("--with-address"), .force = arguments.has("--force")},
@@ -44,6 +60,7 @@ const Command kRestore{
     .path = "restore",
     .summary = "Put a backup into a drive: all of it or nothing",
     .details =
+        "Takes a backup of any format, a DCF or concise DCF of another tool, or a part of it (--only). "
         "Checks file, family and identity, shows what differs, saves what the drive holds beside the backup "
         "(FILE.before-node-N.json), writes only what differs and reads each value back, PDOs by the "
         "procedure of CiA 301. When a write fails, what was written is put back; the answer says how things "

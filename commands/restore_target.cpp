@@ -46,8 +46,9 @@ Result<void> RestoreTarget::check_identity() {
     return fail(Errc::refused,
                 fmt::format("node {} is another drive than that of {}: {} differs", node_, title_, what),
                 "--force restores what fits all the same");
-  if (backup_->identity.revision != drive.revision ||
-      backup_->identity.software_version != drive.software_version)
+  const bool says_firmware = backup_->identity.revision || !backup_->identity.software_version.empty();
+  if (says_firmware && (backup_->identity.revision != drive.revision ||
+                        backup_->identity.software_version != drive.software_version))
     context_->notices.push_back(fmt::format(
         "node {}: the firmware differs from that of the backup: compare the values that matter", node_));
   return {};

@@ -1,0 +1,261 @@
+// Backups in every format, and files of other tools, as a user takes and puts them back.
+#include "backup_fixture.hpp"
+#include "base/bytes.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+struct Changed {
+  const char* family;
+  const char* line;
+};
+constexpr Changed kChanged[] = {{"da200", "param set P5.12 77"},
+                                {"dm", "write 6065h 1.25"},
+                                {"gsd600", "param set Pn0214=450 Pn0215=900"},
+                                {"sv2", "write 2001h:1 60"},
+                                {"ts", "param set Fn_33=120 Fn_3A=3"}};
+constexpr const char* kFormats[] = {"json", "dcf", "csv", "servoctl"};
+
+TEST_F(BackupTest, InEveryFormatIsWhatTheDriveHolds) {
+  for (const auto& c : kChanged) {
+    SCOPED_TRACE(c.family);
+    use(fmt::format("sim:{}@1", c.family), c.family);
+    ASSERT_EQ(run("backup %first.json"), 0);
+    for (const std::string format : kFormats) {
+      SCOPED_TRACE(format);
+      ASSERT_EQ(run("backup %drive." + format), 0) << console.err_text;
+      EXPECT_EQ(console.err_text, "") << "every value can stand in every format";
+      EXPECT_EQ(run("verify %drive." + format), 0) << console.out_text << console.err_text;
+      if (format == "servoctl") continue;
+      EXPECT_EQ(run("diff %first.json %drive." + format), 0) << console.out_text << console.err_text;
+    }
+    EXPECT_EQ(run("run %drive.servoctl --check"), 0) << console.err_text;
+  }
+}
+
+TEST_F(BackupTest, InEveryFormatIsPutBackIntoEveryFamily) {
+  for (const auto& c : kChanged)
+    for (const std::string format : kFormats) {
+      SCOPED_TRACE(c.family + (" as " + format));
+      use(fmt::format("sim:{}@1", c.family), c.family);
+      ASSERT_EQ(run("backup %all.json"), 0);
+      ASSERT_EQ(run("backup %drive." + format), 0);
+      ASSERT_EQ(run(c.line), 0) << console.err_text;
+      ASSERT_EQ(run("verify %drive." + format), 1);
+      ASSERT_EQ(run("restore %drive." + format + " --yes"), 0) << console.out_text << console.err_text;
+      EXPECT_EQ(run("verify %all.json"), 0) << console.out_text;
+    }
+}
+
+TEST_F(BackupTest, AsABatchIsReplayedOnADriveFromTheFactory) {
+  for (const auto& c : kChanged) {
+    SCOPED_TRACE(c.family);
+    use(fmt::format("sim:{}@1", c.family), c.family);
+    ASSERT_EQ(run(c.line), 0);
+    ASSERT_EQ(run("backup %mine.json"), 0);
+    ASSERT_EQ(run("backup %mine.servoctl"), 0);
+    use(fmt::format("sim:{}@1", c.family), "");
+    ASSERT_EQ(run(fmt::format("verify %mine.json -d {}", c.family)), 1);
+    EXPECT_EQ(run("run %mine.servoctl"), 0) << console.err_text;
+    EXPECT_EQ(run(fmt::format("verify %mine.json -d {}", c.family)), 0) << console.out_text;
+  }
+}
+
+TEST_F(BackupTest, TakesTheFormatFromTheOptionOrTheName) {
+  use("sim:gsd600@1,gsd600@2", "gsd600");
+  ASSERT_EQ(run("backup %cabinet -n 1,2 --format csv"), 0);
+  EXPECT_EQ(slurp("cabinet/node-2.csv").substr(0, 10), "index,sub,");
+  ASSERT_EQ(run("backup %x.json --format dcf"), 0);
+  EXPECT_EQ(slurp("x.json").substr(0, 10), "[FileInfo]");
+  ASSERT_EQ(run("backup %x.txt"), 0);
+  EXPECT_EQ(slurp("x.txt").substr(0, 10), "# Settings");
+  ASSERT_EQ(run("backup %x"), 0);
+  EXPECT_EQ(slurp("x").substr(0, 18), "{\"servoctl_backup\"");
+  EXPECT_EQ(run("verify %x"), 0);
+  EXPECT_EQ(run("backup %y --format xml"), 2);
+}
+
+TEST_F(BackupTest, OfWhatWasChangedLeavesTheFactoryValuesOut) {
+  ASSERT_EQ(run("param set Pn0214=450"), 0);
+  ASSERT_EQ(run("backup %mine.csv --only changed"), 0);
+  EXPECT_NE(slurp("mine.csv").find("Pn0214"), std::string::npos);
+  EXPECT_EQ(slurp("mine.csv").find("Pn0215"), std::string::npos);
+  ASSERT_EQ(run("param set Pn0214=500"), 0);
+  ASSERT_EQ(run("restore %mine.csv --yes"), 0) << console.err_text;
+  EXPECT_EQ(run("verify %mine.csv"), 0);
+}
+
+TEST_F(BackupTest, IsRestoredInParts) {
+  ASSERT_EQ(run("backup %all.json"), 0);
+  ASSERT_EQ(run("param set Pn0214=450 Pn0031=1"), 0) << console.err_text;
+  ASSERT_EQ(run("write 0x1017 500"), 0);
+  EXPECT_EQ(run("restore %all.json --only nothing --yes"), 2);
+  ASSERT_EQ(run("restore %all.json --only communication --yes"), 0) << console.err_text;
+  EXPECT_EQ(run("verify %all.json"), 1);
+  EXPECT_EQ(console.out_text.find("0x1017"), std::string::npos) << console.out_text;
+  EXPECT_NE(console.out_text.find("Pn0214"), std::string::npos);
+  ASSERT_EQ(run("restore %all.json --only gain --yes"), 0) << console.err_text;
+  EXPECT_EQ(run("verify %all.json"), 1);
+  EXPECT_EQ(console.out_text.find("Pn0214"), std::string::npos) << console.out_text;
+  ASSERT_EQ(run("restore %all.json --only params --yes"), 0);
+  EXPECT_EQ(run("verify %all.json"), 0) << console.out_text;
+  ASSERT_EQ(run("backup %pdo.dcf --only pdo"), 0);
+  EXPECT_EQ(run("restore %pdo.dcf --only gain --yes"), 2);
+}
+
+TEST_F(BackupTest, AsADcfIsEditedInAnotherToolAndRestored) {
+  ASSERT_EQ(run("backup %drive.dcf"), 0);
+  auto text = slurp("drive.dcf");
+  const auto section = text.find("[2001subF]");
+  ASSERT_NE(section, std::string::npos);
+  const auto value = text.find("ParameterValue=600", section);
+  ASSERT_NE(value, std::string::npos);
+  spill("edited.dcf", text.replace(value, 18, "ParameterValue=0x1C2"));
+  EXPECT_EQ(run("verify %edited.dcf"), 1);
+  ASSERT_EQ(run("restore %edited.dcf --yes"), 0) << console.err_text;
+  EXPECT_NE(console.err_text.find("it proves neither its drive nor that it is whole"), std::string::npos);
+  EXPECT_EQ(run("param get Pn0214 --json"), 0);
+  EXPECT_NE(console.out_text.find("\"raw\":450"), std::string::npos) << console.out_text;
+  EXPECT_EQ(run("diff %drive.dcf %edited.dcf"), 1);
+  EXPECT_NE(console.out_text.find("different  1"), std::string::npos) << console.out_text;
+}
+
+/// The beginning of a DCF as another tool would write it.
+const std::string kForeign =
+    "[DeviceComissioning]\nNodeID=0x01\n"
+    "[1017]\nParameterName=Heartbeat\nObjectType=0x7\nDataType=0x0006\nAccessType=rw\nParameterValue=0x1F4\n";
+
+TEST_F(BackupTest, OfAnotherToolWritesSettingsOnly) {
+  spill("foreign.dcf",
+        kForeign +
+            "[6040]\nParameterName=Controlword\nDataType=0x0006\nAccessType=rww\nParameterValue=0xF\n"
+            "[1000]\nParameterName=Type\nDataType=0x0007\nAccessType=ro\nParameterValue=1\n"
+            "[605A]\nParameterName=Stop\nDataType=0x0004\nAccessType=rw\nParameterValue=5\n"
+            "[1400]\nParameterName=R\nObjectType=9\nSubNumber=2\n"
+            "[1400sub0]\nParameterName=n\nDataType=5\nAccessType=ro\n"
+            "[1400sub1]\nParameterName=id\nDataType=7\nAccessType=rw\nParameterValue=$NODEID+0x200\n");
+  ASSERT_EQ(run("restore %foreign.dcf --yes"), 0) << console.err_text;
+  EXPECT_NE(console.err_text.find("2 entries are no settings and are left out: 0x1000:0 Device type "
+                                  "(read-only), 0x6040:0 Controlword (process data)"),
+            std::string::npos)
+      << console.err_text;
+  EXPECT_NE(console.out_text.find("different  2"), std::string::npos) << console.out_text;
+  EXPECT_EQ(run("verify %foreign.dcf"), 0) << console.out_text;
+  EXPECT_EQ(run("read 605Ah 1017h --json"), 0);
+  EXPECT_NE(console.out_text.find("\"raw\":5,"), std::string::npos) << console.out_text;
+  EXPECT_NE(console.out_text.find("\"raw\":500,"), std::string::npos) << console.out_text;
+}
+
+std::string entry(std::uint16_t index, std::uint8_t sub, std::uint32_t value, std::size_t size) {
+  Bytes out = store_le(index, 2);
+  out.push_back(sub);
+  for (const auto byte : store_le(size, 4)) out.push_back(byte);
+  for (const auto byte : store_le(value, size)) out.push_back(byte);
+  return {out.begin(), out.end()};
+}
+
+std::string concise(const std::string& entries, std::uint32_t count) {
+  const auto head = store_le(count, 4);
+  return std::string(head.begin(), head.end()) + entries;
+}
+
+TEST_F(BackupTest, OfAConciseDcfIsRestored) {
+  const auto one = entry(0x1017, 0, 500, 2);
+  const auto procedure =
+      entry(0x1800, 1, 0xC0000181, 4) + entry(0x1800, 2, 1, 1) + entry(0x1800, 1, 0x40000181, 4);
+  spill("good.cdc", concise(one + procedure, 4));
+  ASSERT_EQ(run("restore %good.cdc --yes"), 0) << console.err_text;
+  EXPECT_NE(console.err_text.find("is a concise DCF"), std::string::npos);
+  EXPECT_EQ(run("verify %good.cdc"), 0) << console.out_text;
+  EXPECT_NE(console.out_text.find("compared     3"), std::string::npos) << console.out_text;
+  const std::pair<std::string, const char*> wrong[] = {
+      {concise(one + procedure, 5), "bad.cdc:5: the file ends within this entry, of 5"},
+      {concise(one + procedure, 3), "11 bytes stand behind the last of 3 entries"},
+      {concise(one.substr(0, one.size() - 1), 1), "bad.cdc:1: the file ends within this entry, of 1"},
+      {concise("", 0), "there is no entry in it"},
+      {concise(one + one, 2), "bad.cdc:2: 0x1017:0 stands here again, first in 1"},
+      {concise(entry(0x1017, 0, 500, 4), 1), "has 4 bytes, and u16 is of another length"},
+      {concise(entry(0x5FFF, 0, 0, 4), 1), "bad.cdc:1: 0x5FFF:0 is unknown to gsd600"}};
+  for (const auto& [bytes, said] : wrong) {
+    spill("bad.cdc", bytes);
+    EXPECT_EQ(run("restore %bad.cdc --yes"), 7) << said;
+    EXPECT_NE(console.err_text.find(said), std::string::npos) << console.err_text;
+  }
+}
+
+TEST_F(BackupTest, OfLinesOfAnotherMasterIsRestored) {
+  spill("lines.txt",
+        "# of a CiA 309-3 gateway\n[1] 1 1 w 0x1017 0 u16 500\n1 w 0x2001 15 u16 450\n"
+        "write statusword_is_no_setting 1\n");
+  EXPECT_EQ(run("restore %lines.txt --yes"), 7);
+  EXPECT_NE(console.err_text.find("lines.txt:4: "), std::string::npos) << console.err_text;
+  spill("lines.txt", "[1] 1 1 w 0x1017 0 u16 500\nset GAIN=45Hz\nparam set Pn0214=${GAIN}\n");
+  ASSERT_EQ(run("restore %lines.txt --yes"), 0) << console.err_text;
+  EXPECT_NE(console.out_text.find("different  2"), std::string::npos) << console.out_text;
+  EXPECT_EQ(run("verify %lines.txt"), 0);
+}
+
+TEST_F(BackupTest, AsATableIsEditedInASpreadsheet) {
+  ASSERT_EQ(run("backup %gain.csv --only gain"), 0);
+  const auto good = slurp("gain.csv");
+  const auto place = good.find("Speed loop gain 1,u16,60,Hz,hex:58 02");
+  ASSERT_NE(place, std::string::npos) << good;
+  const auto with = [&](std::string_view cells) {
+    return replaced(good, "Speed loop gain 1,u16,60,Hz,hex:58 02", cells);
+  };
+  spill("edited.csv", with("Speed loop gain 1,u16,45,Hz,hex:58 02"));
+  EXPECT_EQ(run("restore %edited.csv --yes"), 7);
+  EXPECT_NE(console.err_text.find("value 45 Hz and raw hex:58 02 (60) are not the same"), std::string::npos)
+      << console.err_text;
+  spill("edited.csv", with("Speed loop gain 1,u16,45.0,Hz,"));
+  ASSERT_EQ(run("restore %edited.csv --yes"), 0) << console.err_text;
+  EXPECT_NE(console.out_text.find("450 = 45 Hz"), std::string::npos) << console.out_text;
+  spill("edited.csv", with("Speed loop gain 1,u16,60.00,Hz,58 02"));
+  EXPECT_EQ(run("restore %edited.csv --yes"), 0) << console.err_text;
+  EXPECT_EQ(run("verify %gain.csv"), 0) << console.out_text;
+}
+
+TEST_F(BackupTest, InAFormatWithoutChecksumIsRefusedByLineAndEntry) {
+  ASSERT_EQ(run("backup %all.json"), 0);
+  const std::string head = "index,sub,value\n";
+  struct Case {
+    const char* file;
+    std::string text;
+    const char* said;
+  };
+  const Case cases[] = {
+      {"x.csv", head + "0x5FFF,0,1\n", "x.csv:2: 0x5FFF:0 is unknown to gsd600"},
+      {"x.csv", head + "0x1017,0,500\n0x1017,0,600\n", "x.csv:3: 0x1017:0 stands here again, first in 2"},
+      {"x.csv", head + "0x1017,0,70000\n", "x.csv:2: value: 70000 does not fit u16"},
+      {"x.csv", head + "0x2000,0x32,128\n", "x.csv:2: value: 128 is out of range: 1..127"},
+      {"x.csv", head + "heartbeat,0,1\n", "x.csv:2: 'heartbeat:0' is no index and sub-index"},
+      {"x.csv", "index,sub,raw\n0x1017,0,hex:01\n",
+       "x.csv:2: 0x1017:0 (Producer heartbeat time): has 1 bytes"},
+      {"x.csv", "index,sub,raw\n0x1017,0,hex:1\n", "x.csv:2: raw: 'hex:1' is no bytes"},
+      {"x.csv", "index,sub\n0x1017,0\n", "has the columns index and raw or value"},
+      {"x.csv", head + "0x1017,0\n", "x.csv:2:"},
+      {"x.dcf", replaced(kForeign, "0x1F4", "0x1F400"), "x.dcf:8: ParameterValue: 0x1F400 does not fit u16"},
+      {"x.dcf", replaced(kForeign, "[1017]", "[5FFF]"), "x.dcf:8: 0x5FFF:0 is unknown to gsd600"},
+      {"x.dcf", slurp("all.json").substr(0, 300), "this is no"},
+      {"x.txt", "param set Pn0214=450\nparam set Pn214=451\n",
+       "x.txt:2: 0x2001:F stands here again, first in 1"},
+      {"x.txt", "param set Pn0214=999999\n", "x.txt:1: Pn0214 Speed loop gain 1: 999999"},
+      {"x.txt", "param set Pn9999=1\n", "x.txt:1: "},
+      {"x.txt", "write 0x1017 5\nstore\n", "x.txt:2: 'store' writes no value"},
+      {"x.txt", "write 0x1017 5\npause \"now\"\n", "x.txt:2: 'pause now' writes no value"},
+      {"x.txt", "use 1\nwrite 0x1017 5\nuse 2\nwrite 0x1005 5\n", "x.txt:4: is for another node"},
+      {"x.txt", "drive dm\nwrite 0x1017 5\n", "x.txt:2: is for dm, not for gsd600"},
+      {"x.txt", "hello world\n", "x.txt:1: "},
+      {"x.txt", "# nothing\n", "this is no"},
+      {"x.txt", "drive gsd600\n", "no line in it writes a value"},
+  };
+  for (const auto& c : cases) {
+    spill(c.file, c.text);
+    EXPECT_EQ(run(fmt::format("restore %{} --yes", c.file)), 7) << c.said << console.out_text;
+    EXPECT_NE(console.err_text.find(c.said), std::string::npos) << c.said << "\n" << console.err_text;
+    EXPECT_EQ(run("verify %all.json"), 0) << "nothing is written unless everything can be";
+  }
+}
+
+}  // namespace
+}  // namespace servoctl::cli

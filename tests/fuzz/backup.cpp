@@ -1,0 +1,67 @@
+// Backups in the formats of other tools; the first byte chooses the format.
+#include <filesystem>
+
+#include "cli/batch_lines.hpp"
+#include "cli/shell.hpp"
+#include "commands/backup_formats.hpp"
+#include "tests/cli/recording_console.hpp"
+#include "tests/fuzz/fuzz.hpp"
+
+using namespace servoctl;
+using commands::Backup;
+using commands::BackupFormat;
+
+namespace {
+
+const drive::Profile& profile() {
+  static const std::filesystem::path folders[] = {std::filesystem::path(SERVOCTL_SOURCE_DIR) / "eds"};
+  static const auto loaded = drive::load_profile("gsd600", folders).value();
+  return loaded;
+}
+
+commands::Context& context() {
+  static cli::RecordingConsole console;
+  static cli::Shell shell(console, {});
+  static commands::Context out = [] {
+    commands::Context made;
+    made.batch_lines = [](std::string_view text, const std::string& file) {
+      return cli::batch_lines(shell, text, file);
+    };
+    return made;
+  }();
+  out.notices.clear();
+  return out;
+}
+
+std::map<ObjectAddress, Bytes> values(const Backup& backup) {
+  std::map<ObjectAddress, Bytes> out;
+  for (const auto& entry : backup.entries)
+    if (entry.bytes) out.emplace(entry.object, *entry.bytes);
+  return out;
+}
+
+Result<Backup> read(std::string text, BackupFormat format) {
+  return commands::read_backup(context(), {"fuzz", std::move(text), format}, &profile(), 1);
+}
+
+}  // namespace
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  constexpr BackupFormat kFormats[] = {BackupFormat::dcf, BackupFormat::csv, BackupFormat::batch,
+                                       BackupFormat::concise_dcf, BackupFormat::json};
+  const auto backup =
+      read(std::string(fuzz::text(data + 1, size - 1)), kFormats[data[0] % std::size(kFormats)]);
+  if (!backup) {
+    fuzz::require(backup.error().code == Errc::file, "a backup that cannot be read is Errc::file");
+    return 0;
+  }
+  if (data[0] % std::size(kFormats) == 4) return 0;
+  for (const auto& setting : drive::settings_of(profile()))
+    if (!setting.left_out.empty())
+      fuzz::require(values(*backup).count(setting.entry->address) == 0,
+                    "only settings are taken from a file");
+  const auto table = read(commands::csv_text(profile(), *backup), BackupFormat::csv);
+  fuzz::require(table && values(*table) == values(*backup), "a table says what was read");
+  return 0;
+}
