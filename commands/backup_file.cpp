@@ -105,9 +105,9 @@ void tell(Context& context, const BackupSource& source, const Backup& backup) {
     names += fmt::format("{}{} {} ({})", names.empty() ? "" : ", ", to_string(entry.object), entry.name,
                          entry.left_out);
   }
+  if (left_out > kMostNamed) names += fmt::format(" and {} more", left_out - kMostNamed);
   if (left_out > 0)
-    context.notices.push_back(fmt::format("{}: {} entries are no settings and are left out: {}{}",
-                                          source.file, left_out, names, left_out > kMostNamed ? ", …" : ""));
+    context.notices.push_back(fmt::format("{}: no settings, and left out: {}", source.file, names));
 }
 
 }  // namespace

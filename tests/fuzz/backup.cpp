@@ -13,15 +13,18 @@ using commands::BackupFormat;
 
 namespace {
 
+const std::vector<std::filesystem::path> kFolders{std::filesystem::path(SERVOCTL_SOURCE_DIR) / "eds"};
+
 const drive::Profile& profile() {
-  static const std::filesystem::path folders[] = {std::filesystem::path(SERVOCTL_SOURCE_DIR) / "eds"};
-  static const auto loaded = drive::load_profile("gsd600", folders).value();
+  static const auto loaded = drive::load_profile("gsd600", kFolders).value();
   return loaded;
 }
 
 commands::Context& context() {
   static cli::RecordingConsole console;
-  static cli::Shell shell(console, {});
+  static cli::Shell::Options options;
+  options.drive_folders = kFolders;
+  static cli::Shell shell(console, options);
   static commands::Context out = [] {
     commands::Context made;
     made.batch_lines = [](std::string_view text, const std::string& file) {
