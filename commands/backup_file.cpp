@@ -57,14 +57,14 @@ bool is_table_head(std::string_view line) {
   });
 }
 
-BackupFormat guess_format(std::string_view bytes, const std::string& extension) {
+/// `text` is what the bytes say in UTF-8.
+BackupFormat guess_format(std::string_view bytes, std::string_view text, const std::string& extension) {
   if (extension == ".json") return BackupFormat::json;
   // Every number of a concise DCF has bytes that no text has; UTF-16 has them as well, and a mark before.
   const auto encoding = od::guess_encoding(bytes);
   const bool wide = encoding == od::TextEncoding::utf16le || encoding == od::TextEncoding::utf16be;
   if (!wide && bytes.find('\0') != std::string_view::npos) return BackupFormat::concise_dcf;
-  const auto decoded = od::to_utf8(bytes);
-  const auto line = first_line(decoded.text(bytes));
+  const auto line = first_line(text);
   if (line.empty() || line.front() == '{') return BackupFormat::json;
   if (begins_section(line) || extension == ".dcf" || extension == ".eds") return BackupFormat::dcf;
   if (is_table_head(line) || extension == ".csv") return BackupFormat::csv;
@@ -166,10 +166,14 @@ Result<std::string> backup_text(Context& context, const Backup& backup, BackupFo
 }
 
 Result<BackupSource> open_backup(const std::filesystem::path& file) {
-  auto text = read_file(file);
-  if (!text) return tl::unexpected<Error>(text.error());
-  const auto format = guess_format(*text, lower(file.extension().string()));
-  return BackupSource{file.string(), std::move(*text), format};
+  const auto bytes = read_file(file);
+  if (!bytes) return tl::unexpected<Error>(bytes.error());
+  // Spreadsheets save tables in whatever encoding their system has.
+  const auto decoded = od::to_utf8(*bytes);
+  const auto text = decoded.text(*bytes);
+  const auto format = guess_format(*bytes, text, lower(file.extension().string()));
+  return BackupSource{file.string(), std::string(format == BackupFormat::concise_dcf ? *bytes : text),
+                      format};
 }
 
 std::string family_of(const Context& context, const BackupSource& source) {

@@ -215,6 +215,17 @@ TEST_F(BackupTest, AsATableIsEditedInASpreadsheet) {
   EXPECT_EQ(run("verify %gain.csv"), 0) << console.out_text;
 }
 
+TEST_F(BackupTest, AsATableMayComeInTheEncodingsOfSpreadsheets) {
+  const std::string table = "index,sub,value,unit\r\n0x2001,0x0F,45,Hz\r\n";
+  std::string wide = "\xFF\xFE";
+  for (const char c : table) wide += std::string{c, '\0'};
+  for (const auto& text : {table, "\xEF\xBB\xBF" + table, wide}) {
+    spill("sheet.csv", text);
+    EXPECT_EQ(run("verify %sheet.csv"), 1) << console.err_text;
+    EXPECT_NE(console.out_text.find("450 = 45 Hz"), std::string::npos) << console.out_text;
+  }
+}
+
 TEST_F(BackupTest, InAFormatWithoutChecksumIsRefusedByLineAndEntry) {
   ASSERT_EQ(run("backup %all.json"), 0);
   const std::string head = "index,sub,value\n";
