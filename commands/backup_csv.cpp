@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include "base/csv.hpp"
+#include "base/number.hpp"
 #include "base/text.hpp"
+#include "canopen/cob_id.hpp"
 #include "commands/backup_formats.hpp"
 #include "commands/reading.hpp"
 
@@ -30,10 +32,10 @@ std::string row_text(const drive::Profile& profile, const Backup& backup, const 
   if (entry.bytes)
     cells = cells_of(drive::fitted(drive::meaning(target, backup.identity.node), entry.bytes->size()),
                      entry.type, *entry.bytes);
-  return fmt::format("0x{:04X},0x{:02X},{},{},{},{},{},{},{}\n", entry.object.index, entry.object.sub,
-                     csv_cell(entry.id), csv_cell(entry.name), od::name(entry.type), csv_cell(cells.value),
-                     csv_cell(cells.unit), entry.bytes ? "hex:" + to_hex(*entry.bytes) : std::string(),
-                     csv_cell(entry.left_out));
+  return fmt::format("{},0x{:04X},0x{:02X},{},{},{},{},{},{},{}\n", backup.identity.node, entry.object.index,
+                     entry.object.sub, csv_cell(entry.id), csv_cell(entry.name), od::name(entry.type),
+                     csv_cell(cells.value), csv_cell(cells.unit),
+                     entry.bytes ? "hex:" + to_hex(*entry.bytes) : std::string(), csv_cell(entry.left_out));
 }
 
 /// Reads the rows of a table.
@@ -52,6 +54,7 @@ class Reader {
       row_ = &row;
       Backup::Entry entry;
       entry.line = row.line;
+      if (const auto same = take_node(out.identity.node); !same) return tl::unexpected<Error>(same.error());
       if (cell("raw").empty() && cell("value").empty() && !cell("left_out").empty()) continue;
       if (const auto read = read_row(entry); !read) return tl::unexpected<Error>(read.error());
       out.entries.push_back(std::move(entry));
@@ -63,6 +66,19 @@ class Reader {
   bool has(std::string_view column) const { return table_->column(column) < table_->columns.size(); }
   std::string_view cell(std::string_view column) const {
     return has(column) ? trim(row_->cells[table_->column(column)]) : std::string_view();
+  }
+
+  /// All rows are of one drive.
+  Result<void> take_node(std::uint8_t& node) const {
+    if (cell("node").empty()) return {};
+    const auto number = parse_digits(cell("node"), 10);
+    if (!number || *number < canopen::kFirstNode || *number > canopen::kLastNode)
+      return refuse(fmt::format("'{}' is no node-ID", clip(cell("node"), 40)), "1 to 127");
+    if (node != 0 && node != *number)
+      return refuse(fmt::format("is of node {}, the rows before are of node {}", *number, node),
+                    "a table holds the settings of one drive");
+    node = static_cast<std::uint8_t>(*number);
+    return {};
   }
 
   Result<void> read_row(Backup::Entry& entry) const {
@@ -139,7 +155,7 @@ class Reader {
 }  // namespace
 
 std::string csv_text(const drive::Profile& profile, const Backup& backup) {
-  std::string out = "index,sub,parameter,name,type,value,unit,raw,left_out\n";
+  std::string out = "node,index,sub,parameter,name,type,value,unit,raw,left_out\n";
   for (const auto& entry : backup.entries) out += row_text(profile, backup, entry);
   return out;
 }

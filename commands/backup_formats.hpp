@@ -19,7 +19,7 @@ Result<std::string> dcf_text(const drive::Profile& profile, const Backup& backup
                              const std::string& file_name, std::vector<std::string>& notices);
 Result<Backup> read_dcf_backup(std::string_view text, const std::string& file, std::uint8_t node);
 
-/// `index,sub,parameter,name,type,value,unit,raw,left_out`: `raw` is what the drive holds (`hex:58 02`), and
+/// `node,index,sub,parameter,name,type,value,unit,raw,left_out`: `raw` is what the drive holds (`hex:58 02`), and
 /// `value` the number in its unit.
 std::string csv_text(const drive::Profile& profile, const Backup& backup);
 /// Needs `index` and `raw` or `value`. A row whose value and raw differ is refused: one of them was edited.

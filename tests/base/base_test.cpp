@@ -157,6 +157,16 @@ TEST(Nearest, OffersTheBestFirstAndNothingFarOff) {
   EXPECT_EQ(one_of(words), "read, write, reset or scan");
 }
 
+TEST(Csv, ReadsTheCellsItWrites) {
+  EXPECT_EQ(csv_cell("plain text"), "plain text");
+  EXPECT_EQ(csv_cell("a, b"), "\"a, b\"");
+  for (const std::string text : {"", "a,b", "say \"hi\"", "two\nlines", "\r"}) {
+    const auto table = parse_csv("id,text\n1," + csv_cell(text) + "\n", "t.csv");
+    ASSERT_TRUE(table) << table.error().message;
+    EXPECT_EQ(table->rows.at(0).cells.at(1), text);
+  }
+}
+
 TEST(Csv, KnowsQuotesLineEndsAndTheByteOrderMark) {
   const auto table = parse_csv("\xEF\xBB\xBFid,text\r\n1,\"a, \"\"b\"\"\nc\"\n\n2,\n", "t.csv");
   ASSERT_TRUE(table) << table.error().message;

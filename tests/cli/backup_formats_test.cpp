@@ -47,6 +47,18 @@ TEST_F(BackupTest, InEveryFormatIsPutBackIntoEveryFamily) {
     }
 }
 
+TEST_F(BackupTest, InEveryFormatGoesIntoAnotherNodeWithItsOwnAddresses) {
+  for (const std::string format : kFormats) {
+    SCOPED_TRACE(format);
+    use("sim:gsd600@1,gsd600@5", "gsd600");
+    ASSERT_EQ(run("param set Pn0214 450"), 0);
+    ASSERT_EQ(run("backup %one." + format), 0);
+    ASSERT_EQ(run("restore %one." + format + " --yes -n 5"), 0) << console.out_text << console.err_text;
+    EXPECT_NE(console.out_text.find("different  1\n"), std::string::npos) << console.out_text;
+    EXPECT_EQ(run("diff node:1 node:5"), 0) << console.out_text;
+  }
+}
+
 TEST_F(BackupTest, AsABatchIsReplayedOnADriveFromTheFactory) {
   for (const auto& c : kChanged) {
     SCOPED_TRACE(c.family);
@@ -64,7 +76,7 @@ TEST_F(BackupTest, AsABatchIsReplayedOnADriveFromTheFactory) {
 TEST_F(BackupTest, TakesTheFormatFromTheOptionOrTheName) {
   use("sim:gsd600@1,gsd600@2", "gsd600");
   ASSERT_EQ(run("backup %cabinet -n 1,2 --format csv"), 0);
-  EXPECT_EQ(slurp("cabinet/node-2.csv").substr(0, 10), "index,sub,");
+  EXPECT_EQ(slurp("cabinet/node-2.csv").substr(0, 11), "node,index,");
   ASSERT_EQ(run("backup %x.json --format dcf"), 0);
   EXPECT_EQ(slurp("x.json").substr(0, 10), "[FileInfo]");
   ASSERT_EQ(run("backup %x.txt"), 0);
@@ -243,6 +255,8 @@ TEST_F(BackupTest, InAFormatWithoutChecksumIsRefusedByLineAndEntry) {
       {"x.csv", "index,sub,raw\n0x1017,0,hex:01\n",
        "x.csv:2: 0x1017:0 (Producer heartbeat time): has 1 bytes"},
       {"x.csv", "index,sub,raw\n0x1017,0,hex:1\n", "x.csv:2: raw: 'hex:1' is no bytes"},
+      {"x.csv", "node,index,value\n1,0x1017,1\n2,0x1005,1\n", "x.csv:3: is of node 2, the rows before"},
+      {"x.csv", "node,index,value\n128,0x1017,1\n", "x.csv:2: '128' is no node-ID"},
       {"x.csv", "index,sub\n0x1017,0\n", "has the columns index and raw or value"},
       {"x.csv", head + "0x1017,0\n", "x.csv:2:"},
       {"x.dcf", replaced(kForeign, "0x1F4", "0x1F400"), "x.dcf:8: ParameterValue: 0x1F400 does not fit u16"},
