@@ -43,7 +43,8 @@ const Command kMove{
     .summary = "Go to a position",
     .details =
         "Profile position with the set-point handshake, watched and ended like `jog`. The motion counts as "
-        "done when the drive reports the target reached, stands still, and is where it was sent. Example: "
+        "done when the drive reports the target reached, stands still, and is where it was sent. "
+        "Afterwards it is without power and holds nothing. Example: "
         "`move 90deg --speed 30rpm -n 1`.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
