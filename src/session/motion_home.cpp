@@ -12,7 +12,6 @@ constexpr ObjectAddress kHomeOffset{0x607C, 0};
 constexpr ObjectAddress kMethod{0x6098, 0};
 constexpr ObjectAddress kFast{0x6099, 1};
 constexpr ObjectAddress kSlow{0x6099, 2};
-constexpr ObjectAddress kAcceleration{0x609A, 0};
 
 /// Methods that take the present position for home (CiA 402-2): they may be done before anybody looks.
 constexpr std::array<std::int64_t, 2> kAtOnce{35, 37};
