@@ -112,6 +112,14 @@ bool is_parameter(const drive::Profile& profile, const Change& change, const std
          change.target.parameter == profile.parameter(id);
 }
 
+/// Whether it is a controlword that enables a drive.
+bool enables(const Change& change) {
+  // Bit 7 is left out: with it set the drive looks at its edge only, and the word may follow another.
+  const auto controlword = static_cast<std::uint16_t>(load_le(change.data) & 0xFF7FU);
+  return change.target.address.index == 0x6040 &&
+         drive::decode_command(controlword, 0) == drive::ControlCommand::enable_operation;
+}
+
 /// What the write does beside changing a value; empty when nothing.
 std::string_view reason_to_ask(const drive::Profile* profile, const Change& change) {
   const auto* entry = change.target.entry;
@@ -120,10 +128,7 @@ std::string_view reason_to_ask(const drive::Profile* profile, const Change& chan
   if (index == 0x1010 || index == 0x1011 || (entry != nullptr && entry->command) ||
       (parameter != nullptr && parameter->command))
     return "It starts an action or stores or restores parameters.";
-  // Bit 7 is left out: with it set the drive looks at its edge only, and the word may follow another.
-  const auto controlword = static_cast<std::uint16_t>(load_le(change.data) & 0xFF7FU);
-  if (index == 0x6040 && drive::decode_command(controlword, 0) == drive::ControlCommand::enable_operation)
-    return "It enables the drive: the motor is energised and may move.";
+  if (enables(change)) return "It enables the drive: the motor is energised and may move.";
   if (profile != nullptr && (is_parameter(*profile, change, profile->rules.nmt.node_id) ||
                              is_parameter(*profile, change, profile->rules.nmt.bitrate)))
     return "After a restart the drive is found under another address.";
@@ -248,6 +253,8 @@ Result<Value> write_changes(Context& context, std::span<const Change> changes, c
   if (const auto opened = keeping.open(options); !opened) return tl::unexpected<Error>(opened.error());
   const auto written = session::write_all(*context.session, requests, options.read_back || options.keep);
   keeping.close(written);
+  for (const auto& change : changes)
+    if (enables(change)) context.session->energised().insert(change.node);
   report::Table table;
   table.columns = {{"node"},
                    {"object", "", Show::text},

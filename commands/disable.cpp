@@ -8,12 +8,8 @@
 namespace servoctl::commands {
 namespace {
 
-using drive::DriveState;
 using report::Show;
 using report::Value;
-
-constexpr std::uint16_t kQuickStop = 0x0002;
-constexpr std::uint16_t kDisableVoltage = 0x0000;
 
 report::Table state_table() {
   report::Table table;
@@ -21,34 +17,7 @@ report::Table state_table() {
   return table;
 }
 
-bool is_in_fault(DriveState state) {
-  return state == DriveState::fault || state == DriveState::fault_reaction_active;
-}
-
-/// By "switched on" where it can, which lets the drive ramp down and set its brake; at once where it cannot.
-Result<void> disable_one(session::Power& power) {
-  const auto state = power.state();
-  if (state && !drive::is_energised(*state) && is_in_fault(*state)) return {};
-  if (state && *state == DriveState::operation_enabled) (void)power.reach(DriveState::switched_on);
-  const auto off = power.command(kDisableVoltage);
-  if (!off) return off;
-  const auto reached = power.state();
-  if (!reached) return tl::unexpected<Error>(reached.error());
-  if (is_in_fault(*reached)) return {};
-  return power.reach(DriveState::switch_on_disabled);
-}
-
-Result<void> quick_stop_one(session::Power& power) {
-  const auto state = power.state();
-  if (!state) return tl::unexpected<Error>(state.error());
-  if (!drive::is_energised(*state)) return {};
-  if (const auto told = power.command(kQuickStop); !told) return told;
-  const auto ended = power.wait_for(DriveState::switch_on_disabled);
-  if (!ended) return tl::unexpected<Error>(ended.error());
-  return {};
-}
-
-using Action = Result<void> (*)(session::Power&);
+using Action = Result<void> (session::Power::*)();
 
 /// All nodes are told, whatever becomes of the others.
 Result<Value> run(Context& context, Action action, std::string_view done_word) {
@@ -61,7 +30,7 @@ Result<Value> run(Context& context, Action action, std::string_view done_word) {
       continue;
     }
     session::Power power(*context.session, profile, node);
-    const auto done = action(power);
+    const auto done = (power.*action)();
     const auto state = power.state();
     if (!done) context.errors.push_back(done.error());
     const bool energised = !state || drive::is_energised(*state);
@@ -78,10 +47,10 @@ Result<Value> run(Context& context, Action action, std::string_view done_word) {
 }
 
 Result<Value> run_disable(Context& context, const Arguments&) {
-  return run(context, disable_one, "disabled");
+  return run(context, &session::Power::disable, "disabled");
 }
 Result<Value> run_quick_stop(Context& context, const Arguments&) {
-  return run(context, quick_stop_one, "stopped");
+  return run(context, &session::Power::quick_stop, "stopped");
 }
 
 }  // namespace

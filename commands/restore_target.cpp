@@ -4,6 +4,7 @@
 #include <map>
 
 #include "commands/change.hpp"
+#include "commands/comparison.hpp"
 #include "drive/cia402.hpp"
 #include "drive/drive_settings.hpp"
 
@@ -64,22 +65,6 @@ Result<void> RestoreTarget::check_standstill() const {
               "`disable` takes its power away; make sure that the load is held");
 }
 
-bool RestoreTarget::is_address(ObjectAddress object) const {
-  const auto& rules = context_->profile->rules.nmt;
-  const auto* parameter = context_->profile->parameter(object);
-  return parameter != nullptr && (parameter == context_->profile->parameter(rules.node_id) ||
-                                  parameter == context_->profile->parameter(rules.bitrate));
-}
-
-/// A COB-ID that contains the node-ID of the drive it was read from contains that of this one here.
-Bytes RestoreTarget::for_this_node(ObjectAddress object, Bytes bytes) const {
-  const auto* entry = context_->profile->dictionary.find(object);
-  const bool with_node = entry != nullptr && entry->default_value && entry->default_value->plus_node_id;
-  const auto number = load_le(bytes);
-  if (!with_node || bytes.size() != 4 || (number & 0x7FU) != backup_->identity.node) return bytes;
-  return store_le(number - backup_->identity.node + node_, 4);
-}
-
 /// Only what this drive's own data calls a setting is ever written, whatever the file says.
 Result<void> RestoreTarget::leave_out(const Backup::Entry& entry, std::string_view reason) {
   const auto what = fmt::format("{}:{}: {} is no setting of this drive: {}", title_, entry.line,
@@ -94,12 +79,15 @@ Result<void> RestoreTarget::choose_values() {
   for (const auto& setting : drive::settings_of(*context_->profile))
     settings.emplace(setting.entry->address, setting.left_out);
   for (const auto& entry : backup_->entries) {
-    if (!entry.bytes || (is_address(entry.object) && !choice_.with_address)) continue;
+    const bool address = is_address(context_->profile, entry.object);
+    if (!entry.bytes || (address && !choice_.with_address)) continue;
     const auto setting = settings.find(entry.object);
     const auto reason =
         setting == settings.end() ? std::string_view("not in its data, or read-only") : setting->second;
     if (reason.empty())
-      wanted_.emplace(entry.object, for_this_node(entry.object, *entry.bytes));
+      wanted_.emplace(entry.object, address ? *entry.bytes
+                                            : for_node(context_->profile, entry.object, *entry.bytes,
+                                                       backup_->identity.node, node_));
     else if (const auto left_out = leave_out(entry, reason); !left_out)
       return left_out;
   }

@@ -37,8 +37,6 @@ class RestoreTarget {
  private:
   Result<void> check_identity();
   Result<void> check_standstill() const;
-  bool is_address(ObjectAddress object) const;
-  Bytes for_this_node(ObjectAddress object, Bytes bytes) const;
   Result<void> leave_out(const Backup::Entry& entry, std::string_view reason);
   Result<void> choose_values();
   Result<void> read_present();

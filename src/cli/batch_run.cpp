@@ -157,7 +157,10 @@ int run_steps(Shell& shell, std::span<const Step> steps, const std::string& file
   BatchRun run(shell, steps, file);
   for (const auto& step : steps)
     if (!run.take(step)) break;
-  return run.finish();
+  const int code = run.finish();
+  // Nobody goes on with what the file began.
+  if (code != 0) shell.let_go();
+  return code;
 }
 
 Error at_line(const std::string& file, std::uint32_t line, Error error) {

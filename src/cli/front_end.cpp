@@ -23,9 +23,12 @@ namespace {
 int run_pipe(Shell& shell) {
   LineRunner runner(shell);
   std::string line;
-  while (!runner.wants_exit() && !interrupted() && std::getline(std::cin, line))
-    if (const int code = runner.run(line); code != 0) return code;
-  return interrupted() ? exit_code(Errc::interrupted) : 0;
+  int code = 0;
+  while (code == 0 && !runner.wants_exit() && !interrupted() && std::getline(std::cin, line))
+    code = runner.run(line);
+  if (code == 0 && interrupted()) code = exit_code(Errc::interrupted);
+  if (code != 0) shell.let_go();
+  return code;
 }
 
 /// Options without a command hold for all lines that follow. They are read as those of the command that needs

@@ -92,6 +92,7 @@ int Prompt::run() {
     if (wait_for_key()) rl_callback_read_char();
     if (!done_) show_notices();
   }
+  shell_->let_go();
   return terminated() ? exit_code(Errc::interrupted) : 0;
 }
 

@@ -13,6 +13,7 @@
 #include "commands/help.hpp"
 #include "commands/notice.hpp"
 #include "session/open_bus.hpp"
+#include "session/power.hpp"
 #include "session/scan.hpp"
 
 namespace servoctl::cli {
@@ -220,6 +221,7 @@ Result<void> Shell::prepare_nodes(Run& run) {
 Result<session::Session*> Shell::open(const Settings& settings) {
   if (settings.bus.empty()) return fail(no_bus());
   if (session_ == nullptr || session_->url() != settings.bus || trace_ != settings.trace) {
+    let_go();
     session_.reset();
     session::BusOptions bus_options;
     bus_options.drive_folders = options_.drive_folders;
@@ -291,6 +293,18 @@ int Shell::report_error(const Error& error, bool json, std::string_view command)
   Settings settings;
   settings.json = json;
   return show(*console_, failed(error, std::move(settings), command));
+}
+
+void Shell::let_go() {
+  if (!session_) return;
+  for (const auto& [node, done] : session::de_energise(*session_)) {
+    if (done)
+      console_->err(
+          fmt::format("notice: node {} was left energised; it is stopped and disabled now\n", node));
+    else
+      console_->err(fmt::format("error: NODE {} MAY STILL BE ENERGISED: TAKE THE POWER AWAY: {}\n", node,
+                                done.error().message));
+  }
 }
 
 }  // namespace servoctl::cli

@@ -53,6 +53,9 @@ class Shell {
   /// The bus as it is open now; null when none is.
   session::Session* session() { return session_.get(); }
   void close_bus() { session_.reset(); }
+  /// Stops and disables the drives that were left energised, and says so: for a prompt that ends, and a file
+  /// that stops in the middle. A single `enable` is left as it is.
+  void let_go();
 
   /// The family's data, loaded once. Errors as load_profile().
   Result<const drive::Profile*> profile(const std::string& family);

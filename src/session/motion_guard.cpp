@@ -279,6 +279,7 @@ Result<void> MotionGuard::release() {
   disarm();
   changed_.clear();
   energised_ = false;
+  session_->energised().insert(node_);
   result_.state = power_.state().value_or(DriveState::unknown);
   end_ = result_;
   if (session_->options().protect) session_->options().protect(false);

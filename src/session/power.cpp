@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "drive/quantity.hpp"
+#include "session/deaf.hpp"
 
 namespace servoctl::session {
 namespace {
@@ -11,6 +12,8 @@ namespace {
 using drive::DriveState;
 
 constexpr ObjectAddress kQuickStopOption{0x605A, 0};
+constexpr std::uint16_t kQuickStop = 0x0002;
+constexpr std::uint16_t kDisableVoltage = 0x0000;
 constexpr Duration kPause = std::chrono::milliseconds(5);
 /// No way between two states has more steps; a drive that changes its state by itself could make it endless.
 constexpr int kMostSteps = 12;
@@ -42,7 +45,9 @@ Result<std::uint16_t> Power::statusword() {
 Result<DriveState> Power::state() {
   const auto word = statusword();
   if (!word) return tl::unexpected<Error>(word.error());
-  return drive::decode_state(*word);
+  const auto out = drive::decode_state(*word);
+  if (!drive::is_energised(out)) session_->energised().erase(node_);
+  return out;
 }
 
 Result<void> Power::command(std::uint16_t controlword) {
@@ -127,6 +132,46 @@ Result<void> Power::reach(DriveState goal) {
   return fail(drive_error(Errc::negative, node_,
                           fmt::format("changes its state by itself and never stays in {}", drive::name(goal)),
                           "does another master command it?"));
+}
+
+Result<void> Power::disable() {
+  const auto is_in_fault = [](DriveState state) {
+    return state == DriveState::fault || state == DriveState::fault_reaction_active;
+  };
+  const auto before = state();
+  if (before && !drive::is_energised(*before) && is_in_fault(*before)) return {};
+  if (before && *before == DriveState::operation_enabled) (void)reach(DriveState::switched_on);
+  if (const auto off = command(kDisableVoltage); !off) return off;
+  const auto reached = state();
+  if (!reached) return tl::unexpected<Error>(reached.error());
+  if (is_in_fault(*reached)) return {};
+  return reach(DriveState::switch_on_disabled);
+}
+
+Result<void> Power::quick_stop() {
+  const auto before = state();
+  if (!before) return tl::unexpected<Error>(before.error());
+  if (!drive::is_energised(*before)) return {};
+  if (const auto told = command(kQuickStop); !told) return told;
+  const auto ended = wait_for(DriveState::switch_on_disabled);
+  if (!ended) return tl::unexpected<Error>(ended.error());
+  return {};
+}
+
+std::vector<std::pair<std::uint8_t, Result<void>>> de_energise(Session& session) {
+  std::vector<std::pair<std::uint8_t, Result<void>>> out;
+  if (session.energised().empty()) return out;
+  const Deaf deaf(session);
+  const auto& protect = session.options().protect;
+  if (protect) protect(true);
+  const drive::Profile plain;
+  for (const auto node : std::set(session.energised())) {
+    Power power(session, plain, node);
+    (void)power.quick_stop();
+    out.emplace_back(node, power.disable());
+  }
+  if (protect) protect(false);
+  return out;
 }
 
 }  // namespace servoctl::session

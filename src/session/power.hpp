@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
+#include <vector>
 
 #include "drive/power_path.hpp"
 #include "drive/profile.hpp"
@@ -35,6 +37,12 @@ class Power {
   /// it. Errc::refused where there is no way: out of a fault (`fault reset` is asked for separately);
   /// Errc::negative when the drive does not follow, with what its statusword says of the reason.
   Result<void> reach(drive::DriveState goal);
+  /// Takes the power away: by "switched on" where it can, which lets the drive ramp down and set its brake;
+  /// at once where it cannot. A drive in fault has none.
+  Result<void> disable();
+  /// Stops a drive that is energised as fast as it can, and waits for the end of it. By 605Ah some stay
+  /// energised then.
+  Result<void> quick_stop();
   /// Waits until the drive is in this state; false when it is not after kPatience.
   Result<bool> wait_for(drive::DriveState state);
 
@@ -52,6 +60,10 @@ class Power {
   std::uint8_t node_;
   std::uint16_t statusword_ = 0;  ///< Read last.
 };
+
+/// Stops and disables every drive that was left energised through this session. Does not hear Ctrl-C. The
+/// nodes with what came of it.
+std::vector<std::pair<std::uint8_t, Result<void>>> de_energise(Session& session);
 
 /// An error about one drive.
 Error drive_error(Errc code, std::uint8_t node, const std::string& what, std::string hint = {});

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -75,6 +76,8 @@ class Session {
   void guard(std::uint8_t node, canopen::GuardOptions options);
   void stop_guarding();
 
+  /// Drives that were left energised through this session and not seen without power since.
+  std::set<std::uint8_t>& energised() { return energised_; }
   /// Values written to the flash of a node since the bus was opened, where each write wears it.
   std::size_t& flash_writes(std::uint8_t node) { return flash_writes_[node]; }
 
@@ -118,6 +121,7 @@ class Session {
   std::vector<can::ControllerReport> reports_;
   std::optional<can::ControllerReport> last_report_;
   std::array<std::size_t, 128> flash_writes_{};
+  std::set<std::uint8_t> energised_;
   TimePoint received_at_{};  ///< When receive() ended; asking the clock costs a system call on some machines.
 };
 

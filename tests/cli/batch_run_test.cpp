@@ -52,6 +52,22 @@ TEST_F(BatchTest, ShowsLinesAsThePromptDoesAndTheSummaryOnStderr) {
   EXPECT_EQ(console.err_text, "standard input: 4 of 4 lines done\n");
 }
 
+TEST_F(BatchTest, ThatStopsInTheMiddleLeavesNoDriveEnergised) {
+  for (const auto* up : {"enable -y", "write 0x6040 6\nwrite 0x6040 7\nwrite 0x6040 15 -y"}) {
+    EXPECT_EQ(run(std::string("use 1\n") + up + "\nread 0x5FFF\nread 0x6061"), 5) << console.err_text;
+    EXPECT_TRUE(told("notice: node 1 was left energised; it is stopped and disabled now\n"));
+    EXPECT_EQ(run("use 1\nstatus\nexpect .energised == false"), 0) << console.out_text << console.err_text;
+    EXPECT_FALSE(told("left energised"));
+  }
+}
+
+TEST_F(BatchTest, ThatRunsToItsEndLeavesDrivesAsItSays) {
+  EXPECT_EQ(run("use 1\nenable -y"), 0) << console.err_text;
+  EXPECT_FALSE(told("was left energised; it is stopped"));
+  EXPECT_EQ(run("use 1\nstatus\nexpect .energised == true\ndisable\nread 0x5FFF"), 5) << console.err_text;
+  EXPECT_FALSE(told("was left energised")) << "it was disabled by the file itself";
+}
+
 TEST_F(BatchTest, EndsAtTheFirstFailureWithFileLineAndItsExitCode) {
   EXPECT_EQ(run("use 1\n\nread 0x6041\nread 0x5FFF\nread 0x6061"), 5);
   EXPECT_TRUE(told("error: standard input:4: ")) << console.err_text;

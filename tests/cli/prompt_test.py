@@ -3,11 +3,13 @@
 
 usage: prompt_test.py SERVOCTL
 """
+import json
 import os
 import pty
 import re
 import select
 import signal
+import subprocess
 import sys
 import tempfile
 import time
@@ -142,6 +144,30 @@ with tempfile.TemporaryDirectory() as state:
     t.see(r"> ")
     os.kill(t.pid, signal.SIGTERM)
     expect("exit code of SIGTERM", 130, t.exit_code())
+
+    # What was enabled at a prompt has no power when it ends, also when its terminal is lost.
+    cell = f"local:prompt-{os.getpid()}"
+    sim = subprocess.Popen([servoctl, "sim", "gsd600@1", "--bus", cell], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    for ending in ("exit", "hang up"):
+        t = Terminal("--bus", cell, "-n", "1", "-d", "gsd600", state=state)
+        t.see(r"> ")
+        t.type("enable\n")
+        t.see(r"\[y/N\] ")
+        t.type("y\n")
+        t.see(r"ENERGISED, and stays so")
+        if ending == "exit":
+            t.type("exit\n")
+            t.see(r"node 1 was left energised; it is stopped and disabled now")
+        else:
+            os.close(t.fd)
+        end = time.monotonic() + 10
+        energised = None
+        while energised is not False and time.monotonic() < end:
+            status = subprocess.run([servoctl, "status", "-n", "1", "--bus", cell, "--json"], capture_output=True, text=True)
+            energised = json.loads(status.stdout)["result"][0]["energised"] if status.returncode == 0 else None
+        expect(f"energised after {ending}", False, energised)
+    sim.terminate()
+    sim.wait()
 
 for failure in failures:
     print("FAILED", failure)
