@@ -130,6 +130,29 @@ TEST_P(MotionOfFamily, SpeedAboveTheSafeOneIsRefusedBeforeAnythingIsWritten) {
   for (const auto& frame : bench.bus->frames) EXPECT_NE(frame.substr(0, 5), "601#2") << frame;
 }
 
+/// What an earlier master left in the targets must not move the motor when it is enabled.
+TEST_P(MotionOfFamily, EnablingMovesNothingWhateverTheTargetsHeld) {
+  MotionUnits units(*bench.session, bench.profile(), 1, bench.options.turn);
+  for (const auto& [object, value] : {std::pair(kTargetVelocity, 60.), std::pair(kTargetPosition, 360.)}) {
+    const auto data = units.bytes(object, value);
+    ASSERT_TRUE(data);
+    ASSERT_TRUE(bench.session->download(1, object, *data));
+  }
+  const auto& rules = bench.profile().rules.motion;
+  for (const auto mode : {rules.velocity, rules.position, rules.torque}) {
+    bench.before = bench.objects();
+    Motion motion(*bench.session, bench.profile(), 1, bench.options);
+    ASSERT_TRUE(motion.prepare());
+    ASSERT_TRUE(motion.begin(*mode, {}));
+    EXPECT_TRUE(bench.energised());
+    EXPECT_TRUE(motion.watch([](const MotionSample&) -> Result<bool> { return false; }, 200ms));
+    const auto done = motion.finish({});
+    EXPECT_EQ(greatest(done, Channel::velocity), 0);
+    EXPECT_EQ(greatest(done, Channel::position), 0);
+    expect_left_alone(done);
+  }
+}
+
 /// Ctrl-C at any moment, and never heard again while the drive is being stopped.
 TEST_P(MotionOfFamily, CancelledAtAnyPointLeavesNothingBehind) {
   for (int point = 1; point < 400; point += 23) {
