@@ -103,10 +103,12 @@ void Axis::start_homing(TimePoint now) {
   const auto& nothing = profile_->rules.motion.no_homing;
   const auto method = static_cast<std::int8_t>(values_->number(kHomingMethod));
   if (std::find(nothing.begin(), nothing.end(), method) != nothing.end()) return;
+  was_homed_ = homed_;
   homed_ = false;
   homing_failed_ = false;
+  homing_begins_ = time_ + faults_.late_start;
   homing_moves_ = method != 35 && method != 37;  // They take the present position (CiA 402-2).
-  homing_ends_ = faults_.no_index ? kNever : now + kHomingTime;
+  homing_ends_ = faults_.no_index ? kNever : now + faults_.late_start + kHomingTime;
 }
 
 void Axis::advance(bool enabled, TimePoint now) {
@@ -181,7 +183,9 @@ void Axis::step(double seconds) {
       velocity_ = std::clamp(velocity_, -fastest_by_torque(), fastest_by_torque());
       break;
     case Kind::homing:
-      approach(homing_ends_ && !halted && homing_moves_ ? read(kHomingSpeed) * speed_factor(kHomingSpeed) : 0,
+      approach(homing_ends_ && time_ >= homing_begins_ && !halted && homing_moves_
+                   ? read(kHomingSpeed) * speed_factor(kHomingSpeed)
+                   : 0,
                seconds);
       break;
     case Kind::interpolated:
@@ -221,8 +225,9 @@ std::uint16_t Axis::position_bits() const {
 std::uint16_t Axis::homing_bits() const {
   const auto& motion = profile_->rules.motion;
   const auto done = static_cast<std::uint16_t>(motion.homing_done & motion.homing_done_mask);
-  if (homing_ends_) return static_cast<std::uint16_t>(~done & kModeBit);
-  if (homed_) return static_cast<std::uint16_t>(done | kTargetReached);
+  const bool waits = homing_ends_ && time_ < homing_begins_;
+  if (homing_ends_ && !waits) return static_cast<std::uint16_t>(~done & kModeBit);
+  if (homed_ || (waits && was_homed_)) return static_cast<std::uint16_t>(done | kTargetReached);
   if (homing_failed_) return motion.homing_error;
   return kTargetReached;
 }

@@ -17,6 +17,7 @@ struct AxisFaults {
   double lag = 0;         ///< Seconds by which it is behind its command.
   bool no_index = false;  ///< Homing looks for ever: the switch or the index pulse never comes.
   bool bad_home = false;  ///< Homing ends in an error: the switch is stuck.
+  Duration late_start{};  ///< Homing begins so long after it was told, and "homed" stands until then.
 };
 
 /// The moving part of a simulated drive: profile position with its set-points, profile velocity, torque and
@@ -79,6 +80,8 @@ class Axis {
   bool homed_ = false;
   bool homing_failed_ = false;
   bool homing_moves_ = true;
+  bool was_homed_ = false;  ///< Before the present run.
+  TimePoint homing_begins_{};
   std::optional<TimePoint> homing_ends_;
   double behind_ = 0;  ///< Demand minus actual position.
   AxisFaults faults_;

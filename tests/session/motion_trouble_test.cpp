@@ -89,6 +89,20 @@ TEST_F(MotionTrouble, AStuckSwitchEndsHomingWithItsError) {
   EXPECT_TRUE(again.outcome) << again.outcome.error().message;
 }
 
+TEST_F(MotionTrouble, HomedFromAnEarlierRunIsNotBelievedWhileTheDriveTakesItsTimeToBegin) {
+  ASSERT_TRUE(bench.home(home_by("1")).outcome);
+  bench.drive().axis_faults().late_start = 100ms;
+  const auto done = bench.home(home_by("1"));
+  ASSERT_TRUE(done.outcome) << done.outcome.error().message;
+  EXPECT_GE(done.samples.back().time - done.samples.front().time, 390ms);
+}
+
+TEST_F(MotionTrouble, ADriveThatNeverBeginsToLookForHomeIsGivenUp) {
+  ASSERT_TRUE(bench.home(home_by("1")).outcome);
+  bench.drive().axis_faults().late_start = 1h;
+  expect_stopped(bench.home(home_by("1")), "from an earlier run");
+}
+
 TEST_F(MotionTrouble, AValueTheDriveWouldRefuseIsNotPutBackButTold) {
   MotionBench own("da200", 10000);  // Starts with method 0, which is none; a refused write is a fault there.
   const auto done = own.home(home_by("1"));
