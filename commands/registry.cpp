@@ -40,6 +40,7 @@ extern const Command kNmtPreop;
 extern const Command kNmtReset;
 extern const Command kNmtResetComm;
 extern const Command kNmtWatch;
+extern const Command kPdoShow;
 extern const Command kDecode;
 extern const Command kDrives;
 extern const Command kEdsCheck;
@@ -127,6 +128,7 @@ std::span<const Command* const> registry() {
       &kNmtReset,
       &kNmtResetComm,
       &kNmtWatch,
+      &kPdoShow,
       &kDecode,
       &kDrives,
       &kEdsCheck,

@@ -1,0 +1,168 @@
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "commands/command.hpp"
+#include "commands/pdo_report.hpp"
+#include "commands/records.hpp"
+#include "session/pdo_setup.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using canopen::Pdo;
+using canopen::PdoDirection;
+using report::List;
+using report::Record;
+using report::Show;
+using report::Value;
+using session::Values;
+
+/// The PDOs of one node.
+struct NodePdos {
+  std::uint8_t node = 0;
+  Values values;
+  std::vector<Pdo> pdos;
+  std::vector<std::uint16_t> assigned;
+  Values factory;  ///< Empty without a profile.
+};
+
+/// A field that is not as the drive left the factory.
+struct Difference {
+  std::string_view key;
+  std::string factory;  ///< What it was there, in words.
+};
+
+bool differs(const Values& present, const Values& factory, ObjectAddress object) {
+  const auto now = present.find(object);
+  const auto then = factory.find(object);
+  return now != present.end() && then != factory.end() && now->second != then->second;
+}
+
+bool mapping_differs(const Values& present, const Values& factory, const Pdo& pdo) {
+  bool out = differs(present, factory, {pdo.mapping_index(), 0});
+  for (std::size_t sub = 1; sub <= pdo.entries.size(); ++sub)
+    out = out || differs(present, factory, {pdo.mapping_index(), static_cast<std::uint8_t>(sub)});
+  return out;
+}
+
+std::string factory_mapping(const Context& context, const Pdo& factory) {
+  std::string out;
+  for (const auto& entry : factory.entries)
+    out += (out.empty() ? "" : ", ") + mapped_name(context.profile, entry, context.chinese);
+  return out.empty() ? "nothing mapped" : out;
+}
+
+std::vector<Difference> differences(const Context& context, const NodePdos& node, const Pdo& pdo) {
+  const auto all = session::pdos_of(node.factory);
+  const auto same = [&](const Pdo& f) { return f.direction == pdo.direction && f.number == pdo.number; };
+  const auto found = std::find_if(all.begin(), all.end(), same);
+  if (found == all.end()) return {};
+  const auto& factory = *found;
+  const auto other = [&](std::uint8_t sub) {
+    return differs(node.values, node.factory, {pdo.communication_index(), sub});
+  };
+  std::vector<Difference> out;
+  if (other(1))
+    out.push_back({"cob_id", fmt::format("{} {}", can_id_text(factory.cob_id, node.node),
+                                         factory.is_valid() ? "valid" : "not valid")});
+  if (other(2)) out.push_back({"type", fmt::format("type {}", factory.type)});
+  if (other(3)) out.push_back({"inhibit_ms", "inhibit time " + inhibit_text(factory.inhibit.value_or(0))});
+  if (other(5)) out.push_back({"event_ms", fmt::format("event timer {} ms", factory.event.value_or(0))});
+  if (other(6)) out.push_back({"sync_start", fmt::format("SYNC start {}", factory.sync_start.value_or(0))});
+  if (mapping_differs(node.values, node.factory, pdo))
+    out.push_back({"entries", factory_mapping(context, factory)});
+  return out;
+}
+
+/// What speaks against this PDO beside the others of the nodes asked.
+std::vector<std::string> conflicts(const NodePdos& mine, const Pdo& pdo, const std::vector<NodePdos>& all) {
+  std::vector<std::string> out;
+  if (!pdo.is_valid()) return out;
+  const auto can_id = pdo.cob_id & canopen::kPdoCobIdMask;
+  if (const auto service = canopen::service_of(can_id); !service.empty())
+    out.push_back(fmt::format("0x{:03X} is the CAN-ID of {}", can_id, service));
+  if (pdo.direction == PdoDirection::receive) return out;
+  for (const auto& node : all)
+    for (const auto& other : node.pdos)
+      if (other.direction == PdoDirection::transmit && other.is_valid() &&
+          (other.cob_id & canopen::kPdoCobIdMask) == can_id &&
+          (node.node != mine.node || other.number != pdo.number))
+        out.push_back(fmt::format("{} of node {} is sent with 0x{:03X} as well",
+                                  canopen::name(other.direction, other.number), node.node, can_id));
+  return out;
+}
+
+Record node_record(const Context& context, const NodePdos& mine, const std::vector<NodePdos>& all) {
+  Record out{{"node", mine.node}};
+  List pdos;
+  for (const auto& pdo : mine.pdos) {
+    const auto name = canopen::name(pdo.direction, pdo.number);
+    const bool assigned = std::count(mine.assigned.begin(), mine.assigned.end(), pdo.mapping_index()) > 0;
+    auto record = pdo_record(context.profile, pdo, mine.node, context.chinese);
+    auto lines = pdo_lines(context.profile, pdo, mine.node, context.chinese);
+    if (assigned) lines.front() += ", assigned";
+    List differing;
+    std::string factory;
+    for (const auto& difference : differences(context, mine, pdo)) {
+      differing.emplace_back(difference.key);
+      factory += (factory.empty() ? "from the factory: " : "; ") + difference.factory;
+    }
+    List clashes;
+    for (auto& conflict : conflicts(mine, pdo, all)) {
+      lines.push_back("conflict: " + conflict);
+      clashes.emplace_back(std::move(conflict));
+    }
+    if (!factory.empty()) lines.push_back(std::move(factory));
+    for (std::size_t i = 0; i < lines.size(); ++i)
+      out.push_back({i == 0 ? name : std::string(), std::move(lines[i]), Show::text});
+    record.push_back({"assigned", assigned});
+    record.push_back({"differs", std::move(differing)});
+    record.push_back({"conflicts", std::move(clashes)});
+    pdos.emplace_back(std::move(record));
+  }
+  out.push_back({"pdos", std::move(pdos), Show::json});
+  return out;
+}
+
+Result<Value> run(Context& context, const Arguments&) {
+  const auto read = session::read_pdo_values(*context.session, context.profile, context.nodes);
+  std::vector<NodePdos> all;
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    if (!read[i]) {
+      context.errors.push_back(read[i].error());
+      continue;
+    }
+    NodePdos node{context.nodes[i], *read[i], session::pdos_of(*read[i]), {}, {}};
+    if (context.profile != nullptr) node.factory = session::default_pdo_values(*context.profile, node.node);
+    if (node.pdos.empty())
+      context.notices.push_back(fmt::format("node {} has no PDO parameters that can be read", node.node));
+    auto assigned = session::read_assigned_pdos(*context.session, context.profile, node.node);
+    if (assigned)
+      node.assigned = std::move(*assigned);
+    else
+      context.errors.push_back(assigned.error());
+    all.push_back(std::move(node));
+  }
+  List out;
+  for (const auto& node : all) out.emplace_back(node_record(context, node, all));
+  return Value(std::move(out));
+}
+
+}  // namespace
+
+extern const Command kPdoShow;
+const Command kPdoShow{
+    .path = "pdo show",
+    .summary = "Show what a drive sends and receives as PDOs",
+    .details =
+        "All RPDOs (the drive receives) and TPDOs (it sends): COB-ID, transmission type, times, mapped "
+        "objects; what "
+        "is not as it left the factory, where -d names the family. With -n all: TPDOs of two drives on one "
+        "COB-ID.",
+    .parameters = {},
+    .needs = Needs::node,
+    .effect = Effect::reads,
+    .run = run,
+};
+
+}  // namespace servoctl::commands
