@@ -26,6 +26,9 @@ CodePoint decode_utf8(std::string_view text) {
     if ((byte(i) & 0xC0U) != 0x80) return {U'\uFFFD', 1};
     value = value << 6U | (byte(i) & 0x3FU);
   }
+  constexpr char32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000};
+  const bool surrogate = value >= 0xD800 && value <= 0xDFFF;
+  if (value < kLeast[size] || value > 0x10FFFF || surrogate) return {U'\uFFFD', 1};
   return {value, size};
 }
 
@@ -114,6 +117,17 @@ std::string printable(std::string_view text) {
       out += "\\t";
     else
       out += std::string("\\x") + kDigits[byte >> 4U] + kDigits[byte & 0x0FU];
+  }
+  return out;
+}
+
+std::string valid_utf8(std::string_view text) {
+  std::string out;
+  while (!text.empty()) {
+    const auto c = decode_utf8(text);
+    const bool valid = c.value != 0xFFFE && c.value != 0xFFFF && (c.size > 1 || c.value < 0x80);
+    out += valid ? text.substr(0, c.size) : std::string_view("\xEF\xBF\xBD");
+    text.remove_prefix(c.size);
   }
   return out;
 }

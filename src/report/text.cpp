@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "base/text.hpp"
+#include "report/plot.hpp"
 #include "report/value.hpp"
 
 namespace servoctl::report {
@@ -44,6 +45,7 @@ std::string inline_text(const Value& value) {
                           return out;
                         },
                         [](const Table&) { return std::string(); },
+                        [](const Plot&) { return std::string(); },
                     },
                     value.data());
 }
@@ -52,7 +54,8 @@ std::string inline_text(const Value& value) {
 std::string cell_text(const Value& value) { return printable(inline_text(value)); }
 
 bool is_block(const Value& value) {
-  return std::holds_alternative<Table>(value.data()) || std::holds_alternative<Record>(value.data());
+  return std::holds_alternative<Table>(value.data()) || std::holds_alternative<Record>(value.data()) ||
+         std::holds_alternative<Plot>(value.data());
 }
 
 /// Breaks at spaces so that no line is longer than `width`; lines after the first are indented.
@@ -166,6 +169,8 @@ std::string to_text(const Value& value, std::size_t width) {
   if (value.is_null()) return {};
   if (const auto* table = std::get_if<Table>(&value.data()))
     return table->json_only ? std::string() : TableText(*table, width).take();
+  if (const auto* plot = std::get_if<Plot>(&value.data()))
+    return braille_plot(plot->series, width == 0 ? kPlotWidth : std::min(width, kPlotWidth));
   if (const auto* record = std::get_if<Record>(&value.data())) return record_text(*record, width);
   if (const auto* list = std::get_if<List>(&value.data())) {
     std::string out;

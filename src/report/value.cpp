@@ -17,5 +17,6 @@ Value::Value(Hex number) : data_(number) {}
 Value::Value(List list) : data_(std::move(list)) {}
 Value::Value(Record record) : data_(std::move(record)) {}
 Value::Value(Table table) : data_(std::move(table)) {}
+Value::Value(Plot plot) : data_(std::move(plot)) {}
 
 }  // namespace servoctl::report

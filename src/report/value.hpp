@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/result.hpp"
+#include "base/series.hpp"
 
 namespace servoctl::report {
 
@@ -40,11 +41,17 @@ struct Table {
   bool json_only = false;  ///< Nothing in it is worth reading: the errors say it all.
 };
 
-/// What a command says. Commands build it; only report/text.cpp and report/json.cpp turn it into characters.
+/// Quantities over time: a plot in text and on a page, `[{"name","unit","seconds","values"}]` in JSON.
+struct Plot {
+  std::vector<Series> series;
+};
+
+/// What a command says. Commands build it; only report/text.cpp, report/json.cpp and report/html.cpp turn it
+/// into characters.
 class Value {
  public:
   using Data = std::variant<std::monostate, bool, std::int64_t, std::uint64_t, double, std::string, Hex, List,
-                            Record, Table>;
+                            Record, Table, Plot>;
   // Defined where Field is complete.
   Value();
   Value(const Value&);
@@ -62,6 +69,7 @@ class Value {
   Value(List list);
   Value(Record record);
   Value(Table table);
+  Value(Plot plot);
   template <class T>
   requires std::is_integral_v<T> Value(T number);
   // NOLINTEND(google-explicit-constructor)
@@ -102,6 +110,9 @@ std::string to_json(const Value& value);
 
 /// Reads one JSON document. Errc::file with the line where it goes wrong; `file` is used in messages.
 Result<Value> parse_json(std::string_view text, std::string_view file);
+
+/// The quantities in a Plot, or in what parse_json() makes of one. Errc::file when it is neither.
+Result<Plot> plot_of(const Value& value);
 
 /// The field of a record, or null.
 const Value* find(const Value& record, std::string_view key);

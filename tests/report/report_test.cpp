@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 #include "base/text.hpp"
 
 namespace servoctl::report {
@@ -79,6 +82,39 @@ TEST(Json, WritesWholeDoublesWithoutAPoint) {
 TEST(Text, OfNothingIsNothing) {
   EXPECT_EQ(to_text(Value()), "");
   EXPECT_EQ(to_text(Value("x")), "x\n");
+}
+
+TEST(Text, PlotsQuantitiesOverTime) {
+  const Record r{{"node", 1}, {"samples", Plot{{{"velocity", "rpm", {0, 1}, {0, 60}}}}}};
+  const auto text = to_text(r, 200);
+  EXPECT_TRUE(text.starts_with("node  1\n\nsamples:\nvelocity (rpm)\n60 ┤")) << text;
+  for (const auto line : split(std::string_view(text), '\n')) EXPECT_LE(display_width(line), 80U);
+}
+
+TEST(Json, CarriesTheSamplesOfAPlotBothWays) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const Plot plot{{{"velocity", "rpm", {0, 0.5, 1}, {0, 59.5, nan}}, {"mode", "", {}, {}}}};
+  const auto json = to_json(plot);
+  EXPECT_EQ(json, R"([{"name":"velocity","unit":"rpm","seconds":[0,0.5,1],"values":[0,59.5,null]},)"
+                  R"({"name":"mode","unit":null,"seconds":[],"values":[]}])");
+  const auto read = plot_of(*parse_json(json, "test"));
+  ASSERT_TRUE(read.has_value());
+  ASSERT_EQ(read->series.size(), 2U);
+  EXPECT_EQ(read->series[0].name, "velocity");
+  EXPECT_EQ(read->series[0].unit, "rpm");
+  EXPECT_EQ(read->series[0].seconds, (std::vector<double>{0, 0.5, 1}));
+  EXPECT_EQ(read->series[0].values[1], 59.5);
+  EXPECT_TRUE(std::isnan(read->series[0].values[2]));
+  EXPECT_EQ(read->series[1].unit, "");
+}
+
+TEST(Json, IsNoPlotWhereSecondsAndValuesDoNotFit) {
+  for (const auto* text :
+       {"7", "[7]", R"([{"seconds":[1],"values":[]}])", R"([{"seconds":["1"],"values":[1]}])"}) {
+    const auto read = plot_of(*parse_json(text, "test"));
+    ASSERT_FALSE(read.has_value()) << text;
+    EXPECT_EQ(read.error().code, Errc::file);
+  }
 }
 
 }  // namespace

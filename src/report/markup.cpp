@@ -1,0 +1,20 @@
+#include "report/markup.hpp"
+
+#include "base/text.hpp"
+
+namespace servoctl::report {
+
+std::string escaped(std::string_view text) {
+  std::string out;
+  for (const char c : valid_utf8(printable(text))) switch (c) {
+      case '&': out += "&amp;"; break;
+      case '<': out += "&lt;"; break;
+      case '>': out += "&gt;"; break;
+      case '"': out += "&quot;"; break;
+      case '\'': out += "&#39;"; break;
+      default: out += c;
+    }
+  return out;
+}
+
+}  // namespace servoctl::report
