@@ -41,6 +41,8 @@ extern const Command kNmtReset;
 extern const Command kNmtResetComm;
 extern const Command kNmtWatch;
 extern const Command kPdoShow;
+extern const Command kTestComm;
+extern const Command kTestIo;
 extern const Command kDecode;
 extern const Command kDrives;
 extern const Command kEdsCheck;
@@ -129,6 +131,8 @@ std::span<const Command* const> registry() {
       &kNmtResetComm,
       &kNmtWatch,
       &kPdoShow,
+      &kTestComm,
+      &kTestIo,
       &kDecode,
       &kDrives,
       &kEdsCheck,

@@ -1,0 +1,46 @@
+#include "commands/comm_test.hpp"
+#include "commands/verdict.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+constexpr Parameter kParameters[] = {
+    {.name = "--count", .help = "reads to make (default 200)", .kind = Kind::number},
+    {.name = "--longest", .help = "longest round trip that passes (default 100ms)", .kind = Kind::duration},
+    kJunitOption,
+};
+
+Result<report::Value> run(Context& context, const Arguments& arguments) {
+  CommTest test;
+  const auto count = count_option(arguments, "--count", 1, 1'000'000, test.count);
+  if (!count) return tl::unexpected<Error>(count.error());
+  const auto longest = time_option(arguments, "--longest", test.longest);
+  if (!longest) return tl::unexpected<Error>(longest.error());
+  test = {*count, *longest};
+  std::vector<report::TestResult> results;
+  for (const auto node : context.nodes) {
+    auto result = test_communication(context, node, test);
+    if (!result) return tl::unexpected<Error>(result.error());
+    results.push_back(std::move(*result));
+  }
+  return verdicts(context, arguments, results);
+}
+
+}  // namespace
+
+extern const Command kTestComm;
+const Command kTestComm{
+    .path = "test comm",
+    .summary = "Test the communication with a drive, with a verdict",
+    .details =
+        "Reads 1000h many times without retries, then listens to the heartbeat. Passes when no answer was "
+        "lost or against the protocol, none took longer than --longest, the heartbeat came at the period of "
+        "1017h, and there was no emergency, no restart and no error report of the CAN controller. Exit code "
+        "1 when it fails. Changes nothing and moves nothing.",
+    .parameters = kParameters,
+    .needs = Needs::node,
+    .effect = Effect::reads,
+    .run = run,
+};
+
+}  // namespace servoctl::commands

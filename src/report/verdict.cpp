@@ -1,0 +1,83 @@
+#include "report/verdict.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+namespace servoctl::report {
+namespace {
+
+Criterion compared(std::string id, std::string name, bool fits, double figure, std::string_view relation,
+                   double limit, std::string unit) {
+  return {.id = std::move(id),
+          .name = std::move(name),
+          .verdict = fits ? Verdict::passed : Verdict::failed,
+          .figure = figure,
+          .relation = relation,
+          .limit = limit,
+          .unit = std::move(unit)};
+}
+
+/// A value in one line, without the line break of a text for people.
+std::string inline_text(const Value& value) {
+  auto out = to_text(value);
+  if (!out.empty() && out.back() == '\n') out.pop_back();
+  return out;
+}
+
+}  // namespace
+
+std::string_view name(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::passed: return "passed";
+    case Verdict::failed: return "failed";
+    case Verdict::skipped: break;
+  }
+  return "skipped";
+}
+
+Criterion at_most(std::string id, std::string name, double figure, double limit, std::string unit) {
+  return compared(std::move(id), std::move(name), figure <= limit, figure, "<=", limit, std::move(unit));
+}
+
+Criterion at_least(std::string id, std::string name, double figure, double limit, std::string unit) {
+  return compared(std::move(id), std::move(name), figure >= limit, figure, ">=", limit, std::move(unit));
+}
+
+Criterion holds(std::string id, std::string name, bool holds, std::string figure, std::string limit) {
+  return {.id = std::move(id),
+          .name = std::move(name),
+          .verdict = holds ? Verdict::passed : Verdict::failed,
+          .figure = std::move(figure),
+          .relation = "=",
+          .limit = std::move(limit)};
+}
+
+Criterion skipped(std::string id, std::string name, std::string why) {
+  return {.id = std::move(id),
+          .name = std::move(name),
+          .verdict = Verdict::skipped,
+          .relation = {},
+          .note = std::move(why)};
+}
+
+std::string in_words(const Criterion& criterion) {
+  const auto unit = criterion.unit.empty() ? std::string() : " " + criterion.unit;
+  std::string out;
+  if (!criterion.figure.is_null()) out = inline_text(criterion.figure) + unit;
+  const auto limit = inline_text(criterion.limit) + unit;
+  if (criterion.relation == "<=") out += ", at most " + limit;
+  if (criterion.relation == ">=") out += ", at least " + limit;
+  if (criterion.relation == "=") out += ", wanted: " + limit;
+  if (!criterion.note.empty()) out += (out.empty() ? "" : "; ") + criterion.note;
+  return out;
+}
+
+bool passed(const TestResult& result) {
+  const auto count = [&](Verdict verdict) {
+    return std::count_if(result.criteria.begin(), result.criteria.end(),
+                         [&](const Criterion& c) { return c.verdict == verdict; });
+  };
+  return count(Verdict::failed) == 0 && count(Verdict::passed) > 0;
+}
+
+}  // namespace servoctl::report

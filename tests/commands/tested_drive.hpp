@@ -1,0 +1,88 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "commands/command.hpp"
+#include "sim/cell.hpp"
+
+namespace servoctl::commands {
+
+/// A bus that lets a test see and change what a drive says, and act at a time.
+class TouchedBus final : public can::Bus {
+ public:
+  explicit TouchedBus(sim::SimBus& bus) : bus_(&bus) {}
+  std::function<void(can::Frame&)> on_receive;  ///< May be empty.
+
+  TimePoint now() const override { return bus_->now(); }
+  TimePoint next_event() const override { return bus_->next_event(); }
+  Result<void> send(const can::Frame& frame) override { return bus_->send(frame); }
+  Result<std::optional<can::Frame>> receive(TimePoint deadline) override {
+    auto frame = bus_->receive(deadline);
+    if (frame && *frame && on_receive) on_receive(**frame);
+    return frame;
+  }
+
+ private:
+  sim::SimBus* bus_;
+};
+
+/// A command run on simulated drives in virtual time, with its context in the hands of the test.
+class TestedDrive : public testing::Test {
+ protected:
+  void build(const std::string& spec, const std::string& family) {
+    const std::filesystem::path folders[] = {std::filesystem::path(SERVOCTL_SOURCE_DIR) / "eds"};
+    auto built = sim::build_cell(spec, folders, sim_bus.now());
+    ASSERT_TRUE(built) << built.error().message;
+    cell = std::move(*built);
+    for (const auto& one : cell.drives) sim_bus.attach(*one);
+    auto profile = drive::load_profile(family, folders);
+    ASSERT_TRUE(profile);
+    profile_ = std::move(*profile);
+    auto touched = std::make_unique<TouchedBus>(sim_bus);
+    bus = touched.get();
+    session = std::make_unique<session::Session>(std::move(touched), "sim:" + spec, session::Options{});
+    ASSERT_TRUE(session->listen());
+    (void)session->take_events();
+    context.session = session.get();
+    context.profile = &profile_;
+    context.nodes = {1};
+    context.keeps_samples = true;
+    context.emit = [this](const report::Record&, std::string_view line) { lines.emplace_back(line); };
+    context.confirm = [this](std::string_view question) -> Result<void> {
+      questions.emplace_back(question);
+      return {};
+    };
+  }
+
+  using Words = std::vector<std::pair<std::string, std::string>>;
+  Result<report::Value> run(std::string_view command, const Words& words = {}) {
+    Arguments arguments;
+    for (const auto& [name, value] : words) arguments.add(name, value);
+    context.errors.clear();
+    return find_command(command)->run(context, arguments);
+  }
+
+  sim::SimDrive& drive(std::size_t i = 0) { return *cell.drives[i]; }
+  double seconds() const { return std::chrono::duration<double>(sim_bus.now() - begin_).count(); }
+
+  sim::SimBus sim_bus{sim::SimBus::Clock::virtual_time};
+  sim::Cell cell;
+  TouchedBus* bus = nullptr;
+  std::unique_ptr<session::Session> session;
+  Context context;
+  std::vector<std::string> lines;
+  std::vector<std::string> questions;
+
+ private:
+  drive::Profile profile_;
+  TimePoint begin_ = sim_bus.now();
+};
+
+}  // namespace servoctl::commands
