@@ -3,12 +3,10 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cctype>
-#include <cstdlib>
-#include <ctime>
 #include <iterator>
 
+#include "base/calendar.hpp"
 #include "base/file.hpp"
-#include "base/number.hpp"
 #include "base/text.hpp"
 #include "commands/backup_formats.hpp"
 #include "commands/reading.hpp"
@@ -19,17 +17,6 @@ namespace servoctl::commands {
 namespace {
 
 constexpr std::string_view kExtensions[] = {".json", ".dcf", ".csv", ".servoctl"};
-
-/// $SOURCE_DATE_EPOCH stands for the present where output has to be the same every time.
-std::string now_text() {
-  const char* fixed = std::getenv("SOURCE_DATE_EPOCH");
-  const auto seconds = fixed != nullptr ? parse_digits(fixed, 10) : std::nullopt;
-  const auto time = seconds ? static_cast<std::time_t>(*seconds) : std::time(nullptr);
-  std::tm utc{};
-  ::gmtime_r(&time, &utc);
-  char text[32];
-  return {text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc)};
-}
 
 /// The first line that is neither empty nor a comment of INI files or of batch files.
 std::string_view first_line(std::string_view text) {
@@ -130,7 +117,7 @@ Backup make_backup(const Context& context, const session::Snapshot& snapshot) {
   Backup out;
   out.family = context.profile->family;
   out.tool = "servoctl " SERVOCTL_VERSION;
-  out.time = now_text();
+  out.time = utc_now_text();
   out.bus = context.session->url();
   out.identity = snapshot.identity;
   for (const auto& entry : snapshot.entries) {
