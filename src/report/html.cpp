@@ -1,0 +1,172 @@
+#include "report/html.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "base/text.hpp"
+#include "report/markup.hpp"
+#include "report/svg.hpp"
+
+namespace servoctl::report {
+namespace {
+
+/// What a reader needs: a column that fits a telephone, tables that scroll instead of the page, and on paper
+/// nothing that is cut.
+constexpr std::string_view kStyle = R"(
+:root { color-scheme: light; }
+* { box-sizing: border-box; }
+body { margin: 0 auto; max-width: 60rem; padding: 1rem; background: #fff; color: #111;
+  font: 15px/1.45 "Noto Sans", "DejaVu Sans", "Noto Sans CJK SC", "Microsoft YaHei", "PingFang SC", sans-serif; }
+h1 { font-size: 1.7rem; margin: 0 0 .5rem; }
+h2 { font-size: 1.3rem; margin: 2rem 0 .5rem; padding-bottom: .2rem; border-bottom: 2px solid #111; }
+h3 { font-size: 1.05rem; margin: 1.4rem 0 .4rem; }
+h4 { font-size: 1rem; margin: 1rem 0 .3rem; font-weight: 600; }
+h1, h2, h3, h4 { line-height: 1.2; overflow-wrap: anywhere; }
+p { margin: .3rem 0; }
+.wide { overflow-x: auto; margin: .3rem 0; }
+table { border-collapse: collapse; }
+th, td { padding: .2rem .7rem .2rem 0; text-align: left; vertical-align: top; }
+table.fields th { font-weight: normal; color: #444; white-space: nowrap; padding-right: 1.2rem; }
+table.fields td { overflow-wrap: anywhere; }
+table.rows thead th { border-bottom: 1px solid #111; white-space: nowrap; }
+table.rows td { border-bottom: 1px solid #ccc; }
+.number { text-align: right; font-variant-numeric: tabular-nums; }
+svg { display: block; max-width: 100%; height: auto; margin: .5rem 0; }
+@page { size: A4; margin: 16mm 14mm 18mm; }
+@media print {
+  body { max-width: none; padding: 0; font-size: 9.5pt; }
+  .wide { overflow: visible; }
+  table.rows { width: 100%; }
+  table.rows td { overflow-wrap: anywhere; }
+  thead { display: table-header-group; }
+  tr, svg { break-inside: avoid; }
+  h1, h2, h3, h4 { break-after: avoid; }
+  p { orphans: 3; widows: 3; }
+}
+)";
+
+bool is_number(const Value& value) {
+  return std::holds_alternative<std::int64_t>(value.data()) ||
+         std::holds_alternative<std::uint64_t>(value.data()) || std::holds_alternative<double>(value.data());
+}
+
+bool is_block(const Value& value) {
+  if (const auto* list = std::get_if<List>(&value.data()))
+    return std::any_of(list->begin(), list->end(), is_block);
+  return std::holds_alternative<Table>(value.data()) || std::holds_alternative<Record>(value.data()) ||
+         std::holds_alternative<Plot>(value.data());
+}
+
+class Writer {
+ public:
+  explicit Writer(const Translate& translate) : translate_(&translate) {}
+
+  void write(const Value& value) {
+    if (const auto* table = std::get_if<Table>(&value.data())) return write_table(*table);
+    if (const auto* record = std::get_if<Record>(&value.data())) return write_record(*record);
+    if (const auto* plot = std::get_if<Plot>(&value.data())) {
+      out_ += svg_plot(plot->series);
+      return;
+    }
+    if (const auto* list = std::get_if<List>(&value.data()); list != nullptr && is_block(value)) {
+      for (const auto& element : *list) write(element);
+      return;
+    }
+    if (!value.is_null()) out_ += "<p>" + inline_text(value) + "</p>\n";
+  }
+
+  std::string take() { return std::move(out_); }
+
+ private:
+  std::string heading(const std::string& title) const {
+    return escaped(*translate_ && !title.empty() ? (*translate_)(title) : title);
+  }
+
+  std::string inline_text(const Value& value) const {
+    if (value.is_null()) return "–";
+    if (const auto* truth = std::get_if<bool>(&value.data())) return heading(*truth ? "yes" : "no");
+    auto text = to_text(value);
+    if (!text.empty() && text.back() == '\n') text.pop_back();
+    return escaped(text);
+  }
+
+  void write_table(const Table& table) {
+    std::vector<std::size_t> shown;
+    for (std::size_t i = 0; i < table.columns.size(); ++i)
+      if (table.columns[i].show != Show::json && !is_empty(table, i)) shown.push_back(i);
+    if (table.rows.empty() || shown.empty()) return;
+    out_ += "<div class=\"wide\"><table class=\"rows\">\n<thead><tr>";
+    for (const auto i : shown) {
+      const auto& column = table.columns[i];
+      out_ += fmt::format("<th{}>{}</th>", style(table, i),
+                          heading(column.title.empty() ? column.key : column.title));
+    }
+    out_ += "</tr></thead>\n<tbody>\n";
+    for (const auto& row : table.rows) {
+      out_ += "<tr>";
+      for (const auto i : shown) out_ += fmt::format("<td{}>{}</td>", style(table, i), inline_text(row[i]));
+      out_ += "</tr>\n";
+    }
+    out_ += "</tbody></table></div>\n";
+  }
+
+  static bool is_empty(const Table& table, std::size_t column) {
+    return std::all_of(table.rows.begin(), table.rows.end(), [&](const List& row) {
+      const auto* text = std::get_if<std::string>(&row[column].data());
+      return row[column].is_null() || (text != nullptr && text->empty());
+    });
+  }
+
+  static std::string_view style(const Table& table, std::size_t column) {
+    const bool numbers = std::all_of(table.rows.begin(), table.rows.end(), [&](const List& row) {
+      return is_number(row[column]) || row[column].is_null();
+    });
+    return numbers ? " class=\"number\"" : "";
+  }
+
+  /// The lines first, then what is larger than a line, as in text.
+  void write_record(const Record& record) {
+    const auto title = [](const Field& f) { return f.title.empty() ? f.key : f.title; };
+    std::string lines;
+    for (const auto& field : record)
+      if (field.show != Show::json && !field.value.is_null() && !is_block(field.value))
+        lines +=
+            fmt::format("<tr><th>{}</th><td>{}</td></tr>\n", heading(title(field)), inline_text(field.value));
+    if (!lines.empty()) out_ += "<table class=\"fields\"><tbody>\n" + lines + "</tbody></table>\n";
+    for (const auto& field : record) {
+      if (field.show == Show::json || !is_block(field.value)) continue;
+      out_ += "<h4>" + heading(title(field)) + "</h4>\n";
+      write(field.value);
+    }
+  }
+
+  const Translate* translate_;
+  std::string out_;
+};
+
+}  // namespace
+
+std::string to_html(const Value& value, const Translate& translate) {
+  Writer writer(translate);
+  writer.write(value);
+  return writer.take();
+}
+
+std::string html_page(const Page& page) {
+  std::string body;
+  for (const auto& section : page.sections) {
+    body += fmt::format("<h{0}>{1}</h{0}>\n", section.level, escaped(section.title));
+    if (!section.note.empty()) body += "<p>" + escaped(section.note) + "</p>\n";
+    body += to_html(section.value, page.translate);
+  }
+  // Nothing may be loaded or run, whatever a mistake in here would let through.
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"{}\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
+      "style-src 'unsafe-inline'\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<title>{}</title>\n<style>{}</style>\n</head>\n<body>\n<h1>{}</h1>\n{}</body>\n</html>\n",
+      page.chinese ? "zh-CN" : "en", escaped(page.title), kStyle, escaped(page.title), body);
+}
+
+}  // namespace servoctl::report
