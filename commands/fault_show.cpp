@@ -119,7 +119,7 @@ class FaultReport {
                     !answer     ? std::string(kMissing)
                     : code == 0 ? std::string("none")
                                 : code_text(code, words(code)),
-                    Show::text, target->label()});
+                    Show::text, context_->chinese ? target->label_zh() : target->label()});
     out_.push_back({"alarm",
                     answer ? Value(Record{{"id", target->parameter != nullptr ? target->parameter->id
                                                                               : to_string(target->address)},

@@ -43,6 +43,7 @@ extern const Command kNmtWatch;
 extern const Command kPdoShow;
 extern const Command kTestComm;
 extern const Command kTestIo;
+extern const Command kReport;
 extern const Command kDecode;
 extern const Command kDrives;
 extern const Command kEdsCheck;
@@ -133,6 +134,7 @@ std::span<const Command* const> registry() {
       &kPdoShow,
       &kTestComm,
       &kTestIo,
+      &kReport,
       &kDecode,
       &kDrives,
       &kEdsCheck,

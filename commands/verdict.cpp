@@ -6,6 +6,7 @@
 #include "base/duration.hpp"
 #include "base/file.hpp"
 #include "base/number.hpp"
+#include "report/line.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -27,8 +28,7 @@ std::string verdict_text(const Context& context, Verdict verdict) {
 
 std::string limit_text(const Criterion& criterion) {
   if (criterion.relation.empty()) return {};
-  auto out = report::to_text(criterion.limit);
-  if (!out.empty()) out.pop_back();
+  const auto out = report::line_text(criterion.limit);
   if (criterion.relation == "<=") return "≤ " + out;
   return criterion.relation == ">=" ? "≥ " + out : out;
 }
@@ -53,7 +53,12 @@ report::Table criteria_table(const Context& context, const TestResult& result) {
   return table;
 }
 
-/// What failed, in one line each.
+}  // namespace
+
+std::string say(const Context& context, std::string_view english, std::string_view chinese) {
+  return std::string(context.chinese ? chinese : english);
+}
+
 Error failure(const TestResult& result) {
   Error error;
   error.code = Errc::negative;
@@ -67,13 +72,7 @@ Error failure(const TestResult& result) {
   return error;
 }
 
-}  // namespace
-
-std::string say(const Context& context, std::string_view english, std::string_view chinese) {
-  return std::string(context.chinese ? chinese : english);
-}
-
-report::Record verdict_record(const Context& context, const TestResult& result) {
+report::Record verdict_record(const Context& context, const TestResult& result, Show plot) {
   report::Record out{
       {"test", result.test},
       {"node", result.node},
@@ -82,7 +81,7 @@ report::Record verdict_record(const Context& context, const TestResult& result) 
       {"seconds", result.seconds, Show::json},
       {"criteria", criteria_table(context, result)}};
   for (const auto& figure : result.figures) out.push_back(figure);
-  if (!result.samples.series.empty()) out.push_back({"samples", result.samples, Show::json});
+  if (!result.samples.series.empty()) out.push_back({"samples", result.samples, plot});
   return out;
 }
 
@@ -90,7 +89,7 @@ Value verdicts(Context& context, const Arguments& arguments, const std::vector<T
   report::List out;
   for (const auto& result : results) {
     if (!passed(result)) context.errors.push_back(failure(result));
-    out.emplace_back(verdict_record(context, result));
+    out.emplace_back(verdict_record(context, result, Show::json));
   }
   if (!arguments.has("--junit")) return Value(std::move(out));
   const auto written = write_file_atomically(arguments.text("--junit"), report::junit_xml(results));

@@ -16,8 +16,11 @@ inline constexpr Parameter kJunitOption{
 /// `english`, or `chinese` where names are wanted in Chinese.
 std::string say(const Context& context, std::string_view english, std::string_view chinese);
 
-/// One result as text and JSON.
-report::Record verdict_record(const Context& context, const report::TestResult& result);
+/// One result as text and JSON; `plot` says where its samples are shown.
+report::Record verdict_record(const Context& context, const report::TestResult& result, report::Show plot);
+
+/// Errc::negative with the criteria that failed.
+Error failure(const report::TestResult& result);
 
 /// The results of a command: as value, as JUnit file where `--junit` asks for one, and as exit code 1 where a
 /// test failed. A file that cannot be written is one of the errors.

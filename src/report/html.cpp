@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/text.hpp"
+#include "report/line.hpp"
 #include "report/markup.hpp"
 #include "report/svg.hpp"
 
@@ -34,9 +35,9 @@ table.rows td { border-bottom: 1px solid #ccc; }
 svg { display: block; max-width: 100%; height: auto; margin: .5rem 0; }
 @page { size: A4; margin: 16mm 14mm 18mm; }
 @media print {
+  html { font-size: 9.5pt; }
   body { max-width: none; padding: 0; font-size: 9.5pt; }
   .wide { overflow: visible; }
-  table.rows { width: 100%; }
   table.rows td { overflow-wrap: anywhere; }
   thead { display: table-header-group; }
   tr, svg { break-inside: avoid; }
@@ -85,9 +86,7 @@ class Writer {
   std::string inline_text(const Value& value) const {
     if (value.is_null()) return "–";
     if (const auto* truth = std::get_if<bool>(&value.data())) return heading(*truth ? "yes" : "no");
-    auto text = to_text(value);
-    if (!text.empty() && text.back() == '\n') text.pop_back();
-    return escaped(text);
+    return escaped(line_text(value));
   }
 
   void write_table(const Table& table) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "base/text.hpp"
+#include "report/line.hpp"
 #include "report/plot.hpp"
 #include "report/value.hpp"
 
@@ -22,8 +23,9 @@ bool is_number(const Value& value) {
          std::holds_alternative<std::uint64_t>(value.data()) || std::holds_alternative<double>(value.data());
 }
 
-/// What a value says in one line.
-std::string inline_text(const Value& value) {
+}  // namespace
+
+std::string line_text(const Value& value) {
   return std::visit(Overloaded{
                         [](std::monostate) { return std::string("-"); },
                         [](bool b) { return std::string(b ? "yes" : "no"); },
@@ -34,14 +36,14 @@ std::string inline_text(const Value& value) {
                         [](const Hex& h) { return fmt::format("0x{:0{}X}", h.value, h.digits); },
                         [](const List& l) {
                           std::string out;
-                          for (const auto& v : l) out += (out.empty() ? "" : ", ") + inline_text(v);
+                          for (const auto& v : l) out += (out.empty() ? "" : ", ") + line_text(v);
                           return out;
                         },
                         [](const Record& r) {
                           std::string out;
                           for (const auto& f : r)
                             if (f.show != Show::json)
-                              out += (out.empty() ? "" : ", ") + f.key + "=" + inline_text(f.value);
+                              out += (out.empty() ? "" : ", ") + f.key + "=" + line_text(f.value);
                           return out;
                         },
                         [](const Table&) { return std::string(); },
@@ -50,8 +52,10 @@ std::string inline_text(const Value& value) {
                     value.data());
 }
 
-/// The same for a place where a line break would spoil the layout.
-std::string cell_text(const Value& value) { return printable(inline_text(value)); }
+namespace {
+
+/// A line for a place where a line break would spoil the layout.
+std::string cell_text(const Value& value) { return printable(line_text(value)); }
 
 bool is_block(const Value& value) {
   return std::holds_alternative<Table>(value.data()) || std::holds_alternative<Record>(value.data()) ||
@@ -178,7 +182,7 @@ std::string to_text(const Value& value, std::size_t width) {
       out += (out.empty() || !is_block(element) ? "" : "\n") + to_text(element, width);
     return out;
   }
-  return inline_text(value) + '\n';
+  return line_text(value) + '\n';
 }
 
 }  // namespace servoctl::report

@@ -75,6 +75,7 @@ class Value {
   // NOLINTEND(google-explicit-constructor)
 
   const Data& data() const { return data_; }
+  Data& data() { return data_; }
   bool is_null() const { return std::holds_alternative<std::monostate>(data_); }
 
  private:

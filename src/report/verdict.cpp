@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "report/line.hpp"
+
 namespace servoctl::report {
 namespace {
 
@@ -15,13 +17,6 @@ Criterion compared(std::string id, std::string name, bool fits, double figure, s
           .relation = relation,
           .limit = limit,
           .unit = std::move(unit)};
-}
-
-/// A value in one line, without the line break of a text for people.
-std::string inline_text(const Value& value) {
-  auto out = to_text(value);
-  if (!out.empty() && out.back() == '\n') out.pop_back();
-  return out;
 }
 
 }  // namespace
@@ -63,8 +58,8 @@ Criterion skipped(std::string id, std::string name, std::string why) {
 std::string in_words(const Criterion& criterion) {
   const auto unit = criterion.unit.empty() ? std::string() : " " + criterion.unit;
   std::string out;
-  if (!criterion.figure.is_null()) out = inline_text(criterion.figure) + unit;
-  const auto limit = inline_text(criterion.limit) + unit;
+  if (!criterion.figure.is_null()) out = line_text(criterion.figure) + unit;
+  const auto limit = line_text(criterion.limit) + unit;
   if (criterion.relation == "<=") out += ", at most " + limit;
   if (criterion.relation == ">=") out += ", at least " + limit;
   if (criterion.relation == "=") out += ", wanted: " + limit;

@@ -13,14 +13,16 @@ TEST(Html, ShowsWhatTextShows) {
                       {"secret", "for programs", Show::json},
                       {"nothing", Value()},
                       {"energised", false, Show::everywhere, "is energised"},
+                      {"modes", List{"pp", "pv"}},
                       {"objects", table}};
-  EXPECT_EQ(to_html(record),
-            "<table class=\"fields\"><tbody>\n<tr><th>node</th><td>1</td></tr>\n"
-            "<tr><th>is energised</th><td>no</td></tr>\n</tbody></table>\n"
-            "<h4>objects</h4>\n<div class=\"wide\"><table class=\"rows\">\n"
-            "<thead><tr><th>object</th><th>name</th><th class=\"number\">value</th></tr></thead>\n<tbody>\n"
-            "<tr><td>0x6040</td><td>Controlword</td><td class=\"number\">6</td></tr>\n"
-            "<tr><td>0x607A</td><td>目标位置</td><td class=\"number\">–</td></tr>\n</tbody></table></div>\n");
+  EXPECT_EQ(
+      to_html(record),
+      "<table class=\"fields\"><tbody>\n<tr><th>node</th><td>1</td></tr>\n"
+      "<tr><th>is energised</th><td>no</td></tr>\n<tr><th>modes</th><td>pp, pv</td></tr>\n</tbody></table>\n"
+      "<h4>objects</h4>\n<div class=\"wide\"><table class=\"rows\">\n"
+      "<thead><tr><th>object</th><th>name</th><th class=\"number\">value</th></tr></thead>\n<tbody>\n"
+      "<tr><td>0x6040</td><td>Controlword</td><td class=\"number\">6</td></tr>\n"
+      "<tr><td>0x607A</td><td>目标位置</td><td class=\"number\">–</td></tr>\n</tbody></table></div>\n");
 }
 
 TEST(Html, LetsNoValueKeyOrHeadingBecomeMarkup) {

@@ -1,0 +1,114 @@
+#include "commands/earlier_tests.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <array>
+
+#include "base/file.hpp"
+#include "base/text.hpp"
+#include "canopen/cob_id.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using report::Criterion;
+using report::find;
+using report::List;
+using report::TestResult;
+using report::Value;
+using report::Verdict;
+
+std::string text(const Value* value) {
+  const auto* found = value == nullptr ? nullptr : std::get_if<std::string>(&value->data());
+  return found == nullptr ? std::string() : *found;
+}
+
+/// The relations a criterion may have, which outlive the file.
+std::string_view relation(const std::string& text) {
+  for (const std::string_view known : {"<=", ">=", "="})
+    if (known == text) return known;
+  return {};
+}
+
+std::optional<Criterion> criterion_of(const Value& value) {
+  Criterion out{.id = text(find(value, "id")),
+                .name = text(find(value, "name")),
+                .relation = relation(text(find(value, "relation"))),
+                .unit = text(find(value, "unit")),
+                .note = text(find(value, "note"))};
+  const auto verdict = text(find(value, "verdict"));
+  constexpr std::array kVerdicts{Verdict::passed, Verdict::failed, Verdict::skipped};
+  const auto* found =
+      std::find_if(kVerdicts.begin(), kVerdicts.end(), [&](Verdict v) { return report::name(v) == verdict; });
+  if (out.id.empty() || found == kVerdicts.end()) return std::nullopt;
+  out.verdict = *found;
+  if (const auto* figure = find(value, "figure")) out.figure = *figure;
+  if (const auto* limit = find(value, "limit")) out.limit = *limit;
+  return out;
+}
+
+std::optional<TestResult> test_of(const Value& value) {
+  TestResult out;
+  out.test = text(find(value, "test"));
+  const auto* node = find(value, "node");
+  const auto* number = node == nullptr ? nullptr : std::get_if<std::uint64_t>(&node->data());
+  const auto* criteria = find(value, "criteria");
+  const auto* list = criteria == nullptr ? nullptr : std::get_if<List>(&criteria->data());
+  if (out.test.empty() || number == nullptr || *number < canopen::kFirstNode ||
+      *number > canopen::kLastNode || list == nullptr)
+    return std::nullopt;
+  out.node = static_cast<std::uint8_t>(*number);
+  for (const auto& one : *list) {
+    auto criterion = criterion_of(one);
+    if (!criterion) return std::nullopt;
+    out.criteria.push_back(std::move(*criterion));
+  }
+  if (const auto* samples = find(value, "samples")) {
+    auto plot = report::plot_of(*samples);
+    if (!plot) return std::nullopt;
+    out.samples = std::move(*plot);
+  }
+  return out;
+}
+
+tl::unexpected<Error> no_tests(std::string_view file) {
+  return fail(Errc::file, fmt::format("{} holds no results of tests", file),
+              "such a file is written by `test … --json >FILE`");
+}
+
+Result<void> add_tests(const Value& document, std::string_view file, std::vector<TestResult>& out) {
+  const auto* result = find(document, "result");
+  const auto* list = result == nullptr ? nullptr : std::get_if<List>(&result->data());
+  if (list == nullptr || !text(find(document, "command")).starts_with("test ")) return no_tests(file);
+  for (const auto& one : *list) {
+    auto test = test_of(one);
+    if (!test) return no_tests(file);
+    out.push_back(std::move(*test));
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<std::vector<TestResult>> read_tests(const std::filesystem::path& file) {
+  const auto content = read_file(file);
+  if (!content) return tl::unexpected<Error>(content.error());
+  std::vector<TestResult> out;
+  const auto whole = report::parse_json(*content, file.string());
+  if (whole) {
+    if (const auto added = add_tests(*whole, file.string(), out); !added)
+      return tl::unexpected<Error>(added.error());
+    return out;
+  }
+  for (const auto line : split(std::string_view(*content), '\n')) {
+    if (trim(line).empty()) continue;
+    const auto document = report::parse_json(line, file.string());
+    if (!document) return tl::unexpected<Error>(whole.error());
+    if (const auto added = add_tests(*document, file.string(), out); !added)
+      return tl::unexpected<Error>(added.error());
+  }
+  if (out.empty()) return no_tests(file.string());
+  return out;
+}
+
+}  // namespace servoctl::commands
