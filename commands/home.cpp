@@ -16,6 +16,7 @@ constexpr Parameter kParameters[] = {
     kTurnOption,
     kMasterNodeOption,
     kCsvOption,
+    kPlotOption,
 };
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {

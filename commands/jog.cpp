@@ -24,6 +24,7 @@ constexpr Parameter kParameters[] = {
     kTurnOption,
     kMasterNodeOption,
     kCsvOption,
+    kPlotOption,
 };
 
 /// Turns the repetitions of a held key into "held" and "let go". Keyboards begin to repeat after up to 0.7 s,

@@ -137,7 +137,7 @@ Result<Value> run_motion(Context& context, const Arguments& arguments, const Mot
     if (const auto written = write_csv(std::string(arguments.text("--csv")), done.samples, motion.units());
         !written)
       context.errors.push_back(written.error());
-  return motion_result(context, *node, *plan, *items, done);
+  return motion_result(context, *node, *plan, *items, done, arguments.has("--plot"));
 }
 
 }  // namespace servoctl::commands

@@ -26,6 +26,9 @@ inline constexpr Parameter kMasterNodeOption{
 inline constexpr Parameter kCsvOption{
     .name = "--csv", .help = "write the samples to this file", .kind = Kind::file};
 
+inline constexpr Parameter kPlotOption{
+    .name = "--plot", .help = "draw the samples over time at the end", .kind = Kind::flag};
+
 /// The options above, as far as they are given. Errc::usage for a number that is none.
 Result<session::MotionOptions> motion_options(const Context& context, const Arguments& arguments);
 

@@ -92,7 +92,8 @@ std::string end_text(const session::MotionEnd& end, const session::WatchdogPlan&
 }
 
 Value motion_result(Context& context, std::uint8_t node, const session::MotionPlan& plan,
-                    const std::vector<session::PreflightItem>& items, const session::MotionReport& done) {
+                    const std::vector<session::PreflightItem>& items, const session::MotionReport& done,
+                    bool plot) {
   const auto end = end_text(done.end, done.watchdog);
   if (!done.end.verified)
     context.errors.push_back(
@@ -117,7 +118,9 @@ Value motion_result(Context& context, std::uint8_t node, const session::MotionPl
              {"watchdog", session::to_string(done.watchdog), Show::json},
              {"preflight", preflight_table(items), Show::json},
              {"summary", summary_of(done.series)}};
-  if (context.keeps_samples) out.push_back({"samples", samples_of(done.series), Show::json});
+  // With -o jsonl the samples went out one by one.
+  if (context.keeps_samples) out.push_back({"samples", report::Plot{done.series}, Show::json});
+  if (plot) out.push_back({"plot", report::Plot{done.series}, Show::text});
   return out;
 }
 

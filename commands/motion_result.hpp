@@ -6,10 +6,11 @@
 namespace servoctl::commands {
 
 /// The answer of a motion: what was asked, how it went, how the drive was left, the numbers on the way, and
-/// with --json all samples. What went wrong goes to `context.errors`, what the node told to the notices.
+/// all samples: in JSON where the context keeps them, in text as a plot where one is wanted. What went wrong
+/// goes to `context.errors`, what the node told to the notices.
 report::Value motion_result(Context& context, std::uint8_t node, const session::MotionPlan& plan,
                             const std::vector<session::PreflightItem>& items,
-                            const session::MotionReport& done);
+                            const session::MotionReport& done, bool plot);
 
 /// How a motion left the drive: `switch on disabled, verified`, or loudly that it could not be verified.
 std::string end_text(const session::MotionEnd& end, const session::WatchdogPlan& watchdog);

@@ -43,6 +43,9 @@ extern const Command kNmtWatch;
 extern const Command kPdoShow;
 extern const Command kTestComm;
 extern const Command kTestIo;
+extern const Command kTestJog;
+extern const Command kTestHome;
+extern const Command kTestAll;
 extern const Command kReport;
 extern const Command kDecode;
 extern const Command kDrives;
@@ -134,6 +137,9 @@ std::span<const Command* const> registry() {
       &kPdoShow,
       &kTestComm,
       &kTestIo,
+      &kTestJog,
+      &kTestHome,
+      &kTestAll,
       &kReport,
       &kDecode,
       &kDrives,

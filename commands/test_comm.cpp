@@ -1,4 +1,5 @@
 #include "commands/comm_test.hpp"
+#include "commands/motion_options.hpp"
 #include "commands/verdict.hpp"
 
 namespace servoctl::commands {
@@ -14,9 +15,9 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   CommTest test;
   const auto count = count_option(arguments, "--count", 1, 1'000'000, test.count);
   if (!count) return tl::unexpected<Error>(count.error());
-  const auto longest = time_option(arguments, "--longest", test.longest);
+  const auto longest = time_option(arguments, "--longest");
   if (!longest) return tl::unexpected<Error>(longest.error());
-  test = {*count, *longest};
+  test = {*count, longest->value_or(test.longest)};
   std::vector<report::TestResult> results;
   for (const auto node : context.nodes) {
     auto result = test_communication(context, node, test);

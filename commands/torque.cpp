@@ -13,6 +13,7 @@ constexpr Parameter kParameters[] = {
     kTurnOption,
     kMasterNodeOption,
     kCsvOption,
+    kPlotOption,
 };
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {

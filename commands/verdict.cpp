@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <algorithm>
 
-#include "base/duration.hpp"
 #include "base/file.hpp"
 #include "base/number.hpp"
 #include "report/line.hpp"
@@ -86,10 +85,11 @@ report::Record verdict_record(const Context& context, const TestResult& result, 
 }
 
 Value verdicts(Context& context, const Arguments& arguments, const std::vector<TestResult>& results) {
+  const auto samples = arguments.has("--plot") ? Show::everywhere : Show::json;
   report::List out;
   for (const auto& result : results) {
     if (!passed(result)) context.errors.push_back(failure(result));
-    out.emplace_back(verdict_record(context, result, Show::json));
+    out.emplace_back(verdict_record(context, result, samples));
   }
   if (!arguments.has("--junit")) return Value(std::move(out));
   const auto written = write_file_atomically(arguments.text("--junit"), report::junit_xml(results));
@@ -107,13 +107,12 @@ Result<std::uint32_t> count_option(const Arguments& arguments, std::string_view 
   return static_cast<std::uint32_t>(*number);
 }
 
-Result<Duration> time_option(const Arguments& arguments, std::string_view name, Duration otherwise) {
+Result<double> number_option(const Arguments& arguments, std::string_view name, double otherwise) {
   if (!arguments.has(name)) return otherwise;
-  const auto time = parse_duration(arguments.text(name));
-  if (!time || *time == Duration::zero())
-    return fail(Errc::usage, fmt::format("{}: '{}' is no time", name, arguments.text(name)),
-                "write 500ms or 10s");
-  return *time;
+  const auto number = parse_real(arguments.text(name));
+  if (!number || *number < 0)
+    return fail(Errc::usage, fmt::format("{}: '{}' is no number of at least 0", name, arguments.text(name)));
+  return *number;
 }
 
 double seconds_of(Duration duration) { return static_cast<double>(duration.count()) / 1e6; }

@@ -31,8 +31,8 @@ report::Value verdicts(Context& context, const Arguments& arguments,
 Result<std::uint32_t> count_option(const Arguments& arguments, std::string_view name, std::uint32_t least,
                                    std::uint32_t most, std::uint32_t otherwise);
 
-/// A time above zero; `otherwise` when it is not given. Errc::usage.
-Result<Duration> time_option(const Arguments& arguments, std::string_view name, Duration otherwise);
+/// A number of at least 0; `otherwise` when it is not given. Errc::usage.
+Result<double> number_option(const Arguments& arguments, std::string_view name, double otherwise);
 
 /// Seconds as a number.
 double seconds_of(Duration duration);

@@ -12,21 +12,6 @@ using namespace std::chrono_literals;
 
 class DriveTests : public TestedDrive {
  protected:
-  /// `lost_answers failed 2`: criterion, verdict, figure, as JSON says it.
-  std::string criterion(const Result<report::Value>& result, std::string_view id) {
-    EXPECT_TRUE(result.has_value());
-    if (!result) return result.error().message;
-    const auto json = *report::parse_json(report::to_json(*result), "result");
-    for (const auto& test : std::get<report::List>(json.data()))
-      for (const auto& c : std::get<report::List>(report::find(test, "criteria")->data())) {
-        if (std::get<std::string>(report::find(c, "id")->data()) != id) continue;
-        return std::get<std::string>(report::find(c, "verdict")->data()) + " " +
-               report::to_json(*report::find(c, "figure"));
-      }
-    return "none";
-  }
-  bool failed() const { return !context.errors.empty() && context.errors.front().code == Errc::negative; }
-
   void write(ObjectAddress object, Bytes bytes) {
     ASSERT_TRUE(session->download(1, object, std::move(bytes)));
   }
@@ -148,6 +133,15 @@ TEST_F(InputTests, JudgesWhatWasSeenWhenInterrupted) {
   actuate([](double t) { return t > 1 ? 0x01 : 0x00; });
   session->options().cancelled = [this] { return seconds() > 2; };
   EXPECT_EQ(criterion(run("test io", {{"--for", "1min"}}), "negative-limit"), "passed \"0, 1\"");
+}
+
+TEST_F(InputTests, KnowsTheBitsOfTheFamily) {
+  build("sv2@1", "sv2");
+  bus->on_receive = [this](can::Frame& frame) {
+    if (frame.id == 0x581 && frame.data[1] == 0xFD && frame.data[2] == 0x60)
+      frame.data[4] = seconds() > 1 ? 0x01 : 0x00;
+  };
+  EXPECT_EQ(criterion(run("test io", {{"--expect", "home"}, {"--for", "3s"}}), "home"), "passed \"0, 1\"");
 }
 
 TEST_F(InputTests, SaysThatADriveDoesNotShowItsInputs) {

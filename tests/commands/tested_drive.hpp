@@ -69,6 +69,21 @@ class TestedDrive : public testing::Test {
     return find_command(command)->run(context, arguments);
   }
 
+  /// `failed 2`: verdict and figure of a criterion, as JSON says them; of the last test that has it.
+  static std::string criterion(const Result<report::Value>& result, std::string_view id) {
+    EXPECT_TRUE(result.has_value());
+    if (!result) return result.error().message;
+    const auto json = *report::parse_json(report::to_json(*result), "result");
+    std::string out = "none";
+    for (const auto& test : std::get<report::List>(json.data()))
+      for (const auto& c : std::get<report::List>(report::find(test, "criteria")->data()))
+        if (std::get<std::string>(report::find(c, "id")->data()) == id)
+          out = std::get<std::string>(report::find(c, "verdict")->data()) + " " +
+                report::to_json(*report::find(c, "figure"));
+    return out;
+  }
+  bool failed() const { return !context.errors.empty() && context.errors.front().code == Errc::negative; }
+
   sim::SimDrive& drive(std::size_t i = 0) { return *cell.drives[i]; }
   double seconds() const { return std::chrono::duration<double>(sim_bus.now() - begin_).count(); }
 

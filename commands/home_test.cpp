@@ -1,0 +1,152 @@
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+
+#include "commands/motion_run.hpp"
+#include "commands/verdict.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using report::Record;
+using report::TestResult;
+using session::Channel;
+
+/// Encoder counts that homing does not set to zero (CiA 402-2, 6063h).
+constexpr ObjectAddress kInternalPosition{0x6063, 0};
+
+/// Where one homing ended.
+struct Found {
+  std::optional<double> position;  ///< 6064h at rest.
+  std::optional<double> encoder;   ///< 6063h less 6064h: home in counts of the encoder.
+  double seconds = 0;
+};
+
+class Homings {
+ public:
+  Homings(const Context& context, const HomeTest& test) : context_(&context), test_(&test) {
+    home_.method = test.method;
+  }
+
+  const session::Home& home() const { return home_; }
+
+  /// As often as wanted, until one fails.
+  session::MotionReport run(session::Motion& motion, const session::MotionPlan& plan) {
+    for (;;) {
+      const auto begin = motion.session().now();
+      auto done = session::run_home(motion, home_, plan);
+      if (!done.outcome || !done.end.verified) return done;
+      found_.push_back(look(motion, done, motion.session().now() - begin));
+      if (found_.size() == test_->repeat) return done;
+    }
+  }
+
+  TestResult judged(const session::MotionReport& done) const {
+    TestResult out;
+    out.test = "home";
+    out.criteria.push_back(report::at_least("found", say("homings that found home", "成功回零次数"),
+                                            static_cast<double>(found_.size()), test_->repeat));
+    judge_motion(*context_, done, out);
+    std::string unit;
+    for (const auto& series : done.series)
+      if (series.name == session::name(Channel::position)) unit = series.unit;
+    judge_spread("spread", say("spread of the position at rest", "停止位置的离散"), &Found::position, unit,
+                 out);
+    judge_spread("encoder_spread", say("spread of home against the encoder", "原点相对编码器的离散"),
+                 &Found::encoder, unit, out);
+    out.figures.push_back({"homings", table(unit), report::Show::everywhere, say("homings", "各次回零")});
+    return out;
+  }
+
+ private:
+  std::string say(std::string_view english, std::string_view chinese) const {
+    return commands::say(*context_, english, chinese);
+  }
+
+  Found look(session::Motion& motion, const session::MotionReport& done, Duration time) const {
+    Found out;
+    out.seconds = seconds_of(time);
+    if (!done.samples.empty()) out.position = done.samples.back()[Channel::position];
+    const auto& units = motion.units();
+    if (!out.position || !units.has(kInternalPosition) ||
+        units.unit(kInternalPosition) != units.unit(session::kPositionActual))
+      return out;
+    const auto counts = motion.session().upload(motion.node(), kInternalPosition);
+    const auto now = motion.session().upload(motion.node(), session::kPositionActual);
+    if (!counts || !now) return out;
+    const auto encoder = units.physical(kInternalPosition, *counts);
+    const auto position = units.physical(session::kPositionActual, *now);
+    if (encoder && position) out.encoder = encoder->value - position->value;
+    return out;
+  }
+
+  void judge_spread(std::string id, std::string name, std::optional<double> Found::*member,
+                    const std::string& unit, TestResult& out) const {
+    std::vector<double> values;
+    for (const auto& found : found_)
+      if (found.*member) values.push_back(*(found.*member));
+    if (values.size() < 2) {
+      out.criteria.push_back(
+          report::skipped(std::move(id), std::move(name),
+                          found_.size() < 2 ? say("fewer than two homings", "回零少于两次")
+                                            : say("the drive does not tell it in the unit of the position",
+                                                  "驱动器未以位置单位提供该数据")));
+      return;
+    }
+    const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
+    out.criteria.push_back(
+        report::at_most(std::move(id), std::move(name), *greatest - *least, test_->spread, unit));
+  }
+
+  report::Value table(const std::string& unit) const {
+    report::Table table;
+    const auto of_unit = unit.empty() ? unit : " (" + unit + ")";
+    table.columns = {{"run", say("run", "次")},
+                     {"seconds", say("seconds", "秒")},
+                     {"position", say("position", "位置") + of_unit},
+                     {"encoder", say("encoder", "编码器") + of_unit}};
+    for (std::size_t i = 0; i < found_.size(); ++i) {
+      const auto number = [](std::optional<double> value) {
+        return value ? report::Value(*value) : report::Value();
+      };
+      table.rows.push_back({i + 1, found_[i].seconds, number(found_[i].position), number(found_[i].encoder)});
+    }
+    return table;
+  }
+
+  const Context* context_;
+  const HomeTest* test_;
+  session::Home home_;
+  std::vector<Found> found_;
+};
+
+}  // namespace
+
+Result<HomeTest> parse_home_test(const Arguments& arguments, std::string_view method) {
+  HomeTest out;
+  out.method = method;
+  const auto repeat = count_option(arguments, "--repeat", 1, 1000, out.repeat);
+  if (!repeat) return tl::unexpected<Error>(repeat.error());
+  out.repeat = *repeat;
+  const auto spread = number_option(arguments, "--spread", out.spread);
+  if (!spread) return tl::unexpected<Error>(spread.error());
+  out.spread = *spread;
+  return out;
+}
+
+Result<MotionTest> test_home(Context& context, const Arguments& arguments, const HomeTest& test) {
+  Homings homings(context, test);
+  const auto plan = [&](session::Motion& motion) {
+    auto planned = session::plan_home(motion, homings.home());
+    if (planned) planned->summary += fmt::format(", {} times", test.repeat);
+    return planned;
+  };
+  return run_test_motion(
+      context, arguments, plan,
+      [&](session::Motion& motion, const session::MotionPlan& planned) {
+        return homings.run(motion, planned);
+      },
+      [&](const session::MotionPlan&, const session::MotionReport& done) { return homings.judged(done); });
+}
+
+}  // namespace servoctl::commands

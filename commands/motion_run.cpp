@@ -1,0 +1,41 @@
+#include "commands/motion_run.hpp"
+
+#include "commands/motion_result.hpp"
+#include "commands/verdict.hpp"
+
+namespace servoctl::commands {
+
+Result<MotionTest> run_test_motion(
+    Context& context, const Arguments& arguments,
+    const std::function<Result<session::MotionPlan>(session::Motion&)>& plan,
+    const std::function<session::MotionReport(session::Motion&, const session::MotionPlan&)>& run,
+    const std::function<report::TestResult(const session::MotionPlan&, const session::MotionReport&)>&
+        judge) {
+  MotionTest out;
+  MotionRun motion;
+  motion.plan = plan;
+  motion.run = [&](session::Motion& m, const session::MotionPlan& planned) {
+    const auto begin = m.session().now();
+    auto done = run(m, planned);
+    out.result = judge(planned, done);
+    out.result->node = m.node();
+    out.result->seconds = seconds_of(m.session().now() - begin);
+    out.result->samples.series = done.series;
+    return done;
+  };
+  auto answer = run_motion(context, arguments, motion);
+  if (!answer) return tl::unexpected<Error>(answer.error());
+  if (!out.result) out.plan = std::move(*answer);
+  return out;
+}
+
+void judge_motion(const Context& context, const session::MotionReport& done, report::TestResult& out) {
+  out.criteria.push_back(report::holds(
+      "completed", say(context, "ran to its end", "运行完成"), done.outcome.has_value(),
+      done.outcome ? say(context, "yes", "是") : done.outcome.error().message, say(context, "yes", "是")));
+  out.criteria.push_back(report::holds(
+      "left_without_power", say(context, "left without power", "结束后已断使能"), done.end.verified,
+      end_text(done.end, done.watchdog), say(context, "verified", "已验证")));
+}
+
+}  // namespace servoctl::commands

@@ -1,0 +1,116 @@
+#include <fmt/format.h>
+
+#include "commands/comm_test.hpp"
+#include "commands/io_test.hpp"
+#include "commands/motion_options.hpp"
+#include "commands/motion_tests.hpp"
+#include "commands/verdict.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using report::TestResult;
+
+constexpr Parameter kParameters[] = {
+    {.name = "speed", .help = "for the test jog: 60rpm", .kind = Kind::value, .required = true},
+    {.name = "--expect", .help = "inputs for the test io; without, it is left out", .kind = Kind::text},
+    {.name = "--for", .help = "how long in each direction (default 2s)", .kind = Kind::duration},
+    {.name = "--tolerance", .help = "how far the speed may be off, in % (default 10)", .kind = Kind::number},
+    {.name = "--stop-within", .help = "longest time to standstill (default 1s)", .kind = Kind::duration},
+    {.name = "--no-home", .help = "leave the test home out", .kind = Kind::flag},
+    {.name = "--repeat", .help = "homings (default 5)", .kind = Kind::number},
+    {.name = "--spread", .help = "greatest spread of home (default 1)", .kind = Kind::number},
+    kSpeedLimitOption,
+    kAccelerationOption,
+    kMaxTorqueOption,
+    kMaxFollowingErrorOption,
+    kWindowOption,
+    kTurnOption,
+    kMasterNodeOption,
+    kPlotOption,
+    kJunitOption,
+};
+
+/// All tests of one drive, in the order in which each rests on the one before.
+class AllTests {
+ public:
+  AllTests(Context& context, const Arguments& arguments) : context_(&context), arguments_(&arguments) {}
+
+  Result<report::Value> run() {
+    const auto node = one_node(*context_);
+    if (!node) return tl::unexpected<Error>(node.error());
+    const auto jog = parse_jog_test(*arguments_, arguments_->text("speed"));
+    if (!jog) return tl::unexpected<Error>(jog.error());
+    const auto home = parse_home_test(*arguments_, {});
+    if (!home) return tl::unexpected<Error>(home.error());
+    const auto inputs = parse_inputs(*context_, arguments_->text("--expect"));
+    if (!inputs) return tl::unexpected<Error>(inputs.error());
+    if (const auto done = add(test_communication(*context_, *node, {})); !done)
+      return tl::unexpected<Error>(done.error());
+    // A motor is not moved by way of a bus that has just failed.
+    const bool may_move = passed(results_.back());
+    if (!inputs->empty() && may_move)
+      if (const auto done = add(test_inputs(*context_, *node, {*inputs})); !done)
+        return tl::unexpected<Error>(done.error());
+    if (may_move)
+      if (const auto done = move(*jog, *home); !done) return tl::unexpected<Error>(done.error());
+    if (!may_move)
+      context_->notices.push_back(
+          fmt::format("node {}: nothing was moved, because the test of the communication failed", *node));
+    if (context_->dry_run) return report::Value(std::move(plans_));
+    return verdicts(*context_, *arguments_, results_);
+  }
+
+ private:
+  Result<void> add(Result<TestResult> result) {
+    if (!result) return tl::unexpected<Error>(result.error());
+    results_.push_back(std::move(*result));
+    return {};
+  }
+
+  Result<void> add(Result<MotionTest> done) {
+    if (!done) return tl::unexpected<Error>(done.error());
+    if (!done->result) {
+      plans_.push_back(std::move(done->plan));
+      return {};
+    }
+    results_.push_back(std::move(*done->result));
+    return {};
+  }
+
+  Result<void> move(const JogTest& jog, const HomeTest& home) {
+    if (const auto done = add(test_jog(*context_, *arguments_, jog)); !done) return done;
+    if (!context_->dry_run && !passed(results_.back())) return {};
+    if (arguments_->has("--no-home") || !context_->profile->rules.motion.homing) return {};
+    return add(test_home(*context_, *arguments_, home));
+  }
+
+  Context* context_;
+  const Arguments* arguments_;
+  std::vector<TestResult> results_;
+  report::List plans_;
+};
+
+Result<report::Value> run(Context& context, const Arguments& arguments) {
+  return AllTests(context, arguments).run();
+}
+
+}  // namespace
+
+extern const Command kTestAll;
+const Command kTestAll{
+    .path = "test all",
+    .summary = "Test communication, inputs, both directions and homing, with a verdict",
+    .details =
+        "Runs `test comm`, `test io` where --expect names inputs, `test jog` and, where the family homes and "
+        "--no-home is not given, `test home` by the drive's present method. After a failure nothing more is "
+        "moved. Each motion shows what is known and asks, as it would alone. Exit code 1 when a test fails. "
+        "Example: `test all 60rpm -n 1 -d gsd600 --yes --json >axis-1.json`, then `report axis-1.html "
+        "--tests axis-1.json -n 1 -d gsd600`.",
+    .parameters = kParameters,
+    .needs = Needs::node | Needs::dictionary,
+    .effect = Effect::moves,
+    .run = run,
+};
+
+}  // namespace servoctl::commands

@@ -1,0 +1,52 @@
+#include "commands/motion_options.hpp"
+#include "commands/motion_tests.hpp"
+#include "commands/verdict.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+constexpr Parameter kParameters[] = {
+    {.name = "method", .help = "number of 6098h; the drive's present one unless said", .kind = Kind::value},
+    {.name = "--repeat", .help = "how often (default 5)", .kind = Kind::number},
+    {.name = "--spread",
+     .help = "greatest spread that passes, in the unit of the position (default 1)",
+     .kind = Kind::number},
+    kSpeedLimitOption,
+    kAccelerationOption,
+    kMaxTorqueOption,
+    kMaxFollowingErrorOption,
+    kWindowOption,
+    kTurnOption,
+    kMasterNodeOption,
+    kCsvOption,
+    kPlotOption,
+    kJunitOption,
+};
+
+Result<report::Value> run(Context& context, const Arguments& arguments) {
+  const auto test = parse_home_test(arguments, arguments.text("method"));
+  if (!test) return tl::unexpected<Error>(test.error());
+  auto done = test_home(context, arguments, *test);
+  if (!done) return tl::unexpected<Error>(done.error());
+  if (!done->result) return std::move(done->plan);
+  return verdicts(context, arguments, {std::move(*done->result)});
+}
+
+}  // namespace
+
+extern const Command kTestHome;
+const Command kTestHome{
+    .path = "test home",
+    .summary = "Home an axis several times, with a verdict",
+    .details =
+        "Looks, asks, moves and ends as `home` does, --repeat times. Passes when each found home, and when "
+        "neither the position at rest nor, where the drive has 6063h, home against the encoder's own count "
+        "spreads by more than --spread. A drive that sets 6063h to zero as well shows no spread there. Exit "
+        "code 1 when it fails. Example: `test home 33 --repeat 5 --spread 0.5 -n 1 -d gsd600 --yes`.",
+    .parameters = kParameters,
+    .needs = Needs::node | Needs::dictionary,
+    .effect = Effect::moves,
+    .run = run,
+};
+
+}  // namespace servoctl::commands

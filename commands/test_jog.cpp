@@ -1,0 +1,58 @@
+#include <fmt/format.h>
+
+#include "base/number.hpp"
+#include "commands/motion_options.hpp"
+#include "commands/motion_tests.hpp"
+#include "commands/verdict.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+constexpr Parameter kParameters[] = {
+    {.name = "speed",
+     .help = "60rpm; the sign is the first direction",
+     .kind = Kind::value,
+     .required = true},
+    {.name = "--for", .help = "how long in each direction (default 2s)", .kind = Kind::duration},
+    {.name = "--tolerance", .help = "how far the speed may be off, in % (default 10)", .kind = Kind::number},
+    {.name = "--stop-within", .help = "longest time to standstill (default 1s)", .kind = Kind::duration},
+    kSpeedLimitOption,
+    kAccelerationOption,
+    kMaxTorqueOption,
+    kMaxFollowingErrorOption,
+    kWindowOption,
+    kTurnOption,
+    kMasterNodeOption,
+    kCsvOption,
+    kPlotOption,
+    kJunitOption,
+};
+
+Result<report::Value> run(Context& context, const Arguments& arguments) {
+  const auto test = parse_jog_test(arguments, arguments.text("speed"));
+  if (!test) return tl::unexpected<Error>(test.error());
+  auto done = test_jog(context, arguments, *test);
+  if (!done) return tl::unexpected<Error>(done.error());
+  if (!done->result) return std::move(done->plan);
+  return verdicts(context, arguments, {std::move(*done->result)});
+}
+
+}  // namespace
+
+extern const Command kTestJog;
+const Command kTestJog{
+    .path = "test jog",
+    .summary = "Turn a motor both ways, with a verdict",
+    .details =
+        "Looks, asks, moves and ends as `jog` does, once in each direction. Passes when it turned the way it "
+        "was told, was at its speed within --tolerance in the second half of the time, fell no farther "
+        "behind than 1 % of its way, stood still --stop-within after the command, and was left without "
+        "power. What a drive does not tell is skipped. --plot draws it, --csv keeps the samples. Exit code 1 "
+        "when it fails. Example: `test jog 60rpm -n 1 -d gsd600 --yes --junit jog.xml`.",
+    .parameters = kParameters,
+    .needs = Needs::node | Needs::dictionary,
+    .effect = Effect::moves,
+    .run = run,
+};
+
+}  // namespace servoctl::commands

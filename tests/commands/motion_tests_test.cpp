@@ -1,0 +1,155 @@
+// `test jog`, `test home`, `test all`: what makes them fail, and in which state they leave the drive.
+#include <gtest/gtest.h>
+
+#include "tested_drive.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr ObjectAddress kVelocity{0x606C, 0};
+constexpr ObjectAddress kFollowingError{0x60F4, 0};
+
+class MotionTests : public TestedDrive {
+ protected:
+  void TearDown() override {
+    EXPECT_FALSE(drive::is_energised(drive().power_state()));
+    EXPECT_FALSE(drive().is_moving());
+  }
+  Result<report::Value> jog(Words more = {}) {
+    more.emplace_back("speed", "60rpm");
+    return run("test jog", more);
+  }
+  /// Changes what the drive tells of an object in 4 bytes.
+  void distort(ObjectAddress object, std::function<double(double)> change) {
+    bus->on_receive = [object, change = std::move(change)](can::Frame& frame) {
+      if (frame.id != 0x581 || load_le(std::span(frame.data).subspan(1, 2)) != object.index) return;
+      const auto value = static_cast<std::int32_t>(load_le(std::span(frame.data).subspan(4, 4)));
+      store_le(static_cast<std::uint64_t>(static_cast<std::int64_t>(change(value))),
+               std::span(frame.data).subspan(4, 4));
+    };
+  }
+};
+
+class EveryFamily : public MotionTests, public testing::WithParamInterface<std::string> {};
+
+TEST_P(EveryFamily, PassesTheTestJogAndIsAskedForOnce) {
+  build(GetParam() + "@1", GetParam());
+  const auto result = jog({{"--turn", "10000"}});
+  ASSERT_TRUE(result.has_value()) << result.error().message << result.error().hint;
+  EXPECT_TRUE(context.errors.empty()) << context.errors.front().message;
+  EXPECT_EQ(criterion(result, "completed"), "passed \"yes\"");
+  EXPECT_TRUE(criterion(result, "direction_backward").starts_with("passed"));
+  EXPECT_EQ(questions.size(), 1U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, EveryFamily, testing::Values("da200", "dm", "gsd600", "sv2", "ts"),
+                         [](const auto& test) { return test.param; });
+
+TEST_F(MotionTests, JogFailsWhenTheMotorTurnsTheWrongWay) {
+  build("sv2@1", "sv2");
+  drive().axis_faults().reversed = true;
+  const auto result = jog();
+  EXPECT_TRUE(criterion(result, "completed").starts_with("failed"));
+  EXPECT_TRUE(failed());
+}
+
+TEST_F(MotionTests, JogFailsWhenTheMotorIsStalled) {
+  build("sv2@1", "sv2");
+  drive().axis_faults().stalled = true;
+  EXPECT_TRUE(criterion(jog(), "completed").starts_with("failed"));
+  EXPECT_TRUE(failed());
+}
+
+TEST_F(MotionTests, JogFailsWhenTheSpeedIsOff) {
+  build("sv2@1", "sv2");
+  distort(kVelocity, [](double value) { return value * 0.8; });
+  EXPECT_TRUE(criterion(jog(), "speed_forward").starts_with("failed 2"));
+  EXPECT_TRUE(criterion(jog({{"--tolerance", "25"}}), "speed_forward").starts_with("passed 2"));
+}
+
+TEST_F(MotionTests, JogFailsWhenTheFollowingErrorGrows) {
+  build("sv2@1", "sv2");
+  distort(kFollowingError, [this](double) { return seconds() * 1000; });
+  EXPECT_TRUE(criterion(jog(), "following_error_forward").starts_with("failed"));
+  distort(kFollowingError, [](double) { return 500; });
+  EXPECT_EQ(criterion(jog(), "following_error_forward"), "passed 0") << "one that stays is no growth";
+}
+
+TEST_F(MotionTests, JogFailsWhenItStopsTooLate) {
+  build("sv2@1", "sv2");
+  EXPECT_TRUE(criterion(jog({{"--stop-within", "100ms"}}), "stop_forward").starts_with("failed"));
+  EXPECT_TRUE(criterion(jog(), "stop_backward").starts_with("passed"));
+}
+
+TEST_F(MotionTests, JogMovesNothingWithoutAYes) {
+  build("sv2@1", "sv2");
+  context.confirm = [](std::string_view) -> Result<void> { return fail(Errc::refused, "no"); };
+  const auto result = jog();
+  ASSERT_FALSE(result.has_value());
+  EXPECT_EQ(result.error().code, Errc::refused);
+}
+
+TEST_F(MotionTests, JogShowsItsPlanAndMovesNothingInADryRun) {
+  build("sv2@1", "sv2");
+  context.dry_run = true;
+  const auto result = jog();
+  ASSERT_TRUE(result.has_value());
+  EXPECT_NE(report::find(*result, "steps"), nullptr);
+  EXPECT_TRUE(questions.empty());
+}
+
+TEST_F(MotionTests, JogEndsSafelyWhenInterrupted) {
+  build("sv2@1", "sv2");
+  session->options().cancelled = [this] { return seconds() > 3; };
+  const auto result = jog();
+  ASSERT_FALSE(context.errors.empty());
+  EXPECT_EQ(context.errors.front().code, Errc::interrupted);
+}
+
+TEST_F(MotionTests, HomePassesAndShowsEachRun) {
+  build("sv2@1", "sv2");
+  const auto result = run("test home", {{"--repeat", "3"}, {"--limit", "3000rpm"}});
+  ASSERT_TRUE(result.has_value()) << result.error().message << result.error().hint;
+  EXPECT_EQ(criterion(result, "found"), "passed 3");
+  EXPECT_EQ(criterion(result, "spread"), "passed 0");
+  EXPECT_TRUE(context.errors.empty());
+}
+
+TEST_F(MotionTests, HomeFailsWhereItEndsSomewhereElseEachTime) {
+  build("sv2@1", "sv2");
+  distort({0x6064, 0}, [this](double value) { return value + seconds() * 1e5; });
+  const auto result = run("test home", {{"--repeat", "3"}, {"--limit", "3000rpm"}});
+  EXPECT_TRUE(criterion(result, "spread").starts_with("failed"));
+  EXPECT_TRUE(failed());
+}
+
+TEST_F(MotionTests, HomeStopsAtTheFirstThatFails) {
+  build("sv2@1", "sv2");
+  drive().axis_faults().bad_home = true;
+  const auto result = run("test home", {{"--limit", "3000rpm"}});
+  EXPECT_EQ(criterion(result, "found"), "failed 0");
+  EXPECT_TRUE(criterion(result, "completed").starts_with("failed"));
+}
+
+TEST_F(MotionTests, AllMovesNothingAfterTheCommunicationHasFailed) {
+  build("sv2@1", "sv2");
+  drive().misbehaviour().drop_answers = 1;
+  const auto result = run("test all", {{"speed", "60rpm"}});
+  EXPECT_EQ(criterion(result, "lost_answers"), "failed 1");
+  EXPECT_EQ(criterion(result, "completed"), "none");
+  EXPECT_TRUE(questions.empty());
+}
+
+TEST_F(MotionTests, AllRunsEachTest) {
+  build("sv2@1", "sv2");
+  const auto result = run("test all", {{"speed", "60rpm"}, {"--repeat", "2"}, {"--limit", "3000rpm"}});
+  EXPECT_EQ(criterion(result, "lost_answers"), "passed 0");
+  EXPECT_TRUE(criterion(result, "direction_forward").starts_with("passed"));
+  EXPECT_EQ(criterion(result, "found"), "passed 2");
+  EXPECT_TRUE(context.errors.empty());
+}
+
+}  // namespace
+}  // namespace servoctl::commands
