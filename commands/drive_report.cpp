@@ -108,7 +108,7 @@ class Collection {
         {"settings", "Settings that differ from the factory's", "与出厂值不同的设置", "verify"},
         {"pdos", "Process data (PDO)", "过程数据 (PDO)", "pdo show"},
     };
-    DriveReport out{node, say(fmt::format("Node {}", node), fmt::format("节点 {}", node)), {}};
+    DriveReport out{node, say(fmt::format("Node {}", node), fmt::format("节点 {}", node)), {}, {}};
     Arguments factory;
     factory.add("file", "factory");
     for (const auto& wanted : kParts) {
@@ -125,20 +125,17 @@ class Collection {
   }
 
   Result<void> add_tests(std::uint8_t node, DriveReport& drive) {
-    std::vector<TestResult> results;
     auto comm = test_communication(*context_, node, {});
     if (!comm) return tl::unexpected<Error>(comm.error());
-    results.push_back(std::move(*comm));
+    drive.tests.push_back(std::move(*comm));
     for (const auto& result : *earlier_)
-      if (result.node == node) results.push_back(result);
-    List records;
-    for (const auto& result : results) {
+      if (result.node == node) drive.tests.push_back(result);
+    for (const auto& result : drive.tests) {
       ++tests_;
-      if (!passed(result)) ++failed_;
-      if (!passed(result)) context_->errors.push_back(failure(result));
-      records.emplace_back(of_one_drive(List{verdict_record(*context_, result, Show::everywhere)}));
+      if (passed(result)) continue;
+      ++failed_;
+      context_->errors.push_back(failure(result));
     }
-    drive.parts.push_back({"tests", say("Tests", "测试"), std::move(records), {}});
     return {};
   }
 
@@ -156,6 +153,19 @@ std::string joined(const std::vector<std::string>& remarks) {
   return out;
 }
 
+/// Name and verdict are the heading.
+report::Page::Section test_section(const Context& context, const TestResult& test) {
+  auto record = verdict_record(context, test, Show::everywhere);
+  std::erase_if(record, [](const report::Field& field) {
+    return field.key == "test" || field.key == "node" || field.key == "verdict";
+  });
+  return {fmt::format("{}: {}", test.test,
+                      passed(test) ? say(context, "passed", "通过") : say(context, "FAILED", "未通过")),
+          4,
+          std::move(record),
+          {}};
+}
+
 }  // namespace
 
 Result<Report> make_report(Context& context, std::string title, const std::vector<TestResult>& earlier) {
@@ -171,11 +181,13 @@ std::string report_page(const Context& context, const Report& report) {
     page.sections.push_back({drive.title, 2, {}, {}});
     for (const auto& part : drive.parts)
       page.sections.push_back({part.title, 3, part.value, joined(part.remarks)});
+    if (!drive.tests.empty()) page.sections.push_back({say(context, "Tests", "测试"), 3, {}, {}});
+    for (const auto& test : drive.tests) page.sections.push_back(test_section(context, test));
   }
   return report::html_page(page);
 }
 
-std::string report_json(const Report& report) {
+std::string report_json(const Context& context, const Report& report) {
   List nodes;
   for (const auto& drive : report.drives) {
     Record node{{"node", drive.node}};
@@ -184,6 +196,9 @@ std::string report_json(const Report& report) {
       node.push_back({part.id, part.value});
       for (const auto& remark : part.remarks) remarks.emplace_back(remark);
     }
+    List tests;
+    for (const auto& test : drive.tests) tests.emplace_back(verdict_record(context, test, Show::json));
+    node.push_back({"tests", std::move(tests)});
     node.push_back({"remarks", std::move(remarks)});
     nodes.emplace_back(std::move(node));
   }

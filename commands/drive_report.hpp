@@ -23,6 +23,7 @@ struct DriveReport {
   std::uint8_t node = 0;
   std::string title;  ///< `Node 1: GSD600`
   std::vector<ReportPart> parts;
+  std::vector<report::TestResult> tests;  ///< The test of the communication, then earlier ones.
 };
 
 struct Report {
@@ -42,6 +43,6 @@ Result<Report> make_report(Context& context, std::string title,
 /// As a page, in the language of the context.
 std::string report_page(const Context& context, const Report& report);
 /// As one JSON document.
-std::string report_json(const Report& report);
+std::string report_json(const Context& context, const Report& report);
 
 }  // namespace servoctl::commands

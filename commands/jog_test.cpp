@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/duration.hpp"
+#include "base/number.hpp"
 #include "commands/motion_run.hpp"
 #include "commands/verdict.hpp"
 
@@ -91,6 +92,8 @@ class Direction {
     return forward_ ? say(*context_, fmt::format("forward: {}", english), fmt::format("正转：{}", chinese))
                     : say(*context_, fmt::format("backward: {}", english), fmt::format("反转：{}", chinese));
   }
+  /// More digits than the sensors have say nothing.
+  static double rounded(double number) { return parse_real(fmt::format("{:.4g}", number)).value_or(number); }
   double commanded() const { return forward_ ? plan_->value : -plan_->value; }
   std::string unit(Channel channel) const {
     for (const auto& series : done_->series)
@@ -120,7 +123,8 @@ class Direction {
     const auto way = change(turning_, Channel::position);
     if (!way) return skip("direction", std::move(name));
     const double along = commanded() < 0 ? -*way : *way;
-    auto criterion = report::at_least(id("direction"), std::move(name), along, 0, unit(Channel::position));
+    auto criterion =
+        report::at_least(id("direction"), std::move(name), rounded(along), 0, unit(Channel::position));
     // Standing still is no direction.
     if (along == 0) criterion.verdict = report::Verdict::failed;
     out_->criteria.push_back(std::move(criterion));
@@ -133,7 +137,8 @@ class Direction {
       if (const auto speed = (*sample)[Channel::velocity])
         worst = std::max(worst, std::abs(*speed - commanded()) / std::abs(commanded()) * 100);
     if (worst < 0 || unit(Channel::velocity) != plan_->unit) return skip("speed", std::move(name));
-    out_->criteria.push_back(report::at_most(id("speed"), std::move(name), worst, test_->tolerance, "%"));
+    out_->criteria.push_back(
+        report::at_most(id("speed"), std::move(name), rounded(worst), test_->tolerance, "%"));
   }
 
   void judge_following_error() {
@@ -142,8 +147,9 @@ class Direction {
     const auto way = change(steady_, Channel::position);
     if (!growth || !way || unit(Channel::following_error) != unit(Channel::position))
       return skip("following_error", std::move(name));
-    out_->criteria.push_back(report::at_most(id("following_error"), std::move(name), std::abs(*growth),
-                                             kMostGrowth * std::abs(*way), unit(Channel::position)));
+    out_->criteria.push_back(report::at_most(id("following_error"), std::move(name),
+                                             rounded(std::abs(*growth)),
+                                             rounded(kMostGrowth * std::abs(*way)), unit(Channel::position)));
   }
 
   void judge_stop(TimePoint end) {
@@ -164,9 +170,10 @@ class Direction {
     }
     if (!moved && !stood) return skip("stop", std::move(name));
     // One that did not come to rest moved to the end of what was seen.
-    auto criterion = report::at_most(id("stop"), std::move(name),
-                                     milliseconds_of(stood.value_or(moved.value_or(end)) - phase_.end),
-                                     milliseconds_of(test_->longest_stop), "ms");
+    auto criterion =
+        report::at_most(id("stop"), std::move(name),
+                        rounded(milliseconds_of(stood.value_or(moved.value_or(end)) - phase_.end)),
+                        milliseconds_of(test_->longest_stop), "ms");
     if (!stood) criterion.verdict = report::Verdict::failed;
     out_->criteria.push_back(std::move(criterion));
   }

@@ -30,12 +30,17 @@ Result<MotionTest> run_test_motion(
 }
 
 void judge_motion(const Context& context, const session::MotionReport& done, report::TestResult& out) {
-  out.criteria.push_back(report::holds(
-      "completed", say(context, "ran to its end", "运行完成"), done.outcome.has_value(),
-      done.outcome ? say(context, "yes", "是") : done.outcome.error().message, say(context, "yes", "是")));
-  out.criteria.push_back(report::holds(
-      "left_without_power", say(context, "left without power", "结束后已断使能"), done.end.verified,
-      end_text(done.end, done.watchdog), say(context, "verified", "已验证")));
+  const auto add = [&](std::string id, std::string name, bool good, std::string note) {
+    const auto yes = say(context, "yes", "是");
+    auto criterion =
+        report::holds(std::move(id), std::move(name), good, good ? yes : say(context, "NO", "否"), yes);
+    criterion.note = std::move(note);
+    out.criteria.push_back(std::move(criterion));
+  };
+  add("completed", say(context, "ran to its end", "运行完成"), done.outcome.has_value(),
+      done.outcome ? std::string() : done.outcome.error().message);
+  add("left_without_power", say(context, "left without power", "结束后已断使能"), done.end.verified,
+      end_text(done.end, done.watchdog));
 }
 
 }  // namespace servoctl::commands

@@ -45,7 +45,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
           "the test {} of node {} is not in the report: -n does not name it", result.test, result.node));
   const auto made = make_report(context, std::string(arguments.text("--title")), earlier);
   if (!made) return tl::unexpected<Error>(made.error());
-  const auto text = *form == Form::html ? report_page(context, *made) : report_json(*made);
+  const auto text = *form == Form::html ? report_page(context, *made) : report_json(context, *made);
   const auto written = write_file_atomically(file, text);
   if (!written) return tl::unexpected<Error>(written.error());
   report::Record out{{"file", file.string()}, {"nodes", made->drives.size()}};

@@ -52,8 +52,9 @@ class AllTests {
     if (!inputs->empty() && may_move)
       if (const auto done = add(test_inputs(*context_, *node, {*inputs})); !done)
         return tl::unexpected<Error>(done.error());
+    // What was found before is told even when a motion is refused, or not confirmed.
     if (may_move)
-      if (const auto done = move(*jog, *home); !done) return tl::unexpected<Error>(done.error());
+      if (const auto done = move(*jog, *home); !done) context_->errors.push_back(done.error());
     if (!may_move)
       context_->notices.push_back(
           fmt::format("node {}: nothing was moved, because the test of the communication failed", *node));

@@ -80,7 +80,8 @@ Axis axis_of(const Extent& extent, std::size_t most) {
 }
 
 std::string title_of(const Series& series) {
-  const auto name = printable(series.name);
+  auto name = printable(series.name);
+  std::replace(name.begin(), name.end(), '_', ' ');
   return series.unit.empty() ? name : fmt::format("{} ({})", name, printable(series.unit));
 }
 

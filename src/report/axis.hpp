@@ -47,7 +47,7 @@ struct Axis {
 };
 Axis axis_of(const Extent& extent, std::size_t most);
 
-/// `velocity (rpm)`, or the name alone.
+/// `following error (deg)`, or the name alone.
 std::string title_of(const Series& series);
 
 }  // namespace servoctl::report

@@ -21,8 +21,9 @@ body { margin: 0 auto; max-width: 60rem; padding: 1rem; background: #fff; color:
 h1 { font-size: 1.7rem; margin: 0 0 .5rem; }
 h2 { font-size: 1.3rem; margin: 2rem 0 .5rem; padding-bottom: .2rem; border-bottom: 2px solid #111; }
 h3 { font-size: 1.05rem; margin: 1.4rem 0 .4rem; }
-h4 { font-size: 1rem; margin: 1rem 0 .3rem; font-weight: 600; }
-h1, h2, h3, h4 { line-height: 1.2; overflow-wrap: anywhere; }
+h4, h5, h6 { font-size: 1rem; margin: 1rem 0 .3rem; font-weight: 600; }
+h5, h6 { font-size: .9rem; color: #444; }
+h1, h2, h3, h4, h5, h6 { line-height: 1.2; overflow-wrap: anywhere; }
 p { margin: .3rem 0; }
 .wide { overflow-x: auto; margin: .3rem 0; }
 table { border-collapse: collapse; }
@@ -31,7 +32,8 @@ table.fields th { font-weight: normal; color: #444; white-space: nowrap; padding
 table.fields td { overflow-wrap: anywhere; }
 table.rows thead th { border-bottom: 1px solid #111; white-space: nowrap; }
 table.rows td { border-bottom: 1px solid #ccc; }
-.number { text-align: right; font-variant-numeric: tabular-nums; }
+.short { white-space: nowrap; }
+.number { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
 svg { display: block; max-width: 100%; height: auto; margin: .5rem 0; }
 @page { size: A4; margin: 16mm 14mm 18mm; }
 @media print {
@@ -41,7 +43,7 @@ svg { display: block; max-width: 100%; height: auto; margin: .5rem 0; }
   table.rows td { overflow-wrap: anywhere; }
   thead { display: table-header-group; }
   tr, svg { break-inside: avoid; }
-  h1, h2, h3, h4 { break-after: avoid; }
+  h1, h2, h3, h4, h5, h6 { break-after: avoid; }
   p { orphans: 3; widows: 3; }
 }
 )";
@@ -58,19 +60,30 @@ bool is_block(const Value& value) {
          std::holds_alternative<Plot>(value.data());
 }
 
+bool is_nothing(const Value& value) {
+  const auto* list = std::get_if<List>(&value.data());
+  return value.is_null() || (list != nullptr && list->empty());
+}
+
+/// Cells up to this width stay in one line.
+constexpr std::size_t kShort = 20;
+/// The lowest level of headings.
+constexpr int kLowest = 6;
+
 class Writer {
  public:
   explicit Writer(const Translate& translate) : translate_(&translate) {}
 
-  void write(const Value& value) {
+  /// `level` is that of the headings it may need.
+  void write(const Value& value, int level) {
     if (const auto* table = std::get_if<Table>(&value.data())) return write_table(*table);
-    if (const auto* record = std::get_if<Record>(&value.data())) return write_record(*record);
+    if (const auto* record = std::get_if<Record>(&value.data())) return write_record(*record, level);
     if (const auto* plot = std::get_if<Plot>(&value.data())) {
       out_ += svg_plot(plot->series);
       return;
     }
     if (const auto* list = std::get_if<List>(&value.data()); list != nullptr && is_block(value)) {
-      for (const auto& element : *list) write(element);
+      for (const auto& element : *list) write(element, level);
       return;
     }
     if (!value.is_null()) out_ += "<p>" + inline_text(value) + "</p>\n";
@@ -95,15 +108,18 @@ class Writer {
       if (table.columns[i].show != Show::json && !is_empty(table, i)) shown.push_back(i);
     if (table.rows.empty() || shown.empty()) return;
     out_ += "<div class=\"wide\"><table class=\"rows\">\n<thead><tr>";
+    std::vector<bool> numbers(table.columns.size());
     for (const auto i : shown) {
       const auto& column = table.columns[i];
-      out_ += fmt::format("<th{}>{}</th>", style(table, i),
+      numbers[i] = is_all_numbers(table, i);
+      out_ += fmt::format("<th{}>{}</th>", numbers[i] ? " class=\"number\"" : "",
                           heading(column.title.empty() ? column.key : column.title));
     }
     out_ += "</tr></thead>\n<tbody>\n";
     for (const auto& row : table.rows) {
       out_ += "<tr>";
-      for (const auto i : shown) out_ += fmt::format("<td{}>{}</td>", style(table, i), inline_text(row[i]));
+      for (const auto i : shown)
+        out_ += fmt::format("<td{}>{}</td>", cell_style(row[i], numbers[i]), inline_text(row[i]));
       out_ += "</tr>\n";
     }
     out_ += "</tbody></table></div>\n";
@@ -116,26 +132,29 @@ class Writer {
     });
   }
 
-  static std::string_view style(const Table& table, std::size_t column) {
-    const bool numbers = std::all_of(table.rows.begin(), table.rows.end(), [&](const List& row) {
-      return is_number(row[column]) || row[column].is_null();
-    });
-    return numbers ? " class=\"number\"" : "";
+  static bool is_all_numbers(const Table& table, std::size_t column) {
+    return std::all_of(table.rows.begin(), table.rows.end(),
+                       [&](const List& row) { return is_number(row[column]) || row[column].is_null(); });
+  }
+
+  static std::string_view cell_style(const Value& value, bool number) {
+    if (number || is_number(value)) return " class=\"number\"";
+    return display_width(line_text(value)) <= kShort ? " class=\"short\"" : "";
   }
 
   /// The lines first, then what is larger than a line, as in text.
-  void write_record(const Record& record) {
+  void write_record(const Record& record, int level) {
     const auto title = [](const Field& f) { return f.title.empty() ? f.key : f.title; };
     std::string lines;
     for (const auto& field : record)
-      if (field.show != Show::json && !field.value.is_null() && !is_block(field.value))
+      if (field.show != Show::json && !is_nothing(field.value) && !is_block(field.value))
         lines +=
             fmt::format("<tr><th>{}</th><td>{}</td></tr>\n", heading(title(field)), inline_text(field.value));
     if (!lines.empty()) out_ += "<table class=\"fields\"><tbody>\n" + lines + "</tbody></table>\n";
     for (const auto& field : record) {
       if (field.show == Show::json || !is_block(field.value)) continue;
-      out_ += "<h4>" + heading(title(field)) + "</h4>\n";
-      write(field.value);
+      out_ += fmt::format("<h{0}>{1}</h{0}>\n", level, heading(title(field)));
+      write(field.value, std::min(level + 1, kLowest));
     }
   }
 
@@ -145,9 +164,9 @@ class Writer {
 
 }  // namespace
 
-std::string to_html(const Value& value, const Translate& translate) {
+std::string to_html(const Value& value, const Translate& translate, int level) {
   Writer writer(translate);
-  writer.write(value);
+  writer.write(value, level);
   return writer.take();
 }
 
@@ -156,7 +175,7 @@ std::string html_page(const Page& page) {
   for (const auto& section : page.sections) {
     body += fmt::format("<h{0}>{1}</h{0}>\n", section.level, escaped(section.title));
     if (!section.note.empty()) body += "<p>" + escaped(section.note) + "</p>\n";
-    body += to_html(section.value, page.translate);
+    body += to_html(section.value, page.translate, section.level + 1);
   }
   // Nothing may be loaded or run, whatever a mistake in here would let through.
   return fmt::format(

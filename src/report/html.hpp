@@ -13,9 +13,9 @@ namespace servoctl::report {
 /// Puts a heading, or a word such as `yes`, into the reader's language.
 using Translate = std::function<std::string(std::string_view)>;
 
-/// The value as HTML: records and tables as tables, plots as drawings, each below the heading it has. Shows
-/// what text shows. Nothing in it becomes markup.
-std::string to_html(const Value& value, const Translate& translate = {});
+/// The value as HTML: records and tables as tables, plots as drawings, each below the heading it has,
+/// of this level. Shows what text shows. Nothing in it becomes markup.
+std::string to_html(const Value& value, const Translate& translate = {}, int level = 4);
 
 /// A page of its own: no scripts, nothing loaded from anywhere, readable on a telephone and printed on A4.
 struct Page {

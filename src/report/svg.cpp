@@ -138,7 +138,7 @@ std::string time_axis(const Extent& time, double top) {
     const double x = kLeft + kInner * time.part(at);
     out += rule(x, top, x, top + 4, "#000") + label(x, top + 16, "middle", ticks.text(at));
   }
-  return out + label(kLeft - 6, top + 16, "end", "s");
+  return out + label(kLeft - 16, top + 16, "end", "s");
 }
 
 double height_of(const Series& series) { return extent_of(series.values) ? kTitle + kPanel : kTitle; }

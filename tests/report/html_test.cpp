@@ -14,6 +14,7 @@ TEST(Html, ShowsWhatTextShows) {
                       {"nothing", Value()},
                       {"energised", false, Show::everywhere, "is energised"},
                       {"modes", List{"pp", "pv"}},
+                      {"no_modes", List{}},
                       {"objects", table}};
   EXPECT_EQ(
       to_html(record),
@@ -21,8 +22,10 @@ TEST(Html, ShowsWhatTextShows) {
       "<tr><th>is energised</th><td>no</td></tr>\n<tr><th>modes</th><td>pp, pv</td></tr>\n</tbody></table>\n"
       "<h4>objects</h4>\n<div class=\"wide\"><table class=\"rows\">\n"
       "<thead><tr><th>object</th><th>name</th><th class=\"number\">value</th></tr></thead>\n<tbody>\n"
-      "<tr><td>0x6040</td><td>Controlword</td><td class=\"number\">6</td></tr>\n"
-      "<tr><td>0x607A</td><td>目标位置</td><td class=\"number\">–</td></tr>\n</tbody></table></div>\n");
+      "<tr><td class=\"short\">0x6040</td><td class=\"short\">Controlword</td><td "
+      "class=\"number\">6</td></tr>\n"
+      "<tr><td class=\"short\">0x607A</td><td class=\"short\">目标位置</td><td "
+      "class=\"number\">–</td></tr>\n</tbody></table></div>\n");
 }
 
 TEST(Html, LetsNoValueKeyOrHeadingBecomeMarkup) {
