@@ -6,6 +6,7 @@
 #include "base/duration.hpp"
 #include "commands/notice.hpp"
 #include "commands/verdict.hpp"
+#include "session/open_bus.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -22,6 +23,8 @@ constexpr std::uint32_t kGone = 3;
 constexpr std::uint32_t kHeartbeats = 4;
 /// How far a heartbeat may be from its time: CiA 301 names no tolerance.
 constexpr double kHeartbeatTolerance = 0.2;
+/// From 96 on a controller warns (ISO 11898-1, 12.1.4).
+constexpr int kMostErrors = 95;
 constexpr Duration kLeastTolerance = std::chrono::milliseconds(10);
 
 /// Takes away the retries as long as it lives: a lost answer is to be seen.
@@ -159,6 +162,25 @@ class Communication {
                                             session_->watch().boots(node_) - boots_, 0));
     out_.criteria.push_back(report::at_most(
         "controller_reports", say("error reports of the CAN controller", "CAN 控制器错误报告"), reports_, 0));
+    judge_controller();
+  }
+
+  void judge_controller() {
+    auto name = say("state of the CAN controller", "CAN 控制器状态");
+    const auto link = session::link_of(session_->url());
+    if (!link || !link->health) {
+      out_.criteria.push_back(
+          report::skipped("controller", std::move(name), say("this bus does not tell it", "该总线不提供")));
+      return;
+    }
+    const auto wanted = can::LinkHealth::error_active;
+    out_.criteria.push_back(report::holds("controller", std::move(name), *link->health == wanted,
+                                          std::string(can::name(*link->health)),
+                                          std::string(can::name(wanted))));
+    if (!link->tx_errors || !link->rx_errors) return;
+    out_.criteria.push_back(report::at_most("error_counters",
+                                            say("error counters of the CAN controller", "CAN 控制器错误计数"),
+                                            std::max(*link->tx_errors, *link->rx_errors), kMostErrors));
   }
 
   /// What was heard is counted, and told as it would be without the test.

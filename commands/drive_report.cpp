@@ -8,6 +8,7 @@
 #include "commands/comm_test.hpp"
 #include "commands/report_words.hpp"
 #include "commands/verdict.hpp"
+#include "session/open_bus.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -40,6 +41,7 @@ class Collection {
     auto bus = part("bus", say("Bus", "总线"), "scan", {}, {});
     if (!bus) return tl::unexpected<Error>(bus.error());
     out_.bus = std::move(*bus);
+    out_.link = link_record();
     for (const auto node : context_->nodes) {
       auto drive = of_drive(node);
       if (!drive) return tl::unexpected<Error>(drive.error());
@@ -70,6 +72,18 @@ class Collection {
     return failed_ == 0 ? say(fmt::format("{} passed", passed), fmt::format("{} 项通过", passed))
                         : say(fmt::format("{} passed, {} FAILED", passed, failed_),
                               fmt::format("{} 项通过，{} 项未通过", passed, failed_));
+  }
+
+  Value link_record() const {
+    const auto link = session::link_of(context_->session->url());
+    if (!link) return {};
+    const auto or_null = [](const auto& value) { return value ? Value(*value) : Value(); };
+    return Record{
+        {"bitrate", or_null(link->bitrate), Show::everywhere, say("bitrate (bit/s)", "波特率 (bit/s)")},
+        {"controller", link->health ? Value(can::name(*link->health)) : Value(), Show::everywhere,
+         say("controller", "CAN 控制器")},
+        {"tx_errors", or_null(link->tx_errors), Show::everywhere, say("send errors", "发送错误计数")},
+        {"rx_errors", or_null(link->rx_errors), Show::everywhere, say("receive errors", "接收错误计数")}};
   }
 
   /// Runs a command for one drive (for the bus where there is none). A difference or a fault is what a report
@@ -176,7 +190,8 @@ std::string report_page(const Context& context, const Report& report) {
   report::Page page{.chinese = context.chinese, .title = report.title};
   if (context.chinese) page.translate = heading_zh;
   page.sections.push_back({say(context, "Summary", "概要"), 2, report.head, {}});
-  page.sections.push_back({report.bus.title, 2, report.bus.value, joined(report.bus.remarks)});
+  page.sections.push_back(
+      {report.bus.title, 2, List{report.link, report.bus.value}, joined(report.bus.remarks)});
   for (const auto& drive : report.drives) {
     page.sections.push_back({drive.title, 2, {}, {}});
     for (const auto& part : drive.parts)
@@ -204,6 +219,7 @@ std::string report_json(const Context& context, const Report& report) {
   }
   Record out{{"servoctl_report", 1}, {"title", report.title}};
   for (const auto& field : report.head) out.push_back(field);
+  out.push_back({"link", report.link});
   out.push_back({"found", report.bus.value});
   out.push_back({"nodes", std::move(nodes)});
   return report::to_json(std::move(out)) + "\n";

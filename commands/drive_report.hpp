@@ -29,7 +29,8 @@ struct DriveReport {
 struct Report {
   std::string title;
   report::Record head;  ///< When, with what, where, and how the tests ended.
-  ReportPart bus;
+  ReportPart bus;       ///< Who is there.
+  report::Value link;   ///< What the kernel knows of the interface; null for other buses.
   std::vector<DriveReport> drives;
 };
 

@@ -86,7 +86,7 @@ class Writer {
       for (const auto& element : *list) write(element, level);
       return;
     }
-    if (!value.is_null()) out_ += "<p>" + inline_text(value) + "</p>\n";
+    if (!is_nothing(value)) out_ += "<p>" + inline_text(value) + "</p>\n";
   }
 
   std::string take() { return std::move(out_); }

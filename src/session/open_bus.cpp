@@ -41,4 +41,10 @@ Result<std::unique_ptr<can::Bus>> open_bus(std::string_view url, const BusOption
                        simulated ? can::TraceClock::bus : can::TraceClock::wall);
 }
 
+std::optional<can::LinkState> link_of(std::string_view url) {
+  const auto colon = url.find(':');
+  if (colon == std::string_view::npos) return can::link_state(url);
+  return url.substr(0, colon) == "socketcan" ? can::link_state(url.substr(colon + 1)) : std::nullopt;
+}
+
 }  // namespace servoctl::session

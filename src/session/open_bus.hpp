@@ -2,10 +2,12 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 
 #include "can/bus.hpp"
+#include "can/link.hpp"
 #include "sim/sim_bus.hpp"
 
 namespace servoctl::session {
@@ -22,5 +24,8 @@ struct BusOptions {
 /// Errc::usage for a URL that is not understood, Errc::bus with the mending command for an interface that is
 /// missing or down.
 Result<std::unique_ptr<can::Bus>> open_bus(std::string_view url, const BusOptions& options);
+
+/// What the kernel knows of the CAN interface behind a URL; empty for any other bus.
+std::optional<can::LinkState> link_of(std::string_view url);
 
 }  // namespace servoctl::session

@@ -114,6 +114,13 @@ if [ "${VCAN_GUEST:-}" = uml ]; then
   ip link set can0 down
   ip link set can0 up
   check "the interface is back, and so is the drive" 624 "$("$servoctl" read 0x6041 -n 1 --bus can0 --json | jq '.result[0].value')"
+  controller() { "$servoctl" test comm -n 1 --bus can0 --count 20 --json | jq -r '.result[0].criteria[] | select(.id == "controller") | .verdict + " " + .figure'; }
+  check "test comm finds a healthy controller" "passed error-active" "$(controller)"
+  printf 'sp140000\r' >/dev/can0.inject
+  sleep 0.3
+  check "and one that is error-passive" "failed error-passive" "$(controller)"
+  SERVOCTL_DRIVES=$(dirname "$0")/../../eds "$servoctl" report "$work/report.json" -n 1 --bus can0 -d gsd600 >/dev/null 2>&1
+  check "a report tells bitrate and controller" '[1000000,"error-passive"]' "$(jq -c '[.link.bitrate, .link.controller]' "$work/report.json")"
 fi
 
 # 7. Objects of any size over the kernel's queue of ten frames, with frames of others in between.
