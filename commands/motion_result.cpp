@@ -44,18 +44,10 @@ Value summary_of(const std::vector<Series>& series) {
   return table;
 }
 
-Value samples_of(const std::vector<Series>& series) {
-  report::List out;
-  for (const auto& one : series) {
-    report::List seconds(one.seconds.begin(), one.seconds.end());
-    report::List values;
-    for (const double value : one.values) values.emplace_back(rounded(value, 9));
-    out.emplace_back(Record{{"name", one.name},
-                            {"unit", report::text_or_null(one.unit)},
-                            {"seconds", std::move(seconds)},
-                            {"values", std::move(values)}});
-  }
-  return out;
+report::Plot samples_of(std::vector<Series> series) {
+  for (auto& one : series)
+    for (auto& value : one.values) value = rounded(value, 9);
+  return {std::move(series)};
 }
 
 Value end_record(const session::MotionEnd& end) {
@@ -119,7 +111,7 @@ Value motion_result(Context& context, std::uint8_t node, const session::MotionPl
              {"preflight", preflight_table(items), Show::json},
              {"summary", summary_of(done.series)}};
   // With -o jsonl the samples went out one by one.
-  if (context.keeps_samples) out.push_back({"samples", report::Plot{done.series}, Show::json});
+  if (context.keeps_samples) out.push_back({"samples", samples_of(done.series), Show::json});
   if (plot) out.push_back({"plot", report::Plot{done.series}, Show::text});
   return out;
 }
