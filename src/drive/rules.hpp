@@ -74,6 +74,7 @@ struct PdoRules {
   std::uint32_t cob_id_bits = 0xFFFF'FFFF;  ///< Bits of the COB-ID that may change.
   When parameters = When::always;           ///< When transmission type and times may change.
   When mapping = When::always;
+  bool clears_entries = false;    ///< Count 0 clears the entries as well.
   bool disable_by_count = false;  ///< The mapping is opened by count 0 alone; the COB-ID stays valid.
   std::uint8_t most_entries = 64;
   std::uint16_t most_bits = 64;

@@ -141,6 +141,7 @@ Result<void> read_pdo(const TableReader& reader, Rules& rules) {
                       {"parameters", [&](const auto& n) { return get(n, out.parameters); }},
                       {"mapping", [&](const auto& n) { return get(n, out.mapping); }},
                       {"disable_by_count", into(out.disable_by_count)},
+                      {"clears_entries", into(out.clears_entries)},
                       {"most_entries", into(out.most_entries)},
                       {"most_bits", into(out.most_bits)},
                       {"whole_bytes", into(out.whole_bytes)},

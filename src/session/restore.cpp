@@ -24,7 +24,7 @@ class Run {
     Result<void> done = storage.open(options.keep, options.unlock, true);
     const auto plan =
         plan_writes(profile_, storage.worked_in_ram() ? in_flash(options.unlock) : *present_, *wanted_);
-    for (const auto& step : plan) touched_.insert(step.object);
+    touched_ = touched_by(plan, *present_);
     if (done) done = write(plan, out_.writes);
     if (done) done = check();
     out_.all_written = done.has_value();
@@ -73,6 +73,7 @@ class Run {
   /// A drive that restarted in between has forgotten what was written first.
   Result<void> check() {
     for (const auto object : touched_) {
+      if (wanted_->count(object) == 0) continue;
       const auto found = session_->upload(node_, object);
       if (!found) return tl::unexpected<Error>(found.error());
       if (*found == wanted_->at(object)) continue;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <vector>
 
 #include "base/bytes.hpp"
@@ -20,8 +21,13 @@ struct PlannedWrite {
 
 /// The writes that lead from `present` to `wanted`, both over the same objects: only what differs, in rising
 /// address, each PDO by the procedure of CiA 301, 7.5.2.35 (invalid, count 0, entries, count, parameters,
-/// COB-ID) or the family's own. `profile` may be null.
+/// COB-ID) or the family's own, each assignment of fixed PDOs (1C10h to 1C2Fh) by count 0, entries, count.
+/// `profile` may be null.
 std::vector<PlannedWrite> plan_writes(const drive::Profile* profile, const Values& present,
                                       const Values& wanted);
+
+/// What these writes may change: the objects written, and with a list (mapping, assignment) all its entries,
+/// which a count of 0 may clear. Only what is in `present`.
+std::set<ObjectAddress> touched_by(const std::vector<PlannedWrite>& plan, const Values& present);
 
 }  // namespace servoctl::session

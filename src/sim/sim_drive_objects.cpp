@@ -111,6 +111,10 @@ void SimDrive::after_write(ObjectAddress object, ByteSpan data) {
     ++flash_writes_;
     (void)memory_->save();
   }
+  if (profile_->rules.pdo.clears_entries && PdoGuard::is_mapping(object) && object.sub == 0 &&
+      load_le(data) == 0)
+    if (const auto* mapping = profile_->dictionary.object(object.index))
+      for (const auto& entry : mapping->entries) values_.set_number(entry.address, 0);
   if (object == kHeartbeatTime || object == kGuardTime || object == kLifeFactor) set_up_error_control(now_);
   if (object.index == kConsumerIndex && object.sub > 0)
     consumer_.set(object.sub, static_cast<std::uint32_t>(values_.number(object)));

@@ -1,0 +1,75 @@
+// In which order the values of a drive are written.
+#include "session/write_plan.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+namespace servoctl::session {
+namespace {
+
+std::vector<std::string> told(const std::vector<PlannedWrite>& plan) {
+  std::vector<std::string> out;
+  for (const auto& write : plan) out.push_back(to_string(write.object) + "=" + to_hex(write.data, ""));
+  return out;
+}
+
+using Steps = std::vector<std::string>;
+
+const Values kPresent{{{0x1800, 1}, {0x81, 0x01, 0, 0x40}},
+                      {{0x1800, 2}, {255}},
+                      {{0x1A00, 0}, {1}},
+                      {{0x1A00, 1}, {0x10, 0, 0x41, 0x60}},
+                      {{0x1A00, 2}, {0, 0, 0, 0}}};
+
+Values with(Values values, const Values& other) {
+  for (const auto& [object, data] : other) values.insert_or_assign(object, data);
+  return values;
+}
+
+TEST(PlanOfWrites, WritesEveryEntryInUseBehindACountOfZero) {
+  const auto wanted = with(kPresent, {{{0x1A00, 0}, {2}}, {{0x1A00, 2}, {0x20, 0, 0x64, 0x60}}});
+  EXPECT_EQ(told(plan_writes(nullptr, kPresent, wanted)),
+            (Steps{"0x1800:1=810100C0", "0x1A00:0=00", "0x1A00:1=10004160", "0x1A00:2=20006460",
+                   "0x1A00:0=02", "0x1800:1=81010040"}));
+}
+
+TEST(PlanOfWrites, SwitchesAPdoOffOnce) {
+  const auto wanted = with(kPresent, {{{0x1800, 1}, {0x81, 0x01, 0, 0xC0}}});
+  EXPECT_EQ(told(plan_writes(nullptr, kPresent, wanted)), (Steps{"0x1800:1=810100C0"}));
+  EXPECT_EQ(told(plan_writes(nullptr, wanted, kPresent)), (Steps{"0x1800:1=81010040"}));
+}
+
+TEST(PlanOfWrites, KeepsBit30WhileThePdoIsOff) {
+  const auto wanted = with(kPresent, {{{0x1800, 2}, {1}}});
+  EXPECT_EQ(told(plan_writes(nullptr, kPresent, wanted)),
+            (Steps{"0x1800:1=810100C0", "0x1800:2=01", "0x1800:1=81010040"}));
+}
+
+TEST(PlanOfWrites, OpensAMappingByItsCountAloneWhereTheFamilyDoes) {
+  drive::Profile profile;
+  profile.rules.pdo.disable_by_count = true;
+  const auto wanted = with(kPresent, {{{0x1A00, 1}, {0x20, 0, 0x64, 0x60}}, {{0x1800, 2}, {254}}});
+  EXPECT_EQ(told(plan_writes(&profile, kPresent, wanted)),
+            (Steps{"0x1A00:0=00", "0x1A00:1=20006460", "0x1A00:0=01", "0x1800:2=FE"}));
+}
+
+TEST(PlanOfWrites, ClearsAMappingByItsCountAlone) {
+  const auto wanted = with(kPresent, {{{0x1800, 1}, {0x81, 0x01, 0, 0xC0}}, {{0x1A00, 0}, {0}}});
+  EXPECT_EQ(told(plan_writes(nullptr, kPresent, wanted)), (Steps{"0x1800:1=810100C0", "0x1A00:0=00"}));
+}
+
+TEST(PlanOfWrites, OpensAnAssignmentByItsCountToo) {
+  const Values present{{{0x1C12, 0}, {1}}, {{0x1C12, 1}, {0x01, 0x17}}};
+  const Values wanted{{{0x1C12, 0}, {1}}, {{0x1C12, 1}, {0x02, 0x17}}};
+  EXPECT_EQ(told(plan_writes(nullptr, present, wanted)),
+            (Steps{"0x1C12:0=00", "0x1C12:1=0217", "0x1C12:0=01"}));
+}
+
+TEST(PlanOfWrites, LeavesAloneWhatTheDriveDoesNotHave) {
+  const auto wanted = with(kPresent, {{{0x1800, 5}, {1, 0}}, {{0x1A00, 3}, {0x20, 0, 0x64, 0x60}}});
+  EXPECT_TRUE(plan_writes(nullptr, kPresent, wanted).empty());
+}
+
+}  // namespace
+}  // namespace servoctl::session
