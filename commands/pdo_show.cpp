@@ -136,11 +136,7 @@ Result<Value> run(Context& context, const Arguments&) {
     if (context.profile != nullptr) node.factory = session::default_pdo_values(*context.profile, node.node);
     if (node.pdos.empty())
       context.notices.push_back(fmt::format("node {} has no PDO parameters that can be read", node.node));
-    auto assigned = session::read_assigned_pdos(*context.session, context.profile, node.node);
-    if (assigned)
-      node.assigned = std::move(*assigned);
-    else
-      context.errors.push_back(assigned.error());
+    node.assigned = session::assigned_pdos(context.profile, node.values);
     all.push_back(std::move(node));
   }
   List out;

@@ -41,6 +41,10 @@ extern const Command kNmtReset;
 extern const Command kNmtResetComm;
 extern const Command kNmtWatch;
 extern const Command kPdoShow;
+extern const Command kPdoMap;
+extern const Command kPdoEnable;
+extern const Command kPdoDisable;
+extern const Command kPdoClear;
 extern const Command kTestComm;
 extern const Command kTestIo;
 extern const Command kTestJog;
@@ -135,6 +139,10 @@ std::span<const Command* const> registry() {
       &kNmtResetComm,
       &kNmtWatch,
       &kPdoShow,
+      &kPdoMap,
+      &kPdoEnable,
+      &kPdoDisable,
+      &kPdoClear,
       &kTestComm,
       &kTestIo,
       &kTestJog,
@@ -146,8 +154,8 @@ std::span<const Command* const> registry() {
       &kEdsCheck,
       &kRun,
       &kSim,
-      &kCompletion,
       &kHelp,
+      &kCompletion,
   };
   return kAll;
 }

@@ -180,6 +180,8 @@ void find_in(const fs::path& folder, std::vector<Family>& out) {
 
 }  // namespace
 
+bool Profile::is_generic() const { return rules.family.empty() || rules.family == kGenericFamily; }
+
 std::string canonical_id(std::string_view id) {
   std::string out;
   const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };

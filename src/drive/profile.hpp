@@ -32,6 +32,9 @@ struct Profile {
   /// The parameter that stands at this object.
   const od::Parameter* parameter(ObjectAddress object) const;
 
+  /// The rules are those of CiA 301 and 402 alone: what this drive does otherwise is not known.
+  bool is_generic() const;
+
   /// Builds the tables behind parameter(); called by load_profile().
   void build_index();
 

@@ -27,9 +27,11 @@ bool is_pdo(ObjectAddress object) { return canopen::pdo_at(object.index).has_val
 std::uint64_t number(ByteSpan data) { return load_le(data.first(std::min<std::size_t>(data.size(), 8))); }
 
 /// What is read of each PDO before its entries: the communication record, and the count of the mapping.
-std::vector<ObjectAddress> heads_of(const od::Dictionary& dictionary) {
+std::vector<ObjectAddress> heads_of(const drive::Profile& profile) {
   std::vector<ObjectAddress> out;
-  for (const auto& object : dictionary.objects()) {
+  for (const auto direction : {PdoDirection::receive, PdoDirection::transmit})
+    if (const auto list = assignment_of(&profile, direction)) out.push_back(*list);
+  for (const auto& object : profile.dictionary.objects()) {
     const auto place = canopen::pdo_at(object.index);
     if (!place) continue;
     for (const auto& entry : object.entries)
@@ -112,7 +114,8 @@ class Reading {
       std::vector<ObjectAddress> out;
       for (const auto& [object, data] : *values_[i]) {
         const auto place = canopen::pdo_at(object.index);
-        if (!place || !place->mapping || object.sub != 0 || number(data) > kMostEntries) continue;
+        const bool list = !place || place->mapping;
+        if (!list || object.sub != 0 || number(data) > kMostEntries) continue;
         for (std::uint8_t sub = 1; sub <= number(data); ++sub) out.push_back({object.index, sub});
       }
       return out;
@@ -125,8 +128,9 @@ class Reading {
     for (auto& values : values_)
       if (values)
         std::erase_if(*values, [&](const auto& value) {
-          const auto place = *canopen::pdo_at(value.first.index);
-          const ObjectAddress cob_id{Pdo{place.direction, place.number}.communication_index(), 1};
+          const auto place = canopen::pdo_at(value.first.index);
+          if (!place) return false;
+          const ObjectAddress cob_id{Pdo{place->direction, place->number}.communication_index(), 1};
           return dictionary.find(cob_id) != nullptr && values->count(cob_id) == 0;
         });
   }
@@ -184,7 +188,7 @@ Pdo pdo_of(const Values& values, PdoDirection direction, std::uint16_t pdo_numbe
 std::vector<Result<Values>> read_pdo_values(Session& session, const drive::Profile* profile,
                                             std::span<const std::uint8_t> nodes) {
   Reading reading(session, nodes);
-  const auto known = profile == nullptr ? std::vector<ObjectAddress>() : heads_of(profile->dictionary);
+  const auto known = profile == nullptr ? std::vector<ObjectAddress>() : heads_of(*profile);
   if (known.empty()) {
     reading.try_numbers(PdoDirection::receive);
     reading.try_numbers(PdoDirection::transmit);
@@ -242,22 +246,24 @@ Values default_pdo_values(const drive::Profile& profile, std::uint8_t node) {
   return out;
 }
 
-Result<std::vector<std::uint16_t>> read_assigned_pdos(Session& session, const drive::Profile* profile,
-                                                      std::uint8_t node) {
+std::vector<std::uint16_t> assigned_pdos(const drive::Profile* profile, const Values& values) {
   std::vector<std::uint16_t> out;
-  if (profile == nullptr) return out;
-  for (const auto& name : {profile->rules.pdo.assign_rpdo, profile->rules.pdo.assign_tpdo}) {
-    const auto target = name.empty() ? Result<drive::Target>{} : drive::resolve(profile, name);
-    if (name.empty() || !target) continue;
-    const auto count = session.upload(node, {target->address.index, 0});
-    if (!count) return tl::unexpected<Error>(count.error());
-    for (std::uint8_t sub = 1; sub <= std::min<std::uint64_t>(number(*count), kMostEntries); ++sub) {
-      const auto record = session.upload(node, {target->address.index, sub});
-      if (!record) return tl::unexpected<Error>(record.error());
-      out.push_back(static_cast<std::uint16_t>(number(*record)));
-    }
+  for (const auto direction : {PdoDirection::receive, PdoDirection::transmit}) {
+    const auto list = assignment_of(profile, direction);
+    const auto count = list ? number(values, *list).value_or(0) : 0;
+    for (std::uint8_t sub = 1; sub <= count && count <= kMostEntries; ++sub)
+      if (const auto record = number_as<std::uint16_t>(values, {list->index, sub})) out.push_back(*record);
   }
   return out;
+}
+
+std::optional<ObjectAddress> assignment_of(const drive::Profile* profile, PdoDirection direction) {
+  if (profile == nullptr) return std::nullopt;
+  const auto& rules = profile->rules.pdo;
+  const auto& name = direction == PdoDirection::receive ? rules.assign_rpdo : rules.assign_tpdo;
+  if (name.empty()) return std::nullopt;
+  const auto target = drive::resolve(profile, name);
+  return target ? std::optional(ObjectAddress{target->address.index, 0}) : std::nullopt;
 }
 
 }  // namespace servoctl::session

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -11,10 +12,11 @@
 
 namespace servoctl::session {
 
-/// Reads the PDO parameters of nodes, 1400h to 1BFFh, all nodes at the same time. Where the profile knows
-/// PDOs, those are read, and one the drive refuses is left out; without a profile (may be null), or with one
-/// that knows none, the numbers are tried from 1 until several in a row are not there. Of a mapping only the
-/// entries in use are read. A node that does not answer to the end has an error instead.
+/// Reads the PDO parameters of nodes, 1400h to 1BFFh and what assigns fixed PDOs, all nodes at the same time.
+/// Where the profile knows PDOs, those are read, and one the drive refuses is left out; without a profile
+/// (may be null), or with one that knows none, the numbers are tried from 1 until several in a row are not
+/// there. Of a mapping only the entries in use are read. A node that does not answer to the end has an error
+/// instead.
 std::vector<Result<Values>> read_pdo_values(Session& session, const drive::Profile* profile,
                                             std::span<const std::uint8_t> nodes);
 
@@ -33,10 +35,12 @@ Result<std::vector<canopen::Pdo>> read_pdos(Session& session, const drive::Profi
 /// manual states no default is left out.
 Values default_pdo_values(const drive::Profile& profile, std::uint8_t node);
 
-/// The mapping records that a drive without communication records exchanges: what the objects of
-/// PdoRules::assign_rpdo and assign_tpdo list. Empty for other families, or where nothing is assigned. Errors
-/// of the transfer, a refusal included.
-Result<std::vector<std::uint16_t>> read_assigned_pdos(Session& session, const drive::Profile* profile,
-                                                      std::uint8_t node);
+/// The mapping records that a drive without communication records exchanges, by these values: what the
+/// objects of PdoRules::assign_rpdo and assign_tpdo list. Empty for other families, or where nothing is
+/// assigned.
+std::vector<std::uint16_t> assigned_pdos(const drive::Profile* profile, const Values& values);
+
+/// The object that lists the assigned PDOs of a direction, sub-index 0; empty for families without.
+std::optional<ObjectAddress> assignment_of(const drive::Profile* profile, canopen::PdoDirection direction);
 
 }  // namespace servoctl::session

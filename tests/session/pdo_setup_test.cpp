@@ -180,11 +180,17 @@ TEST_F(PdoSetup, KnowsFixedPdosWithoutCobIdAndWhichOfThemAreAssigned) {
   EXPECT_EQ(rpdo.mapping_index(), 0x1702);
   EXPECT_FALSE(rpdo.is_valid());
   EXPECT_EQ(rpdo.bits(), 19U * 8);  // 530
-  EXPECT_TRUE(read_assigned_pdos(session(), &profile, 1)->empty());
+  EXPECT_TRUE(
+      assigned_pdos(&profile,
+                    read_pdo_values(session(), &profile, std::array<std::uint8_t, 1>{1}).front().value())
+          .empty());
   const SdoRequest assign[] = {
       {1, {0x1C12, 0}, Bytes{0}}, {1, {0x1C12, 1}, Bytes{2, 0x17}}, {1, {0x1C12, 0}, Bytes{1}}};
   for (const auto& written : session().transfer(assign)) ASSERT_TRUE(written) << written.error().message;
-  EXPECT_EQ(*read_assigned_pdos(session(), &profile, 1), std::vector<std::uint16_t>{0x1702});
+  EXPECT_EQ(
+      assigned_pdos(&profile,
+                    read_pdo_values(session(), &profile, std::array<std::uint8_t, 1>{1}).front().value()),
+      std::vector<std::uint16_t>{0x1702});
 }
 
 TEST_F(PdoSetup, FromTheFactoryIsWhatTheSimulatedDriveStartsWith) {

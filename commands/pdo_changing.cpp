@@ -1,0 +1,223 @@
+#include "commands/pdo_changing.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "canopen/nmt.hpp"
+#include "commands/change.hpp"
+#include "commands/pdo_check.hpp"
+#include "commands/pdo_report.hpp"
+#include "session/pdo_change.hpp"
+#include "session/pdo_setup.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using canopen::Pdo;
+using report::List;
+using report::Record;
+using report::Show;
+using report::Value;
+using session::Values;
+
+bool same_pdo(const Pdo& a, const Pdo& b) { return a.direction == b.direction && a.number == b.number; }
+
+/// What is to be done to one node.
+struct Job {
+  PresentPdos present;
+  WantedPdos wanted;
+  Values values;  ///< All that is to be written, stored copies included.
+  std::vector<session::PlannedWrite> plan;
+};
+
+/// One command's change of some nodes.
+class Changing {
+ public:
+  Changing(Context& context, const PdoEdit& edit, const PdoChanging& how)
+      : context_(&context), edit_(&edit), how_(how) {}
+
+  Result<Value> run() {
+    if (const auto planned = plan_all(); !planned) return tl::unexpected<Error>(planned.error());
+    if (context_->dry_run) return frames();
+    const bool any =
+        std::any_of(jobs_.begin(), jobs_.end(), [](const Job& job) { return !job.plan.empty(); });
+    if (any) {
+      if (const auto quiet = check_quiet(); !quiet) return tl::unexpected<Error>(quiet.error());
+      if (const auto yes = context_->confirm(question()); !yes) return tl::unexpected<Error>(yes.error());
+      // It may have taken long to answer.
+      if (const auto quiet = check_quiet(); !quiet) return tl::unexpected<Error>(quiet.error());
+    }
+    List out;
+    for (const auto& job : jobs_) {
+      out.emplace_back(carry_out(job));
+      if (!context_->errors.empty() && context_->errors.back().code == Errc::interrupted) break;
+    }
+    return Value(std::move(out));
+  }
+
+ private:
+  Result<void> plan_all() {
+    const auto read = session::read_pdo_values(*context_->session, context_->profile, context_->nodes);
+    for (std::size_t i = 0; i < read.size(); ++i) {
+      if (!read[i]) return tl::unexpected<Error>(read[i].error());
+      Job job{{context_->nodes[i], *read[i], session::pdos_of(*read[i])}, {}, {}, {}};
+      const auto wanted = (*edit_)(job.present);
+      if (!wanted) return tl::unexpected<Error>(wanted.error());
+      job.wanted = *wanted;
+      if (const auto fits = check(job); !fits) return fits;
+      if (const auto planned = plan(job); !planned) return planned;
+      jobs_.push_back(std::move(job));
+    }
+    return {};
+  }
+
+  Result<void> check(const Job& job) const {
+    auto all = job.present.pdos;
+    for (const auto& pdo : job.wanted.pdos)
+      for (auto& each : all)
+        if (same_pdo(each, pdo)) each = pdo;
+    for (const auto& pdo : job.wanted.pdos) {
+      const auto& now = *job.present.find(pdo);
+      if (pdo.entries != now.entries)
+        if (const auto fits = check_mapping(*context_->profile, pdo); !fits) return fits;
+      if (const auto fits = check_communication(*context_->profile, now, pdo, all); !fits) return fits;
+    }
+    return {};
+  }
+
+  Result<void> plan(Job& job) {
+    for (const auto& pdo : job.wanted.pdos)
+      for (auto& [object, data] : session::values_of(pdo, job.present.values))
+        job.values.emplace(object, data);
+    for (const auto& [object, data] : job.wanted.assignments) job.values.emplace(object, data);
+    const auto objects = job.values.size();
+    if (how_.keep) session::add_stored_copies(*context_->profile, job.present.node, job.values);
+    copies_ = copies_ || job.values.size() > objects;
+    const auto complete =
+        session::complete(*context_->session, job.present.node, job.present.values, job.values);
+    if (complete) job.plan = session::plan_writes(context_->profile, job.present.values, job.values);
+    return complete;
+  }
+
+  Result<void> check_quiet() const {
+    for (const auto& job : jobs_)
+      if (const auto quiet = session::check_not_energised(*context_->session, job.present.node); !quiet)
+        return quiet;
+    return {};
+  }
+
+  std::string question() const {
+    std::string pdos;
+    std::string nodes;
+    for (const auto& job : jobs_) nodes += fmt::format("{}{}", nodes.empty() ? "" : ", ", job.present.node);
+    for (const auto& pdo : jobs_.front().wanted.pdos)
+      pdos += (pdos.empty() ? "" : ", ") + canopen::name(pdo.direction, pdo.number);
+    return fmt::format("Change {} of node {}? Whoever sends or receives {} has to know.", pdos, nodes,
+                       jobs_.front().wanted.pdos.size() == 1 ? "it" : "them");
+  }
+
+  Value frames() const {
+    report::Table table;
+    table.columns = {{"node"}, {"object"}, {"name"}, {"frame"}};
+    const auto nmt = [&](std::uint8_t node, canopen::NmtCommand command, std::string_view when) {
+      table.rows.push_back({node, "NMT", fmt::format("{}{}", canopen::name(command), when),
+                            can::to_string(canopen::nmt_frame(command, node))});
+    };
+    for (const auto& job : jobs_) {
+      std::vector<Change> changes;
+      for (const auto& step : job.plan)
+        changes.push_back(
+            {job.present.node, drive::target_at(context_->profile, step.object), {}, step.data});
+      const bool pause = session::needs_pre_operational(context_->profile, job.plan);
+      if (pause) nmt(job.present.node, canopen::NmtCommand::enter_pre_operational, ", if it is operational");
+      const auto planned = planned_frames(changes);
+      for (const auto& row : std::get<report::Table>(planned.data()).rows) table.rows.push_back(row);
+      if (pause) nmt(job.present.node, canopen::NmtCommand::start, ", if it was operational");
+    }
+    return table;
+  }
+
+  Record carry_out(const Job& job) {
+    if (job.plan.empty()) {
+      if (!how_.keep) return record(job, "as wanted already, nothing was written", {});
+    }
+    const auto outcome =
+        session::change_pdos(*context_->session, context_->profile, job.present.node, job.present.values,
+                             job.values, {.keep = how_.keep, .unlock = how_.unlock});
+    for (const auto& notice : outcome.notices) context_->notices.push_back(notice);
+    if (!outcome.failure) return record(job, "written, read back", kept(outcome));
+    context_->errors.push_back(*outcome.failure);
+    if (outcome.all_written) return record(job, "written, read back; keeping it failed", {});
+    if (outcome.rolled_back) return record(job, "not changed: everything is as it was", {});
+    for (const auto object : outcome.astray) {
+      Error error;
+      error.code = Errc::negative;
+      error.node = job.present.node;
+      error.object = object;
+      error.message = fmt::format("node {}, object {}: it could not be shown to be as it was before",
+                                  job.present.node, to_string(object));
+      error.hint = "`pdo show` reads it when the node answers; a restart of the drive brings what is stored";
+      context_->errors.push_back(std::move(error));
+    }
+    return record(job, "failed; see the errors", {});
+  }
+
+  /// Whether it survives power-off: where a family has neither 1010h nor stored copies, no manual tells.
+  Value kept(const session::RestoreOutcome& outcome) {
+    if (outcome.kept == session::Kept::unknown) return {};
+    const bool told = context_->profile->rules.store.objects || copies_;
+    if (outcome.kept == session::Kept::yes && !told) {
+      context_->notices.emplace_back(
+          "whether this drive keeps its PDOs is not stated: `pdo show` after a power cycle tells");
+      return {};
+    }
+    return outcome.kept == session::Kept::yes;
+  }
+
+  Record record(const Job& job, std::string_view state, Value kept) const {
+    Record out{{"node", job.present.node}, {"result", state}, {"kept", std::move(kept)}};
+    List pdos;
+    for (const auto& pdo : job.wanted.pdos) {
+      const auto lines = pdo_lines(context_->profile, pdo, job.present.node, context_->chinese);
+      for (std::size_t i = 0; i < lines.size(); ++i)
+        out.push_back(
+            {i == 0 ? canopen::name(pdo.direction, pdo.number) : std::string(), lines[i], Show::text});
+      pdos.emplace_back(pdo_record(context_->profile, pdo, job.present.node, context_->chinese));
+    }
+    out.push_back({"pdos", std::move(pdos), Show::json});
+    return out;
+  }
+
+  Context* context_;
+  const PdoEdit* edit_;
+  PdoChanging how_;
+  bool copies_ = false;
+  std::vector<Job> jobs_;
+};
+
+}  // namespace
+
+const Pdo* PresentPdos::find(const Pdo& like) const {
+  const auto found =
+      std::find_if(pdos.begin(), pdos.end(), [&](const Pdo& pdo) { return same_pdo(pdo, like); });
+  return found == pdos.end() ? nullptr : &*found;
+}
+
+Result<Pdo> find_pdo(const PresentPdos& present, std::string_view name) {
+  const auto like = canopen::parse_pdo_name(name);
+  if (!like)
+    return fail(Errc::usage, fmt::format("'{}' names no PDO", name), "RPDO1, TPDO2: as the drive sees them");
+  if (const auto* found = present.find(*like)) return *found;
+  std::string there;
+  for (const auto& pdo : present.pdos)
+    there += (there.empty() ? "" : ", ") + canopen::name(pdo.direction, pdo.number);
+  return fail(Errc::usage,
+              fmt::format("node {} has no {}", present.node, canopen::name(like->direction, like->number)),
+              there.empty() ? "it has no PDOs that can be read" : "it has " + there);
+}
+
+Result<Value> change_pdos(Context& context, const PdoEdit& edit, const PdoChanging& how) {
+  return Changing(context, edit, how).run();
+}
+
+}  // namespace servoctl::commands

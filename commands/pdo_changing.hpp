@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "canopen/pdo.hpp"
+#include "commands/command.hpp"
+#include "session/write_plan.hpp"
+
+/// What the commands that change PDOs share.
+namespace servoctl::commands {
+
+/// The PDOs of one node as they are.
+struct PresentPdos {
+  std::uint8_t node = 0;
+  session::Values values;
+  std::vector<canopen::Pdo> pdos;
+
+  const canopen::Pdo* find(const canopen::Pdo& like) const;
+};
+
+/// The PDOs of one node as they are to be: only those that are to change.
+struct WantedPdos {
+  std::vector<canopen::Pdo> pdos;
+  session::Values assignments = {};  ///< Where the family assigns fixed PDOs.
+};
+
+/// Turns what is there into what is wanted. Errc::usage for what the node does not have.
+using PdoEdit = std::function<Result<WantedPdos>(const PresentPdos& present)>;
+
+/// How a change is carried out.
+struct PdoChanging {
+  bool keep = false;
+  bool unlock = false;
+};
+
+/// The PDO of this name at this node. Errc::usage, with those it has.
+Result<canopen::Pdo> find_pdo(const PresentPdos& present, std::string_view name);
+
+/// Reads the PDOs of all nodes, lets `edit` say what is wanted, and checks it, all before the first write;
+/// then changes node after node, each as a whole. With --dry-run the answer is the frames. Asks before it
+/// writes: whoever sends and receives these PDOs is concerned. Failures of a node go to `context.errors`.
+Result<report::Value> change_pdos(Context& context, const PdoEdit& edit, const PdoChanging& how);
+
+/// A mapped object as it is named on the command line: `statusword`, `0x6041:0`, with the number of bits
+/// where the dictionary does not tell it (`0x2105:1/16`), or a gap in an RPDO (`gap8`). Errc::usage.
+Result<canopen::PdoEntry> parse_mapped(const drive::Profile& profile, std::string_view text);
+
+/// A COB-ID's CAN-ID: `0x181`, or `$NODEID+0x180`. Errc::usage above 0x7FF.
+Result<std::uint32_t> parse_can_id(std::string_view text, std::uint8_t node);
+
+/// The CAN-ID of the pre-defined connection set (CiA 301, 7.3.5) for one of the first four PDOs, else empty.
+std::optional<std::uint32_t> predefined_can_id(const canopen::Pdo& pdo, std::uint8_t node);
+
+}  // namespace servoctl::commands

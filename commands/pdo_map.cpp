@@ -1,0 +1,161 @@
+#include <fmt/format.h>
+
+#include "base/duration.hpp"
+#include "base/number.hpp"
+#include "commands/change.hpp"
+#include "commands/pdo_changing.hpp"
+#include "commands/pdo_check.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using canopen::Pdo;
+using canopen::PdoEntry;
+
+constexpr Parameter kParameters[] = {
+    {.name = "pdo", .help = "RPDO1, TPDO2: as the drive sees it", .kind = Kind::text, .required = true},
+    {.name = "object",
+     .help = "what it carries, in order: statusword 0x6064, 0x2105:1/16 with its bits, gap8",
+     .kind = Kind::object,
+     .required = true,
+     .many = true},
+    {.name = "--type", .help = "transmission type: 1 at every SYNC, 255 by event", .kind = Kind::number},
+    {.name = "--inhibit", .help = "shortest time between two: 10ms", .kind = Kind::duration},
+    {.name = "--event", .help = "longest time between two: 100ms", .kind = Kind::duration},
+    {.name = "--cob-id", .help = "CAN-ID: 0x181, or $NODEID+0x180", .kind = Kind::text},
+    {.name = "--sync-start", .help = "SYNC counter from which it is sent", .kind = Kind::number},
+    kKeepOption,
+    kUnlockOption,
+};
+
+/// What the options say; what they do not say stays as it is.
+struct Options {
+  std::vector<PdoEntry> entries;
+  std::optional<std::uint8_t> type;
+  std::optional<std::uint16_t> inhibit;
+  std::optional<std::uint16_t> event;
+  std::optional<std::uint8_t> sync_start;
+  std::string cob_id;
+};
+
+Result<std::optional<std::uint8_t>> byte_option(const Arguments& arguments, std::string_view name) {
+  if (!arguments.has(name)) return std::optional<std::uint8_t>();
+  const auto number = parse_integer(arguments.text(name));
+  const auto value = number ? number->as_unsigned() : std::nullopt;
+  if (!value || *value > 255)
+    return fail(Errc::usage, fmt::format("{}: '{}' is no number from 0 to 255", name, arguments.text(name)));
+  return std::optional(static_cast<std::uint8_t>(*value));
+}
+
+/// A time in steps, exact, in 16 bits.
+Result<std::optional<std::uint16_t>> time_option(const Arguments& arguments, std::string_view name,
+                                                 Duration step) {
+  if (!arguments.has(name)) return std::optional<std::uint16_t>();
+  const auto time = parse_duration(arguments.text(name));
+  const auto most = std::chrono::duration<double, std::milli>(step * 0xFFFF);
+  if (!time || *time % step != Duration::zero() || *time / step > 0xFFFF)
+    return fail(Errc::usage, fmt::format("{}: '{}' is no time of this kind", name, arguments.text(name)),
+                fmt::format("in steps of {}, at most {:g} ms", to_string(step), most.count()));
+  return std::optional(static_cast<std::uint16_t>(*time / step));
+}
+
+Result<Options> parse_options(const drive::Profile& profile, const Arguments& arguments) {
+  Options out;
+  for (const auto& word : arguments.all("object")) {
+    const auto entry = parse_mapped(profile, word);
+    if (!entry) return tl::unexpected<Error>(entry.error());
+    out.entries.push_back(*entry);
+  }
+  const auto type = byte_option(arguments, "--type");
+  const auto sync_start = byte_option(arguments, "--sync-start");
+  const auto inhibit = time_option(arguments, "--inhibit", std::chrono::microseconds(100));
+  const auto event = time_option(arguments, "--event", std::chrono::milliseconds(1));
+  if (!type) return tl::unexpected<Error>(type.error());
+  if (!sync_start) return tl::unexpected<Error>(sync_start.error());
+  if (!inhibit) return tl::unexpected<Error>(inhibit.error());
+  if (!event) return tl::unexpected<Error>(event.error());
+  out.type = *type;
+  out.sync_start = *sync_start;
+  out.inhibit = *inhibit;
+  out.event = *event;
+  out.cob_id = arguments.text("--cob-id");
+  if (!out.cob_id.empty())
+    if (const auto can_id = parse_can_id(out.cob_id, 0); !can_id)
+      return tl::unexpected<Error>(can_id.error());
+  return out;
+}
+
+/// Valid, with a CAN-ID: the one wanted, the one it has, or that of the pre-defined connection set.
+Result<std::uint32_t> cob_id_of(const Pdo& pdo, const Options& options, std::uint8_t node) {
+  const auto flags = pdo.cob_id & ~(canopen::kPdoInvalid | canopen::kPdoCobIdMask);
+  auto can_id = pdo.cob_id & canopen::kPdoCobIdMask;
+  if (!options.cob_id.empty()) {
+    const auto wanted = parse_can_id(options.cob_id, node);
+    if (!wanted) return wanted;
+    can_id = *wanted;
+  } else if (can_id == 0) {
+    const auto usual = predefined_can_id(pdo, node);
+    if (!usual)
+      return fail(Errc::usage, fmt::format("{} has no CAN-ID yet", canopen::name(pdo.direction, pdo.number)),
+                  "say one: --cob-id 0x3A0");
+    can_id = *usual;
+  }
+  return flags | can_id;
+}
+
+Result<void> check(Context& context, const Arguments& arguments) {
+  const auto options = parse_options(*context.profile, arguments);
+  if (!options) return tl::unexpected<Error>(options.error());
+  auto pdo = canopen::parse_pdo_name(arguments.text("pdo"));
+  if (!pdo) return tl::unexpected<Error>(find_pdo({}, arguments.text("pdo")).error());
+  pdo->entries = options->entries;
+  return check_mapping(*context.profile, *pdo);
+}
+
+Result<report::Value> run(Context& context, const Arguments& arguments) {
+  if (const auto fits = check(context, arguments); !fits) return tl::unexpected<Error>(fits.error());
+  const auto options = parse_options(*context.profile, arguments);
+  if (!options) return tl::unexpected<Error>(options.error());
+  const bool absolute = !options->cob_id.empty() && options->cob_id.front() != '$';
+  if (absolute && context.nodes.size() > 1)
+    return fail(Errc::usage, "one CAN-ID for several nodes is a conflict", "--cob-id '$NODEID+0x180'");
+  const PdoEdit edit = [&](const PresentPdos& present) -> Result<WantedPdos> {
+    auto pdo = find_pdo(present, arguments.text("pdo"));
+    if (!pdo) return tl::unexpected<Error>(pdo.error());
+    pdo->entries = options->entries;
+    if (options->type) pdo->type = *options->type;
+    if (options->inhibit) pdo->inhibit = options->inhibit;
+    if (options->event) pdo->event = options->event;
+    if (options->sync_start) pdo->sync_start = options->sync_start;
+    const bool linked = present.values.count({pdo->communication_index(), 1}) > 0;
+    if (!linked && !options->cob_id.empty()) return fail(Errc::usage, "this drive's PDOs have no COB-ID");
+    if (linked) {
+      const auto cob_id = cob_id_of(*pdo, *options, present.node);
+      if (!cob_id) return tl::unexpected<Error>(cob_id.error());
+      pdo->cob_id = *cob_id;
+    }
+    return WantedPdos{{std::move(*pdo)}};
+  };
+  return change_pdos(context, edit, {.keep = arguments.has("--keep"), .unlock = arguments.has("--unlock")});
+}
+
+}  // namespace
+
+extern const Command kPdoMap;
+const Command kPdoMap{
+    .path = "pdo map",
+    .summary = "Say what a PDO carries, and when",
+    .details =
+        "Everything is checked before the first frame; then the PDO is switched off, mapped, switched on and "
+        "read "
+        "back, by the family's own procedure. When the drive refuses a step, the PDO is put back as it was. "
+        "What is "
+        "not said stays as it is. Not while the drive is energised. --dry-run shows the frames.",
+    .parameters = kParameters,
+    .needs = Needs::node | Needs::dictionary,
+    .effect = Effect::stores,
+    .run = run,
+    .check = check,
+};
+
+}  // namespace servoctl::commands

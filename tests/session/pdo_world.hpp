@@ -1,0 +1,148 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "canopen/sdo_abort.hpp"
+#include "session/pdo_change.hpp"
+#include "session/pdo_setup.hpp"
+#include "sim/sim_bus.hpp"
+#include "sim/sim_drive.hpp"
+
+namespace servoctl::session {
+
+/// What goes wrong with one of the writes, counted from 0; -1: nothing.
+struct WriteTrouble {
+  int refused = -1;
+  int silent = -1;     ///< The drive is gone from here on.
+  int cancelled = -1;  ///< Ctrl-C after it.
+  bool refuses_empty_entries = false;
+};
+
+/// A simulated bus that sees the SDO writes to a drive.
+class PdoBus final : public can::Bus {
+ public:
+  PdoBus(sim::SimBus& bus, sim::SimDrive& drive, WriteTrouble trouble)
+      : bus_(&bus), drive_(&drive), trouble_(trouble) {}
+
+  TimePoint now() const override { return bus_->now(); }
+  TimePoint next_event() const override { return bus_->next_event(); }
+  Result<void> send(const can::Frame& frame) override {
+    const bool write = frame.id == 0x600U + drive_->node() && (frame.data[0] & 0xE0U) == 0x20;
+    const bool nmt = frame.id == 0;
+    if (write || nmt) sent.push_back(can::to_string(frame));
+    if (!write) return bus_->send(frame);
+    const int number = writes++;
+    if (number == trouble_.silent) drive_->misbehaviour().silent = true;
+    if (number != trouble_.refused && !(trouble_.refuses_empty_entries && is_empty_entry(frame)))
+      return bus_->send(frame);
+    auto refusal = can::parse_frame("580#8000000000000406").value();
+    refusal.id += drive_->node();
+    std::copy_n(frame.data.begin() + 1, 3, refusal.data.begin() + 1);
+    refusal_ = refusal;
+    return {};
+  }
+  Result<std::optional<can::Frame>> receive(TimePoint deadline) override {
+    if (refusal_) return std::exchange(refusal_, std::nullopt);
+    return bus_->receive(deadline);
+  }
+  bool is_cancelled() const { return trouble_.cancelled >= 0 && writes > trouble_.cancelled; }
+
+  std::vector<std::string> sent;  ///< SDO writes and NMT commands.
+  int writes = 0;
+
+ private:
+  static bool is_empty_entry(const can::Frame& frame) {
+    const auto place = canopen::pdo_at(static_cast<std::uint16_t>(frame.data[1] | frame.data[2] << 8U));
+    return place && place->mapping && frame.data[3] > 0 &&
+           std::all_of(frame.data.begin() + 4, frame.data.begin() + 8, [](auto byte) { return byte == 0; });
+  }
+
+  sim::SimBus* bus_;
+  sim::SimDrive* drive_;
+  WriteTrouble trouble_;
+  std::optional<can::Frame> refusal_;
+};
+
+/// One simulated drive of a family, Operational, whose PDOs are changed by the client's own idea of the
+/// family.
+class PdoWorld {
+ public:
+  PdoWorld(drive::Profile drive_profile, std::uint8_t node)
+      : profile_(std::move(drive_profile)), drive_(profile_, node, memory_, "1"), client_profile(&profile_) {
+    bus_.attach(drive_);
+    auto quiet = session({});
+    (void)quiet.wait([] { return false; }, quiet.now() + std::chrono::seconds(1));
+    (void)quiet.send(canopen::nmt_frame(canopen::NmtCommand::start, node));
+  }
+
+  static drive::Profile profile_of(std::string_view family) {
+    const std::filesystem::path folders[] = {std::filesystem::path(SERVOCTL_SOURCE_DIR) / "eds"};
+    return drive::load_profile(family, folders).value();
+  }
+
+  sim::SimDrive& drive() { return drive_; }
+  const drive::Profile& profile() const { return profile_; }
+
+  /// What the drive holds, asked on a quiet bus; entries in use only.
+  Values read() {
+    drive_.misbehaviour() = {};
+    auto quiet = session({});
+    const auto node = drive_.node();
+    return read_pdo_values(quiet, &profile_, std::span(&node, 1)).front().value();
+  }
+
+  /// Writes these PDOs over what is there.
+  RestoreOutcome change(const std::vector<canopen::Pdo>& wanted, WriteTrouble trouble = {},
+                        const Values& assignments = {}) {
+    auto present = read();
+    Values values = assignments;
+    for (const auto& pdo : wanted)
+      for (auto& [object, data] : values_of(pdo, present)) values.emplace(object, data);
+    auto troubled = session(trouble);
+    EXPECT_TRUE(complete(troubled, drive_.node(), present, values));
+    const auto* bus = last_bus_;
+    auto outcome = change_pdos(troubled, client_profile, drive_.node(), present, values, {});
+    sent = bus->sent;
+    writes = bus->writes;
+    return outcome;
+  }
+
+  /// A PDO of the drive as it is, to be changed.
+  canopen::Pdo pdo(std::string_view name) {
+    const auto like = canopen::parse_pdo_name(name).value();
+    for (auto& each : pdos_of(read()))
+      if (each.direction == like.direction && each.number == like.number) return each;
+    ADD_FAILURE() << name;
+    return like;
+  }
+
+  /// Refuses and cancels as told; the bus lives as long as the session.
+  Session session(WriteTrouble trouble) {
+    auto bus = std::make_unique<PdoBus>(bus_, drive_, trouble);
+    auto* seen = last_bus_ = bus.get();
+    Session out(std::move(bus), "sim", {});
+    out.options().cancelled = [seen] { return seen->is_cancelled(); };
+    return out;
+  }
+
+ private:
+  drive::Profile profile_;
+  sim::SimBus bus_{sim::SimBus::Clock::virtual_time};
+  sim::Memory memory_;
+  sim::SimDrive drive_;
+  PdoBus* last_bus_ = nullptr;
+
+ public:
+  const drive::Profile* client_profile;
+  std::vector<std::string> sent;
+  int writes = 0;
+};
+
+inline canopen::PdoEntry entry(std::uint32_t mapping) { return canopen::parse_pdo_entry(mapping); }
+
+}  // namespace servoctl::session
