@@ -52,7 +52,13 @@ Result<canopen::PdoEntry> parse_mapped(const drive::Profile& profile, std::strin
 /// A COB-ID's CAN-ID: `0x181`, or `$NODEID+0x180`. Errc::usage above 0x7FF.
 Result<std::uint32_t> parse_can_id(std::string_view text, std::uint8_t node);
 
-/// The CAN-ID of the pre-defined connection set (CiA 301, 7.3.5) for one of the first four PDOs, else empty.
-std::optional<std::uint32_t> predefined_can_id(const canopen::Pdo& pdo, std::uint8_t node);
+/// Makes it valid, with a CAN-ID: the one it has, or that of the pre-defined connection set (CiA 301, 7.3.5).
+/// Errc::usage where neither is known.
+Result<void> switch_on(canopen::Pdo& pdo, std::uint8_t node);
+
+/// Puts the mapping of a PDO without COB-ID among those its family exchanges, or takes it out, beside what
+/// `out` and the drive assign already. Errc::usage where there is no room, or nothing assigns it.
+Result<void> assign_pdo(const drive::Profile& profile, const PresentPdos& present, const canopen::Pdo& pdo,
+                        bool add, session::Values& out);
 
 }  // namespace servoctl::commands

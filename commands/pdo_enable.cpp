@@ -1,9 +1,7 @@
 #include <fmt/format.h>
-#include <algorithm>
 
 #include "commands/change.hpp"
 #include "commands/pdo_changing.hpp"
-#include "session/pdo_setup.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -18,35 +16,6 @@ constexpr Parameter kParameters[] = {
 
 enum class Action : std::uint8_t { enable, disable, clear };
 
-/// Adds a mapping record to the list of a direction, or takes it out.
-Result<void> assign(const Context& context, const PresentPdos& present, const Pdo& pdo, bool add,
-                    session::Values& out) {
-  const auto list = session::assignment_of(context.profile, pdo.direction);
-  if (!list || present.values.count(*list) == 0)
-    return fail(Errc::usage, fmt::format("{} has no COB-ID, and nothing assigns it",
-                                         canopen::name(pdo.direction, pdo.number)));
-  auto merged = present.values;
-  for (const auto& [object, data] : out) merged.insert_or_assign(object, data);
-  std::vector<std::uint16_t> records;
-  for (const auto record : session::assigned_pdos(context.profile, merged))
-    if (canopen::pdo_at(record) && canopen::pdo_at(record)->direction == pdo.direction &&
-        record != pdo.mapping_index())
-      records.push_back(record);
-  if (add) records.push_back(pdo.mapping_index());
-  std::size_t room = 0;
-  if (const auto* object = context.profile->dictionary.object(list->index))
-    room = object->entries.empty() ? 0 : object->entries.back().address.sub;
-  if (records.size() > room)
-    return fail(Errc::usage,
-                fmt::format("{} cannot be assigned beside the others: there is room for {}",
-                            canopen::name(pdo.direction, pdo.number), room),
-                "`pdo show` tells what is assigned; `pdo disable` it first");
-  out.insert_or_assign(*list, store_le(records.size(), 1));
-  for (std::size_t i = 0; i < records.size(); ++i)
-    out.insert_or_assign({list->index, static_cast<std::uint8_t>(i + 1)}, store_le(records[i], 2));
-  return {};
-}
-
 Result<void> act(const Context& context, const PresentPdos& present, Action action, Pdo pdo,
                  WantedPdos& out) {
   const bool linked = present.values.count({pdo.communication_index(), 1}) > 0;
@@ -54,17 +23,13 @@ Result<void> act(const Context& context, const PresentPdos& present, Action acti
   if (action == Action::enable && pdo.entries.empty())
     return fail(Errc::usage, name + " carries nothing yet", fmt::format("`pdo map {} OBJECT…`", name));
   if (action == Action::clear) pdo.entries.clear();
-  if (linked && action == Action::enable) {
-    pdo.cob_id &= ~canopen::kPdoInvalid;
-    if ((pdo.cob_id & canopen::kPdoCobIdMask) == 0) {
-      const auto usual = predefined_can_id(pdo, present.node);
-      if (!usual) return fail(Errc::usage, name + " has no CAN-ID yet", "`pdo map … --cob-id` gives it one");
-      pdo.cob_id |= *usual;
-    }
-  }
+  if (linked && action == Action::enable)
+    if (const auto on = switch_on(pdo, present.node); !on) return on;
   if (linked && action != Action::enable) pdo.cob_id |= canopen::kPdoInvalid;
   if (!linked)
-    if (const auto done = assign(context, present, pdo, action == Action::enable, out.assignments); !done)
+    if (const auto done =
+            assign_pdo(*context.profile, present, pdo, action == Action::enable, out.assignments);
+        !done)
       return done;
   out.pdos.push_back(std::move(pdo));
   return {};

@@ -85,24 +85,6 @@ Result<Options> parse_options(const drive::Profile& profile, const Arguments& ar
   return out;
 }
 
-/// Valid, with a CAN-ID: the one wanted, the one it has, or that of the pre-defined connection set.
-Result<std::uint32_t> cob_id_of(const Pdo& pdo, const Options& options, std::uint8_t node) {
-  const auto flags = pdo.cob_id & ~(canopen::kPdoInvalid | canopen::kPdoCobIdMask);
-  auto can_id = pdo.cob_id & canopen::kPdoCobIdMask;
-  if (!options.cob_id.empty()) {
-    const auto wanted = parse_can_id(options.cob_id, node);
-    if (!wanted) return wanted;
-    can_id = *wanted;
-  } else if (can_id == 0) {
-    const auto usual = predefined_can_id(pdo, node);
-    if (!usual)
-      return fail(Errc::usage, fmt::format("{} has no CAN-ID yet", canopen::name(pdo.direction, pdo.number)),
-                  "say one: --cob-id 0x3A0");
-    can_id = *usual;
-  }
-  return flags | can_id;
-}
-
 Result<void> check(Context& context, const Arguments& arguments) {
   const auto options = parse_options(*context.profile, arguments);
   if (!options) return tl::unexpected<Error>(options.error());
@@ -129,11 +111,13 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
     if (options->sync_start) pdo->sync_start = options->sync_start;
     const bool linked = present.values.count({pdo->communication_index(), 1}) > 0;
     if (!linked && !options->cob_id.empty()) return fail(Errc::usage, "this drive's PDOs have no COB-ID");
-    if (linked) {
-      const auto cob_id = cob_id_of(*pdo, *options, present.node);
-      if (!cob_id) return tl::unexpected<Error>(cob_id.error());
-      pdo->cob_id = *cob_id;
+    if (!options->cob_id.empty()) {
+      const auto can_id = parse_can_id(options->cob_id, present.node);
+      if (!can_id) return tl::unexpected<Error>(can_id.error());
+      pdo->cob_id = (pdo->cob_id & ~canopen::kPdoCobIdMask) | *can_id;
     }
+    if (linked)
+      if (const auto on = switch_on(*pdo, present.node); !on) return tl::unexpected<Error>(on.error());
     return WantedPdos{{std::move(*pdo)}};
   };
   return change_pdos(context, edit, {.keep = arguments.has("--keep"), .unlock = arguments.has("--unlock")});

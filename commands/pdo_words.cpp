@@ -6,10 +6,12 @@
 #include "commands/pdo_changing.hpp"
 #include "commands/pdo_check.hpp"
 #include "drive/naming.hpp"
+#include "session/pdo_setup.hpp"
 
 namespace servoctl::commands {
 namespace {
 
+using canopen::Pdo;
 using canopen::PdoEntry;
 
 /// The data type that stands for a gap of so many bits (CiA 301, 7.4.8.2).
@@ -64,10 +66,42 @@ Result<std::uint32_t> parse_can_id(std::string_view text, std::uint8_t node) {
   return static_cast<std::uint32_t>(can_id);
 }
 
-std::optional<std::uint32_t> predefined_can_id(const canopen::Pdo& pdo, std::uint8_t node) {
-  if (pdo.number > 4) return std::nullopt;
+Result<void> switch_on(Pdo& pdo, std::uint8_t node) {
+  pdo.cob_id &= ~canopen::kPdoInvalid;
+  if ((pdo.cob_id & canopen::kPdoCobIdMask) != 0) return {};
+  if (pdo.number > 4)
+    return fail(Errc::usage, fmt::format("{} has no CAN-ID yet", canopen::name(pdo.direction, pdo.number)),
+                "say one: `pdo map … --cob-id 0x3A0`");
   const auto first = pdo.direction == canopen::PdoDirection::receive ? 0x200U : 0x180U;
-  return first + 0x100U * (pdo.number - 1U) + node;
+  pdo.cob_id |= first + 0x100U * (pdo.number - 1U) + node;
+  return {};
+}
+
+Result<void> assign_pdo(const drive::Profile& profile, const PresentPdos& present, const Pdo& pdo, bool add,
+                        session::Values& out) {
+  const auto list = session::assignment_of(&profile, pdo.direction);
+  const auto name = canopen::name(pdo.direction, pdo.number);
+  if (!list || present.values.count(*list) == 0)
+    return fail(Errc::usage, name + " has no COB-ID, and nothing assigns it");
+  auto merged = present.values;
+  for (const auto& [object, data] : out) merged.insert_or_assign(object, data);
+  std::vector<std::uint16_t> records;
+  for (const auto record : session::assigned_pdos(&profile, merged)) {
+    const auto place = canopen::pdo_at(record);
+    if (place && place->direction == pdo.direction && record != pdo.mapping_index())
+      records.push_back(record);
+  }
+  if (add) records.push_back(pdo.mapping_index());
+  const auto* object = profile.dictionary.object(list->index);
+  const std::size_t room = object == nullptr ? 0 : object->entries.back().address.sub;
+  if (records.size() > room)
+    return fail(Errc::usage,
+                fmt::format("{} cannot be assigned beside the others: there is room for {}", name, room),
+                "`pdo show` tells what is assigned; `pdo disable` it first");
+  out.insert_or_assign(*list, store_le(records.size(), 1));
+  for (std::size_t i = 0; i < records.size(); ++i)
+    out.insert_or_assign({list->index, static_cast<std::uint8_t>(i + 1)}, store_le(records[i], 2));
+  return {};
 }
 
 }  // namespace servoctl::commands

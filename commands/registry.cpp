@@ -45,6 +45,9 @@ extern const Command kPdoMap;
 extern const Command kPdoEnable;
 extern const Command kPdoDisable;
 extern const Command kPdoClear;
+extern const Command kPdoPreset;
+extern const Command kPdoApply;
+extern const Command kPdoSave;
 extern const Command kTestComm;
 extern const Command kTestIo;
 extern const Command kTestJog;
@@ -143,6 +146,9 @@ std::span<const Command* const> registry() {
       &kPdoEnable,
       &kPdoDisable,
       &kPdoClear,
+      &kPdoPreset,
+      &kPdoApply,
+      &kPdoSave,
       &kTestComm,
       &kTestIo,
       &kTestJog,

@@ -12,6 +12,7 @@
 #include "base/object_address.hpp"
 #include "base/result.hpp"
 #include "drive/cia402.hpp"
+#include "drive/pdo_recipe.hpp"
 #include "drive/scaling.hpp"
 
 namespace servoctl::drive {
@@ -81,7 +82,8 @@ struct PdoRules {
   bool whole_bytes = false;
   std::vector<std::int64_t> refused_types;    ///< Transmission types the drive does not know.
   std::map<std::int64_t, std::string> types;  ///< What vendor-specific types mean here.
-  std::string assign_rpdo;                    ///< Object that chooses among fixed PDOs (CoE 1C12h, 1C13h).
+  std::vector<PdoPreset> presets;
+  std::string assign_rpdo;  ///< Object that chooses among fixed PDOs (CoE 1C12h, 1C13h).
   std::string assign_tpdo;
 };
 

@@ -1,6 +1,7 @@
 #include "drive/rules_reader.hpp"
 
 #include "base/number.hpp"
+#include "drive/pdo_recipe_reader.hpp"
 
 namespace servoctl::drive {
 namespace {
@@ -137,6 +138,9 @@ Result<void> read_pdo(const TableReader& reader, Rules& rules) {
     }
     return true;
   };
+  const auto presets = [&](const toml::node& node) {
+    return get_list(node, out.presets, [](const toml::node& n, PdoPreset& o) { return drive::get(n, o); });
+  };
   return reader.read({{"cob_id_bits", into(out.cob_id_bits)},
                       {"parameters", [&](const auto& n) { return get(n, out.parameters); }},
                       {"mapping", [&](const auto& n) { return get(n, out.mapping); }},
@@ -147,6 +151,7 @@ Result<void> read_pdo(const TableReader& reader, Rules& rules) {
                       {"whole_bytes", into(out.whole_bytes)},
                       {"refused_types", into(out.refused_types)},
                       {"types", types},
+                      {"preset", presets},
                       {"assign_rpdo", into(out.assign_rpdo)},
                       {"assign_tpdo", into(out.assign_tpdo)}});
 }

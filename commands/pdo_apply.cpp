@@ -1,0 +1,132 @@
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "base/file.hpp"
+#include "base/text.hpp"
+#include "commands/backup_file.hpp"
+#include "commands/change.hpp"
+#include "commands/pdo_recipes.hpp"
+#include "od/eds.hpp"
+#include "session/pdo_setup.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using session::Values;
+
+constexpr Parameter kParameters[] = {
+    {.name = "file",
+     .help = "pdos.toml or .json of `pdo save`, a backup, an .eds or .dcf",
+     .kind = Kind::file,
+     .required = true},
+    kKeepOption,
+    kUnlockOption,
+};
+
+/// What a dictionary file gives the objects: the configured value of a DCF, else the default.
+Values values_of(const od::Dictionary& dictionary, std::uint8_t node) {
+  Values out;
+  for (const auto& object : dictionary.objects())
+    for (const auto& entry : object.entries) {
+      const auto& value = entry.configured ? entry.configured : entry.default_value;
+      const bool wanted = canopen::pdo_at(object.index).has_value();
+      if (!wanted || !value) continue;
+      if (auto data = od::encode(entry.type, value->for_node(node)))
+        out.emplace(entry.address, std::move(*data));
+    }
+  return out;
+}
+
+/// The PDOs of values that belong to one node, as recipes for any.
+drive::PdoFile recipes_of(const drive::Profile* profile, std::string family, const Values& values,
+                          std::uint8_t node) {
+  drive::PdoFile out;
+  out.family = std::move(family);
+  const PresentPdos source{node, values, session::pdos_of(values)};
+  for (const auto& pdo : source.pdos) out.pdos.push_back(recipe_of(profile, source, pdo));
+  return out;
+}
+
+Result<drive::PdoFile> from_backup(const Context& context, const std::filesystem::path& path) {
+  const auto backup = read_backup(path);
+  if (!backup) return tl::unexpected<Error>(backup.error());
+  Values values;
+  for (const auto& entry : backup->entries)
+    if (entry.bytes) values.emplace(entry.object, *entry.bytes);
+  return recipes_of(context.profile, backup->family, values, backup->identity.node);
+}
+
+Result<drive::PdoFile> from_dictionary(const Context& context, const std::filesystem::path& path) {
+  const auto text = read_file(path);
+  if (!text) return tl::unexpected<Error>(text.error());
+  const auto file = od::read_eds(*text, path.string());
+  if (!file) return tl::unexpected<Error>(file.error());
+  if (file->error_count() > 0)
+    return fail(Errc::file, fmt::format("{} has {} errors", path.string(), file->error_count()),
+                fmt::format("`eds check {}` shows them", path.string()));
+  // An EDS is of no node: any node-ID does, as it is taken out again.
+  const std::uint8_t node = file->node_id == 0 ? 127 : file->node_id;
+  return recipes_of(context.profile, {}, values_of(file->dictionary, node), node);
+}
+
+Result<drive::PdoFile> read(const Context& context, const std::filesystem::path& path) {
+  const auto extension = lower(path.extension().string());
+  if (extension == ".eds" || extension == ".dcf") return from_dictionary(context, path);
+  if (extension == ".toml") return read_pdo_file(path);
+  const auto text = read_file(path);
+  if (!text) return tl::unexpected<Error>(text.error());
+  return text->find("\"servoctl_backup\"") != std::string::npos ? from_backup(context, path)
+                                                                : read_pdo_file(path);
+}
+
+Result<drive::PdoFile> fitting(const Context& context, const Arguments& arguments) {
+  const std::filesystem::path path(arguments.text("file"));
+  auto file = read(context, path);
+  if (!file) return file;
+  if (file->pdos.empty()) return fail(Errc::negative, fmt::format("{} says nothing of PDOs", path.string()));
+  if (!file->family.empty() && !equals_nocase(file->family, context.profile->family))
+    return fail(Errc::refused,
+                fmt::format("{} is of {}, not of {}", path.string(), file->family, context.profile->family),
+                "an edited copy without the family, or with this one, is taken");
+  return file;
+}
+
+Result<void> check(Context& context, const Arguments& arguments) {
+  if (const auto file = fitting(context, arguments); !file) return tl::unexpected<Error>(file.error());
+  return {};
+}
+
+Result<report::Value> run(Context& context, const Arguments& arguments) {
+  const auto file = fitting(context, arguments);
+  if (!file) return tl::unexpected<Error>(file.error());
+  const PdoEdit edit = [&](const PresentPdos& present) -> Result<WantedPdos> {
+    auto wanted = follow(*context.profile, present, file->pdos);
+    if (wanted) return wanted;
+    auto error = wanted.error();
+    error.message = fmt::format("{}{}: {}", arguments.text("file"),
+                                error.line ? fmt::format(":{}", *error.line) : std::string(), error.message);
+    return tl::unexpected<Error>(std::move(error));
+  };
+  return change_pdos(context, edit, {.keep = arguments.has("--keep"), .unlock = arguments.has("--unlock")});
+}
+
+}  // namespace
+
+extern const Command kPdoApply;
+const Command kPdoApply{
+    .path = "pdo apply",
+    .summary = "Put the PDOs of a file into a drive",
+    .details =
+        "All PDOs of the file are changed as a whole, or none. It may be a file of `pdo save`, a backup of a "
+        "drive "
+        "of the family, or an EDS or DCF. CAN-IDs that contain the node-ID follow the node. PDOs the file "
+        "does not "
+        "name stay as they are.",
+    .parameters = kParameters,
+    .needs = Needs::node | Needs::dictionary,
+    .effect = Effect::stores,
+    .run = run,
+    .check = check,
+};
+
+}  // namespace servoctl::commands

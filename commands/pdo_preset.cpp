@@ -1,0 +1,62 @@
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "base/text.hpp"
+#include "commands/change.hpp"
+#include "commands/pdo_recipes.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+constexpr Parameter kParameters[] = {
+    {.name = "preset", .help = "pp, pv, pt, home, ip, csp, csv, cst: what the family has", .required = true},
+    kKeepOption,
+    kUnlockOption,
+};
+
+Result<const drive::PdoPreset*> preset_of(const Context& context, const Arguments& arguments) {
+  const auto& presets = context.profile->rules.pdo.presets;
+  const auto word = arguments.text("preset");
+  const auto found = std::find_if(presets.begin(), presets.end(),
+                                  [&](const drive::PdoPreset& p) { return equals_nocase(p.name, word); });
+  if (found != presets.end()) return &*found;
+  std::vector<std::string> names;
+  for (const auto& preset : presets) names.push_back(preset.name);
+  return fail(Errc::usage,
+              fmt::format("the manual of {} recommends no mapping '{}'", context.profile->family, word),
+              names.empty() ? "it recommends none; `pdo map` makes one" : "there are " + one_of(names));
+}
+
+Result<void> check(Context& context, const Arguments& arguments) {
+  if (const auto preset = preset_of(context, arguments); !preset)
+    return tl::unexpected<Error>(preset.error());
+  return {};
+}
+
+Result<report::Value> run(Context& context, const Arguments& arguments) {
+  const auto preset = preset_of(context, arguments);
+  if (!preset) return tl::unexpected<Error>(preset.error());
+  const PdoEdit edit = [&](const PresentPdos& present) {
+    return follow(*context.profile, present, (*preset)->pdos);
+  };
+  return change_pdos(context, edit, {.keep = arguments.has("--keep"), .unlock = arguments.has("--unlock")});
+}
+
+}  // namespace
+
+extern const Command kPdoPreset;
+const Command kPdoPreset{
+    .path = "pdo preset",
+    .summary = "Map the PDOs as the manual recommends for a mode",
+    .details =
+        "What the family's manual prints for profile position (pp), profile velocity (pv), torque (pt), "
+        "homing "
+        "(home) and the others; PDOs it does not name stay as they are. As safe as `pdo map`.",
+    .parameters = kParameters,
+    .needs = Needs::node | Needs::dictionary,
+    .effect = Effect::stores,
+    .run = run,
+    .check = check,
+};
+
+}  // namespace servoctl::commands

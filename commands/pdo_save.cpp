@@ -1,0 +1,60 @@
+#include <fmt/format.h>
+
+#include "base/file.hpp"
+#include "base/text.hpp"
+#include "commands/pdo_recipes.hpp"
+#include "commands/pdo_report.hpp"
+#include "session/pdo_setup.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+constexpr Parameter kParameters[] = {
+    {.name = "file", .help = "pdos.toml or pdos.json", .kind = Kind::file, .required = true},
+};
+
+Result<report::Value> run(Context& context, const Arguments& arguments) {
+  const std::filesystem::path path(arguments.text("file"));
+  const auto extension = lower(path.extension().string());
+  if (extension != ".toml" && extension != ".json")
+    return fail(Errc::usage, fmt::format("'{}': a file of PDOs ends in .toml or .json", path.string()));
+  if (context.nodes.size() != 1)
+    return fail(Errc::usage, "the PDOs of one node go into one file", "say -n 1");
+  const auto node = context.nodes.front();
+  const auto read = session::read_pdo_values(*context.session, context.profile, context.nodes).front();
+  if (!read) return tl::unexpected<Error>(read.error());
+  const PresentPdos present{node, *read, session::pdos_of(*read)};
+  drive::PdoFile file;
+  if (context.profile != nullptr) file.family = context.profile->family;
+  std::vector<std::vector<std::string>> names;
+  for (const auto& pdo : present.pdos) {
+    file.pdos.push_back(recipe_of(context.profile, present, pdo));
+    names.emplace_back();
+    for (const auto& entry : pdo.entries)
+      names.back().push_back(mapped_name(context.profile, entry, context.chinese));
+  }
+  const auto text = extension == ".json" ? pdo_json(file) : pdo_toml(file, names);
+  if (!context.dry_run)
+    if (const auto written = write_file_atomically(path, text); !written)
+      return tl::unexpected<Error>(written.error());
+  return report::Value(report::Record{
+      {"node", node}, {"file", path.string()}, {"pdos", file.pdos.size(), report::Show::everywhere, "PDOs"}});
+}
+
+}  // namespace
+
+extern const Command kPdoSave;
+const Command kPdoSave{
+    .path = "pdo save",
+    .summary = "Write the PDOs of a drive into a file",
+    .details =
+        "TOML, to be read and edited, or JSON, by the extension. CAN-IDs that contain the node-ID are "
+        "written with "
+        "$NODEID, so that the file fits other nodes. `pdo apply` puts it into a drive.",
+    .parameters = kParameters,
+    .needs = Needs::node,
+    .effect = Effect::reads,
+    .run = run,
+};
+
+}  // namespace servoctl::commands

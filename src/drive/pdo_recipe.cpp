@@ -1,0 +1,72 @@
+#include "drive/pdo_recipe.hpp"
+
+#include "drive/pdo_recipe_reader.hpp"
+
+namespace servoctl::drive {
+namespace {
+
+Result<void> read_recipe(const TableReader& reader, PdoRecipe& out) {
+  return reader.read({{"pdo", into(out.pdo)},
+                      {"map", [&](const toml::node& n) { return get(n, out.map.emplace()); }},
+                      {"cob_id", into(out.cob_id)},
+                      {"valid", into(out.valid)},
+                      {"type", into(out.type)},
+                      {"inhibit_us", into(out.inhibit_us)},
+                      {"event_ms", into(out.event_ms)},
+                      {"sync_start", into(out.sync_start)}});
+}
+
+}  // namespace
+
+bool get(const toml::node& node, PdoRecipe& out) {
+  const auto* table = node.as_table();
+  out.line = node.source().begin.line;
+  return table != nullptr && read_recipe(TableReader(*table, ""), out) && !out.pdo.empty();
+}
+
+bool get(const toml::node& node, PdoPreset& out) {
+  const auto* table = node.as_table();
+  const auto pdos = [&](const toml::node& n) {
+    return get_list(n, out.pdos, [](const toml::node& each, PdoRecipe& o) { return get(each, o); });
+  };
+  return table != nullptr && TableReader(*table, "").read({{"name", into(out.name)}, {"pdos", pdos}}) &&
+         !out.name.empty();
+}
+
+Result<PdoFile> parse_pdo_file(std::string_view toml, std::string_view file) {
+  const auto parsed = toml::parse(toml, file);
+  if (!parsed) {
+    Error error;
+    error.code = Errc::file;
+    error.line = parsed.error().source().begin.line;
+    error.message = fmt::format("{}:{}: {}", file, *error.line, parsed.error().description());
+    return fail(std::move(error));
+  }
+  PdoFile out;
+  std::int64_t format = 0;
+  std::optional<Error> inner;
+  const TableReader root(parsed.table(), file);
+  const auto pdos = [&](const toml::node& node) {
+    const auto* array = node.as_array();
+    if (array == nullptr) return false;
+    for (const auto& each : *array) {
+      const auto* table = each.as_table();
+      out.pdos.emplace_back().line = each.source().begin.line;
+      if (table == nullptr) return false;
+      const auto read = read_recipe(TableReader(*table, file), out.pdos.back());
+      if (!read && !inner) inner = read.error();
+      if (!inner && out.pdos.back().pdo.empty()) inner = root.fail_at(each, "'pdo' is missing").value();
+    }
+    return true;
+  };
+  const auto done = root.read({{"format", [&](const auto& n) { return get_int(n, format) && format == 1; }},
+                               {"family", into(out.family)},
+                               {"pdo", pdos}});
+  if (inner) return fail(*inner);
+  if (!done) return fail(done.error());
+  if (format == 0)
+    return fail(Errc::file, fmt::format("{}: 'format' is missing", file), "begin the file with format = 1");
+  return out;
+}
+
+}  // namespace servoctl::drive
