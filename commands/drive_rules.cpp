@@ -104,6 +104,8 @@ std::string_view text(drive::PdoRules::When when) {
 
 Value pdo(const Rules& rules) {
   const auto& r = rules.pdo;
+  std::vector<std::string> presets;
+  for (const auto& preset : r.presets) presets.push_back(preset.name);
   Record types;
   for (const auto& [type, meaning] : r.types) types.push_back({fmt::format("type {}", type), meaning});
   Record out{{"cob_id_bits", Hex{r.cob_id_bits, 8}, Show::everywhere, "COB-ID bits that may change"},
@@ -111,6 +113,8 @@ Value pdo(const Rules& rules) {
              {"mapping", r.disable_by_count ? "always, by count 0" : text(r.mapping)},
              {"most_entries", r.most_entries, Show::everywhere, "entries at most"},
              {"most_bits", r.most_bits, Show::everywhere, "bits at most"},
+             {"clears_entries", r.clears_entries, Show::json},
+             {"presets", text_list(presets), Show::everywhere, "recommended mappings"},
              {"refused_types", number_list(r.refused_types), Show::everywhere, "types refused"},
              {"assign_rpdo", report::text_or_null(r.assign_rpdo), Show::everywhere, "RPDO assignment"},
              {"assign_tpdo", report::text_or_null(r.assign_tpdo), Show::everywhere, "TPDO assignment"}};

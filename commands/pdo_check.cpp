@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "drive/naming.hpp"
-#include "session/pdo_setup.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -120,8 +119,7 @@ Result<void> check_mapping(const drive::Profile& profile, const Pdo& pdo) {
     return no(pdo, fmt::format("{} objects are too many, {} fit", pdo.entries.size(), rules.most_entries));
   for (const auto& entry : pdo.entries)
     if (const auto fits = check_entry(profile, pdo, entry); !fits) return fits;
-  const bool frame = !session::assignment_of(&profile, pdo.direction);
-  if (frame && pdo.bits() > rules.most_bits)
+  if (pdo.bits() > rules.most_bits)
     return no(pdo, fmt::format("{} bits are too many, {} fit", pdo.bits(), rules.most_bits),
               "spread the objects over two PDOs");
   return {};

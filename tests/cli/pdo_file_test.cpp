@@ -60,6 +60,26 @@ TEST_F(PdoFiles, BringAMappingIntoAnotherDrive) {
   }
 }
 
+TEST_F(PdoFiles, OfEveryPresetSuitTheirFamily) {
+  const fs::path folders[] = {fs::path(SERVOCTL_SOURCE_DIR) / "eds"};
+  std::size_t presets = 0;
+  for (const auto& family : drive::find_families(folders)) {
+    const auto rules = drive::load_rules(family);
+    ASSERT_TRUE(rules);
+    for (const auto& preset : rules->pdo.presets) {
+      SCOPED_TRACE(family.name + " " + preset.name);
+      ++presets;
+      const auto tail = " -n 1 -d " + family.name + " -y";
+      const auto bus = "sim:" + family.name + "@1";
+      EXPECT_NE(run(bus, {"pdo preset " + preset.name + tail}).find("written, read back"), std::string::npos);
+      EXPECT_NE(run(bus, {"pdo preset " + preset.name + tail, "pdo preset " + preset.name + tail})
+                    .find("as wanted already"),
+                std::string::npos);
+    }
+  }
+  EXPECT_GE(presets, 15U);
+}
+
 TEST_F(PdoFiles, MayBeABackup) {
   const auto file = path("backup.json");
   const auto wanted = run("sim:gsd600@1", {"pdo preset pt -n 1 -d gsd600 -y",
