@@ -135,6 +135,7 @@ Result<void> Power::reach(DriveState goal) {
 }
 
 Result<void> Power::disable() {
+  const Deaf deaf(*session_);
   const auto is_in_fault = [](DriveState state) {
     return state == DriveState::fault || state == DriveState::fault_reaction_active;
   };
@@ -149,6 +150,7 @@ Result<void> Power::disable() {
 }
 
 Result<void> Power::quick_stop() {
+  const Deaf deaf(*session_);
   const auto before = state();
   if (!before) return tl::unexpected<Error>(before.error());
   if (!drive::is_energised(*before)) return {};

@@ -38,7 +38,8 @@ class Power {
   /// Errc::negative when the drive does not follow, with what its statusword says of the reason.
   Result<void> reach(drive::DriveState goal);
   /// Takes the power away: by "switched on" where it can, which lets the drive ramp down and set its brake;
-  /// at once where it cannot. A drive in fault has none.
+  /// at once where it cannot. A drive in fault has none. Neither this nor quick_stop()
+  /// hears Ctrl-C.
   Result<void> disable();
   /// Stops a drive that is energised as fast as it can, and waits for the end of it. By 605Ah some stay
   /// energised then.
