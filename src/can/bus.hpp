@@ -27,6 +27,14 @@ class Bus {
   /// there was none; it may come before the deadline when a signal woke the process up.
   virtual Result<std::optional<Frame>> receive(TimePoint deadline) = 0;
 
+  /// When the frame that receive() gave last arrived, on the clock of now(); where the kernel stamps frames,
+  /// it does not matter how late receive() was called.
+  virtual TimePoint arrived() const { return now(); }
+
+  /// From now on frames may be handed on so much late, many at a time: saves waking up for each of them where
+  /// nobody is to answer. Zero, as at the beginning: every frame at once.
+  virtual void gather(Duration /*delay*/) {}
+
   /// A descriptor that becomes readable when receive() has something to give, for use in a poll loop; -1 if
   /// none.
   virtual int poll_fd() const { return -1; }

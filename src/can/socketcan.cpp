@@ -55,14 +55,36 @@ Frame overflow_report() {
   return frame;
 }
 
-/// How many frames the kernel has dropped so far, where it says so (SO_RXQ_OVFL).
-std::optional<std::uint32_t> dropped(const msghdr& message) {
-  const cmsghdr* control = CMSG_FIRSTHDR(&message);
-  if (control == nullptr || control->cmsg_level != SOL_SOCKET || control->cmsg_type != SO_RXQ_OVFL) return {};
-  std::uint32_t count = 0;
-  std::memcpy(&count, CMSG_DATA(control), sizeof count);
-  return count;
+/// What the kernel says beside a message, in a control message of this type.
+template <class T>
+std::optional<T> told(const msghdr& message, int type) {
+  auto copy = message;  // CMSG_NXTHDR takes no const.
+  for (auto* control = CMSG_FIRSTHDR(&copy); control != nullptr; control = CMSG_NXTHDR(&copy, control)) {
+    if (control->cmsg_level != SOL_SOCKET || control->cmsg_type != type) continue;
+    T out{};
+    std::memcpy(&out, CMSG_DATA(control), sizeof out);
+    return out;
+  }
+  return std::nullopt;
 }
+
+/// The kernel stamps frames by the wall clock; taken with every batch, so that its steps do no harm.
+class StampClock {
+ public:
+  StampClock() : now_(steady_now()), wall_(std::chrono::system_clock::now().time_since_epoch()) {}
+
+  TimePoint time(const msghdr& message) const {
+    const auto stamp = told<timespec>(message, SCM_TIMESTAMPNS);
+    if (!stamp) return now_;
+    const auto at = std::chrono::seconds(stamp->tv_sec) + std::chrono::nanoseconds(stamp->tv_nsec);
+    const auto age = std::chrono::duration_cast<Duration>(wall_ - at);
+    return age >= Duration::zero() && age < std::chrono::minutes(1) ? now_ - age : now_;
+  }
+
+ private:
+  TimePoint now_;
+  std::chrono::nanoseconds wall_;
+};
 
 }  // namespace
 
@@ -93,12 +115,15 @@ Result<void> SocketCanBus::send(const Frame& frame) {
 }
 
 Result<std::optional<Frame>> SocketCanBus::receive(TimePoint deadline) {
+  if (inbox_.empty() && delay_ > Duration::zero())
+    nap(std::min(delay_, std::max(deadline - now(), Duration{})));
   while (inbox_.empty()) {
     if (wait_for(socket_.get(), POLLIN, deadline) != Wake::ready) return std::optional<Frame>();
     if (const auto filled = fill(); !filled) return tl::unexpected<Error>(filled.error());
   }
-  const auto frame = inbox_.front();
+  const auto [frame, time] = inbox_.front();
   inbox_.pop_front();
+  arrived_ = time;
   return std::optional(frame);
 }
 
@@ -109,7 +134,7 @@ Result<void> SocketCanBus::fill() {
   std::array<iovec, kMost> parts;
   std::array<mmsghdr, kMost> messages{};
   struct Control {
-    alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(std::uint32_t))> bytes;
+    alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(std::uint32_t)) + CMSG_SPACE(sizeof(timespec))> bytes;
   };
   std::array<Control, kMost> controls;
   for (std::size_t i = 0; i < kMost; ++i) {
@@ -125,19 +150,24 @@ Result<void> SocketCanBus::fill() {
     is_bus_off_ = false;
     return interface_lost(interface_name_, count < 0 ? errno : EPIPE);
   }
-  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
-    if (messages[i].msg_len == sizeof(can_frame)) take(raw[i], dropped(messages[i].msg_hdr));
+  const StampClock clock;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+    const auto& head = messages[i].msg_hdr;
+    // How many frames the kernel has dropped so far, where it says so.
+    if (messages[i].msg_len == sizeof(can_frame))
+      take(raw[i], told<std::uint32_t>(head, SO_RXQ_OVFL), clock.time(head));
+  }
   return {};
 }
 
-void SocketCanBus::take(const can_frame& raw, std::optional<std::uint32_t> lost_in_all) {
+void SocketCanBus::take(const can_frame& raw, std::optional<std::uint32_t> lost_in_all, TimePoint time) {
   const auto frame = decode(raw);
   // A frame of the bus, or the report of a restart, shows that the controller takes part again.
   is_bus_off_ =
       frame.error && (is_bus_off_ || (frame.id & CAN_ERR_BUSOFF) != 0) && (frame.id & CAN_ERR_RESTARTED) == 0;
   if (lost_in_all && std::exchange(lost_frames_, *lost_in_all) != *lost_in_all)
-    inbox_.push_back(overflow_report());
-  inbox_.push_back(frame);
+    inbox_.push_back({overflow_report(), time});
+  inbox_.push_back({frame, time});
 }
 
 }  // namespace servoctl::can

@@ -55,19 +55,27 @@ class SocketCanBus final : public Bus {
   /// of a bus-off to that of a restart: the kernel drops such frames in silence.
   Result<void> send(const Frame& frame) override;
   Result<std::optional<Frame>> receive(TimePoint deadline) override;
+  TimePoint arrived() const override { return arrived_; }
+  void gather(Duration delay) override { delay_ = delay; }
   int poll_fd() const override { return socket_.get(); }
   TimePoint next_event() const override { return inbox_.empty() ? kNever : TimePoint::min(); }
 
  private:
   Result<void> fill();
-  void take(const ::can_frame& raw, std::optional<std::uint32_t> lost_in_all);
+  void take(const ::can_frame& raw, std::optional<std::uint32_t> lost_in_all, TimePoint time);
 
   Descriptor socket_;
   std::string interface_name_;
   Duration send_limit_;
   std::uint32_t lost_frames_ = 0;  ///< As last told by the kernel.
   bool is_bus_off_ = false;        ///< As last reported.
-  std::deque<Frame> inbox_;        ///< Received, not given yet.
+  struct Received {
+    Frame frame;
+    TimePoint time;
+  };
+  std::deque<Received> inbox_;  ///< Received, not given yet.
+  Duration delay_{};            ///< See gather().
+  TimePoint arrived_{};
 };
 
 }  // namespace servoctl::can

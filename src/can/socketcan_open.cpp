@@ -69,6 +69,7 @@ bool configure(int fd, std::span<const Filter> filters) {
   if (!set_option(fd, SOL_SOCKET, SO_RCVBUFFORCE, kReceiveBytes))
     set_option(fd, SOL_SOCKET, SO_RCVBUF, kReceiveBytes);
   set_option(fd, SOL_SOCKET, SO_RXQ_OVFL, 1);
+  set_option(fd, SOL_SOCKET, SO_TIMESTAMPNS, 1);
   return set_option(fd, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, kReports) && set_filters(fd, filters);
 }
 

@@ -5,10 +5,10 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdint>
 #include <utility>
-#include <vector>
 
 #include "base/number.hpp"
 #include "base/text.hpp"
@@ -21,11 +21,19 @@ using std::chrono::microseconds;
 constexpr Duration kFlushAfter = std::chrono::milliseconds(100);
 constexpr std::size_t kFlushBytes = std::size_t{64} << 10U;
 
-std::vector<std::string_view> words_of(std::string_view line) {
-  std::vector<std::string_view> words;
-  for (const auto word : split(trim(line), ' '))
-    if (!word.empty()) words.push_back(word);
-  return words;
+/// The words of a line, at most one more than it may have; without a heap, as millions of lines are read.
+struct Words {
+  std::array<std::string_view, 5> at;
+  std::size_t count = 0;
+};
+Words words_of(std::string_view line) {
+  Words out;
+  for (line = trim(line); !line.empty() && out.count < out.at.size();) {
+    const auto end = std::min(line.find(' '), line.size());
+    if (end > 0) out.at[out.count++] = line.substr(0, end);
+    line.remove_prefix(std::min(end + 1, line.size()));
+  }
+  return out;
 }
 
 /// `(1736412345.123456)`, with one to nine digits behind the point.
@@ -53,12 +61,12 @@ std::string to_string(const LogFrame& line) {
 
 std::optional<LogFrame> parse_log_line(std::string_view line) {
   const auto words = words_of(line);
-  const bool has_direction = words.size() == 4 && (words[3] == "R" || words[3] == "T");
-  if (words.size() != 3 && !has_direction) return std::nullopt;
-  const auto time = parse_time(words[0]);
-  const auto frame = parse_frame(words[2]);
+  const bool has_direction = words.count == 4 && (words.at[3] == "R" || words.at[3] == "T");
+  if (words.count != 3 && !has_direction) return std::nullopt;
+  const auto time = parse_time(words.at[0]);
+  const auto frame = parse_frame(words.at[2]);
   if (!time || !frame) return std::nullopt;
-  return LogFrame{*time, std::string(words[1]), *frame};
+  return LogFrame{*time, std::string(words.at[1]), *frame};
 }
 
 TraceBus::TraceBus(std::unique_ptr<Bus> inner, Descriptor file, std::string file_name,
@@ -74,7 +82,7 @@ TraceBus::~TraceBus() { flush(); }
 Result<void> TraceBus::send(const Frame& frame) {
   auto result = inner_->send(frame);
   if (result)
-    record(frame);
+    record(frame, now());
   else
     flush();
   return result;
@@ -89,16 +97,16 @@ Result<std::optional<Frame>> TraceBus::receive(TimePoint deadline) {
   if (!result)
     flush();
   else if (*result)
-    record(**result);
+    record(**result, arrived());
   return result;
 }
 
 TimePoint TraceBus::next_event() const { return std::min(inner_->next_event(), flush_due()); }
 
-void TraceBus::record(const Frame& frame) {
+void TraceBus::record(const Frame& frame, TimePoint time) {
   if (!file_) return;
   if (buffer_.empty()) oldest_ = now();
-  buffer_ += to_string(LogFrame{now().time_since_epoch() + clock_offset_, interface_name_, frame});
+  buffer_ += to_string(LogFrame{time.time_since_epoch() + clock_offset_, interface_name_, frame});
   buffer_ += '\n';
   flush_when_due();
 }

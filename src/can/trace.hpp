@@ -54,11 +54,13 @@ class TraceBus final : public Bus {
   TimePoint now() const override { return inner_->now(); }
   Result<void> send(const Frame& frame) override;
   Result<std::optional<Frame>> receive(TimePoint deadline) override;
+  TimePoint arrived() const override { return inner_->arrived(); }
+  void gather(Duration delay) override { inner_->gather(delay); }
   int poll_fd() const override { return inner_->poll_fd(); }
   TimePoint next_event() const override;
 
  private:
-  void record(const Frame& frame);
+  void record(const Frame& frame, TimePoint time);
   void flush();
   void flush_when_due();
   TimePoint flush_due() const;

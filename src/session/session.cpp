@@ -47,7 +47,7 @@ Result<std::optional<can::Frame>> Session::receive(TimePoint deadline) {
   if (!heartbeat) return tl::unexpected<Error>(heartbeat.error());
   auto frame = bus_->receive(std::min({deadline, watch_.deadline(), guard_.deadline(), *heartbeat}));
   if (!frame) return frame;
-  received_at_ = now();
+  received_at_ = *frame ? std::max(received_at_, bus_->arrived()) : now();
   if (*frame) watch_.on_frame(**frame, received_at_);
   if (*frame) guard_.on_frame(**frame, received_at_);
   watch_.on_time(received_at_);

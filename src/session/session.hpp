@@ -64,6 +64,12 @@ class Session {
 
   /// Listens until `done` answers true or the deadline passes; the answer is that of `done`.
   Result<bool> wait(const std::function<bool()>& done, TimePoint deadline);
+  /// Receives one frame or lets the deadline pass, for commands that look at every frame; the listeners see
+  /// it first. Errc::interrupted when cancelled, Errc::bus when the controller reports bus-off: nothing will
+  /// be answered then.
+  Result<std::optional<can::Frame>> receive(TimePoint deadline);
+  /// When the frame that receive() gave last arrived.
+  TimePoint received_at() const { return received_at_; }
   /// Takes in whatever has arrived, without waiting.
   Result<void> listen();
 
@@ -99,9 +105,6 @@ class Session {
  private:
   friend class TransferRun;
 
-  /// Receives one frame or lets the deadline pass; the listeners see it first. Errc::interrupted when
-  /// cancelled, Errc::bus when the controller reports bus-off: nothing will be answered then.
-  Result<std::optional<can::Frame>> receive(TimePoint deadline);
   Result<void> on_report(can::ControllerReport report);
   /// Sends the heartbeat when it is due; the answer is when the next one is.
   Result<TimePoint> send_heartbeat();
@@ -122,7 +125,9 @@ class Session {
   std::optional<can::ControllerReport> last_report_;
   std::array<std::size_t, 128> flash_writes_{};
   std::set<std::uint8_t> energised_;
-  TimePoint received_at_{};  ///< When receive() ended; asking the clock costs a system call on some machines.
+  /// When the last frame arrived, or receive() ended without one; asking the clock costs a system call on
+  /// some machines.
+  TimePoint received_at_{};
 };
 
 }  // namespace servoctl::session
