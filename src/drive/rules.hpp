@@ -80,11 +80,24 @@ struct PdoRules {
   std::uint8_t most_entries = 64;
   std::uint16_t most_bits = 64;
   bool whole_bytes = false;
-  std::vector<std::int64_t> refused_types;    ///< Transmission types the drive does not know.
-  std::map<std::int64_t, std::string> types;  ///< What vendor-specific types mean here.
+  std::vector<std::int64_t> refused_types;  ///< Transmission types the drive does not know.
+  /// What vendor-specific types mean here, in words; `on change` and `by the event timer` say that nothing
+  /// else makes the drive send.
+  std::map<std::int64_t, std::string> types;
   std::vector<PdoPreset> presets;
   std::string assign_rpdo;  ///< Object that chooses among fixed PDOs (CoE 1C12h, 1C13h).
   std::string assign_tpdo;
+
+  /// Whether a TPDO of this event-driven type (254, 255) is sent when what it carries changes, and when its
+  /// event timer ends.
+  bool sends_on_change(std::uint8_t type) const { return !says(type, "by the event timer"); }
+  bool sends_by_timer(std::uint8_t type) const { return !says(type, "on change"); }
+
+ private:
+  bool says(std::uint8_t type, std::string_view words) const {
+    const auto found = types.find(type);
+    return found != types.end() && found->second == words;
+  }
 };
 
 /// How values survive power-off.

@@ -18,6 +18,8 @@ constexpr Duration kBootTime = std::chrono::milliseconds(50);
 constexpr std::uint16_t kLifeGuardError = 0x8130;
 /// CiA 402-2, table of error codes.
 constexpr std::uint16_t kFollowingErrorFault = 0x8611;
+/// … of an RPDO that was too short to be taken.
+constexpr std::uint16_t kPdoLengthError = 0x8210;
 
 canopen::SdoServer::Options server_options(const drive::Rules& rules) {
   canopen::SdoServer::Options options;
@@ -38,6 +40,7 @@ SimDrive::SimDrive(const drive::Profile& profile, std::uint8_t node, Memory& mem
       power_(profile.rules),
       axis_(profile, values_),
       server_(node, *this, server_options(profile.rules)),
+      pdos_(profile, values_, *this),
       error_control_(node) {
   auto& cells = memory_->cells(key_);
   const auto* node_id = parameter(profile.rules.nmt.node_id);
@@ -57,8 +60,15 @@ void SimDrive::on_frame(const can::Frame& frame, TimePoint now) {
   error_control_.on_frame(frame, now);
   while (const auto answer = error_control_.take_frame()) tx_.push_back(*answer);
   if (nmt_ == NmtState::stopped) return;  // CiA 301, table 39: no SDO in this state.
+  pdos_.on_frame(frame, now);
+  collect_pdos();
   server_.on_frame(frame, now);
   collect_answers(now);
+}
+
+void SimDrive::collect_pdos() {
+  while (const auto frame = pdos_.take_frame()) tx_.push_back(*frame);
+  if (pdos_.take_length_error()) send_emergency(kPdoLengthError, {});
 }
 
 void SimDrive::collect_answers(TimePoint now) {
@@ -88,6 +98,8 @@ void SimDrive::on_time(TimePoint now) {
   power_.on_time(now);
   move_axis();
   if (consumer_.take_lost(now)) on_producer_lost(now);
+  pdos_.on_time(now);
+  collect_pdos();
   server_.on_time(now);
   collect_answers(now);
   while (!late_.empty() && now >= late_.front().time) {
@@ -105,8 +117,8 @@ void SimDrive::on_time(TimePoint now) {
 }
 
 TimePoint SimDrive::deadline() const {
-  auto next = std::min({boot_at_, power_.deadline(), server_.deadline(), error_control_.deadline(),
-                        consumer_.deadline(), planned_silence_});
+  auto next = std::min({boot_at_, power_.deadline(), pdos_.deadline(), server_.deadline(),
+                        error_control_.deadline(), consumer_.deadline(), planned_silence_});
   if (!late_.empty()) next = std::min(next, late_.front().time);
   if (planned_fault_) next = std::min(next, planned_fault_->time);
   return next;
@@ -152,6 +164,8 @@ void SimDrive::power_on(TimePoint now) {
   tx_.push_back(*error_control_.take_frame());
   set_up_error_control(now);
   set_up_consumers();
+  pdos_.stop();
+  if (start) pdos_.start(now);
 }
 
 void SimDrive::on_nmt(NmtCommand command, TimePoint now) {
@@ -167,6 +181,7 @@ void SimDrive::on_nmt(NmtCommand command, TimePoint now) {
       server_.reset();
       late_.clear();
       nmt_ = NmtState::initialising;
+      pdos_.stop();
   }
 }
 
@@ -175,6 +190,10 @@ void SimDrive::set_nmt(NmtState state) {
   if (leaves && profile_->rules.nmt.disables_outside_operational) power_.disable();
   nmt_ = state;
   error_control_.set_state(state);
+  if (state == NmtState::operational)
+    pdos_.start(now_);
+  else
+    pdos_.stop();
 }
 
 void SimDrive::set_up_error_control(TimePoint now) {

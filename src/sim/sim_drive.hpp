@@ -15,6 +15,7 @@
 #include "sim/heartbeat_consumer.hpp"
 #include "sim/memory.hpp"
 #include "sim/object_values.hpp"
+#include "sim/pdo_engine.hpp"
 #include "sim/power_stage.hpp"
 
 namespace servoctl::sim {
@@ -96,6 +97,7 @@ class SimDrive final : public Device, private canopen::ObjectStore {
   void clear_fault();
   void raise_access_alarm(ObjectAddress object, std::uint32_t code);
   void collect_answers(TimePoint now);
+  void collect_pdos();
   void set_up_error_control(TimePoint now);
   void on_life_lost(TimePoint now);
   void set_up_consumers();
@@ -116,6 +118,7 @@ class SimDrive final : public Device, private canopen::ObjectStore {
   PowerStage power_;
   Axis axis_;
   canopen::SdoServer server_;
+  PdoEngine pdos_;
   canopen::ErrorControlSlave error_control_;
   HeartbeatConsumer consumer_;
   canopen::NmtState nmt_ = canopen::NmtState::initialising;

@@ -90,6 +90,7 @@ TEST_F(Gsd600, SendsHeartbeatsAfterItsTimeIsSet) {
   EXPECT_EQ(ask("601#2B17100064000000"), "581#6017100000000000");
   EXPECT_EQ(next(100ms), "701#7F");
   send("000#0101");
+  EXPECT_EQ(next(), "181#7002");  // TPDO1, with which an operational drive begins.
   EXPECT_EQ(next(100ms), "701#05");
   send("000#0201");
   EXPECT_EQ(next(100ms), "701#04");

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+
+#include "base/time.hpp"
+#include "can/frame.hpp"
+#include "canopen/pdo.hpp"
+#include "canopen/sdo_server.hpp"
+#include "drive/profile.hpp"
+#include "sim/object_values.hpp"
+
+namespace servoctl::sim {
+
+/// The PDOs of a simulated drive at work (CiA 301, 7.2.2): sends TPDOs at SYNC, when what they carry changes,
+/// and by their event timer; takes RPDOs at once or at the next SYNC, through the checks every write goes
+/// through. What its parameters say is looked up each time, so that a change holds at once. Remote frames are
+/// not answered. Performs no I/O and reads no clock.
+class PdoEngine {
+ public:
+  /// All outlive the engine. `store` gives and takes the mapped objects; `values` has the PDO parameters.
+  PdoEngine(const drive::Profile& profile, const ObjectValues& values, canopen::ObjectStore& store);
+
+  /// The drive has become operational: event-driven TPDOs are sent once (CiA 301, table 71).
+  void start(TimePoint now);
+  /// It is operational no longer.
+  void stop();
+
+  void on_frame(const can::Frame& frame, TimePoint now);
+  void on_time(TimePoint now);
+  std::optional<can::Frame> take_frame();
+  TimePoint deadline() const;
+
+  /// True once after an RPDO came that was shorter than its mapping and was dropped (CiA 301, table 26:
+  /// 8210h).
+  bool take_length_error();
+
+ private:
+  /// One PDO between its frames.
+  struct Work {
+    std::optional<TimePoint> sent;  ///< When a TPDO was last sent.
+    std::optional<Bytes> data;      ///< What a TPDO last carried; what an RPDO brought for the next SYNC.
+    std::uint32_t syncs = 0;        ///< Since a TPDO was last sent.
+    bool started = false;           ///< The SYNC with the start value has come.
+  };
+
+  canopen::Pdo read_pdo(canopen::PdoDirection direction, std::uint16_t number) const;
+  void on_sync(const can::Frame& frame, TimePoint now);
+  void on_sync(const canopen::Pdo& pdo, std::optional<std::uint8_t> counter, TimePoint now);
+  void on_receive(const canopen::Pdo& pdo, const can::Frame& frame);
+  void check_events(const canopen::Pdo& pdo, TimePoint now);
+  void apply(const canopen::Pdo& pdo, ByteSpan data);
+  Bytes sample(const canopen::Pdo& pdo);
+  void transmit(const canopen::Pdo& pdo, Bytes data, TimePoint now);
+  Work& work(const canopen::Pdo& pdo) { return work_[pdo.communication_index()]; }
+
+  const drive::Profile* profile_;
+  const ObjectValues* values_;
+  canopen::ObjectStore* store_;
+  std::vector<canopen::Pdo> known_;  ///< Direction and number of those the drive has.
+  std::map<std::uint16_t, Work> work_;
+  bool operational_ = false;
+  TimePoint next_look_ = kNever;
+  bool length_error_ = false;
+  std::deque<can::Frame> tx_;
+};
+
+}  // namespace servoctl::sim
