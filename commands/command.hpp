@@ -119,6 +119,9 @@ struct Context {
   std::function<Result<std::vector<BatchLine>>(std::string_view text, const std::string& file)> batch_lines;
 
   bool keeps_samples = false;  ///< `--json`: the result carries what emit() was given.
+  bool wants_records = false;  ///< `-o jsonl`: samples are shown as records, one document a line.
+  /// Shows many samples at once, rendered already, for commands to which emit() is too slow; see SampleWriter.
+  std::function<void(std::string_view lines)> write;
 
   std::vector<Error>
       errors;  ///< Parts that failed while others succeeded; the first one makes the exit code.

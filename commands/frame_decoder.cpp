@@ -1,10 +1,12 @@
 #include "commands/frame_decoder.hpp"
 
 #include <fmt/format.h>
+#include <chrono>
 #include <utility>
 
 #include "can/controller_report.hpp"
 #include "canopen/cob_id.hpp"
+#include "canopen/error_control.hpp"
 #include "canopen/nmt.hpp"
 #include "canopen/sdo_abort.hpp"
 #include "commands/notice.hpp"
@@ -17,6 +19,10 @@ namespace {
 using canopen::SdoStep;
 using report::Value;
 using Step = SdoStep::Kind;
+
+constexpr std::uint32_t kTime = 0x100;  ///< TIME (CiA 301, 7.3.5).
+constexpr std::uint32_t kFirstPdo =
+    0x180;  ///< PDOs of the pre-defined connection set lie between this and SDO.
 
 /// The node of an identifier between base + 1 and base + 127.
 std::optional<std::uint8_t> node_of(const can::Frame& frame, std::uint32_t base) {
@@ -60,91 +66,202 @@ std::string phrase(const SdoStep& step, const std::string& object) {
   return "no SDO of CiA 301";
 }
 
-DecodedFrame decode_nmt(const can::Frame& frame) {
-  DecodedFrame out{"nmt", {}, "no NMT command of CiA 301", {}};
-  const auto message = canopen::parse_nmt(frame);
-  if (!message) return out;
-  if (message->node != 0) out.node = message->node;
-  out.text =
-      fmt::format("NMT {}{}", canopen::name(message->command), message->node == 0 ? ", all nodes" : "");
-  out.fields = {{"command", canopen::name(message->command)}};
-  return out;
+/// `2026-11-21 13:05:00.250`: milliseconds since midnight, days since 1984 (CiA 301, 7.1.6.5).
+std::string time_of_day(ByteSpan data) {
+  const auto milliseconds = load_le(data.first(4)) & 0x0FFF'FFFFU;
+  const auto days = load_le(data.subspan(4, 2));
+  const std::chrono::year_month_day date =
+      std::chrono::sys_days(std::chrono::year(1984) / 1 / 1) + std::chrono::days(days);
+  return fmt::format("{:04}-{:02}-{:02} {:02}:{:02}:{:02}.{:03}", static_cast<int>(date.year()),
+                     static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
+                     milliseconds / 3'600'000, milliseconds / 60'000 % 60, milliseconds / 1000 % 60,
+                     milliseconds % 1000);
 }
 
 }  // namespace
 
-DecodedFrame FrameDecoder::decode(const can::Frame& frame) {
+const DecodedFrame& FrameDecoder::decode(const can::Frame& frame) {
+  out_.service = "other";
+  out_.node.reset();
+  out_.text.clear();
+  out_.fields.clear();
+  out_.objects.clear();
   if (frame.error) {
     const auto report = can::parse_report(frame);
-    return {"controller", {}, report ? std::string(can::text(*report)) : "report of the controller", {}};
+    out_.service = "controller";
+    out_.text = report ? can::text(*report) : "error frame, or report of the controller";
+  } else if (frame.extended) {
+    out_.text = "29-bit identifier";
+  } else {
+    decode_service(frame);
   }
-  if (frame.extended) return {"other", {}, "29-bit identifier", {}};
-  if (frame.id == canopen::kNmt) return decode_nmt(frame);
-  if (frame.id == canopen::kSync) return {"sync", {}, "SYNC", {}};
-  if (const auto emergency = canopen::parse_emergency(frame)) {
-    const auto text = notice_text({{}, emergency->node, *emergency}, profile_, chinese_);
-    return {"emcy",
-            emergency->node,
-            text.substr(text.find(": ") + 2),
-            {{"code", report::Hex{emergency->code, 4}}, {"error_register", emergency->error_register}}};
-  }
-  if (node_of(frame, canopen::kSdoAnswer) || node_of(frame, canopen::kSdoRequest)) return decode_sdo(frame);
-  if (node_of(frame, canopen::kErrorControl)) return decode_error_control(frame);
-  return {"other", {}, fmt::format("identifier 0x{:03X}, {} bytes", frame.id, frame.size), {}};
+  return out_;
 }
 
-DecodedFrame FrameDecoder::decode_error_control(const can::Frame& frame) const {
-  const auto node = node_of(frame, canopen::kErrorControl);
-  if (frame.remote) return {"guarding", node, "node guarding asks", {}};
+void FrameDecoder::decode_service(const can::Frame& frame) {
+  const auto node = static_cast<std::uint8_t>(frame.id & canopen::kLastNode);
+  // PDOs first: on a bus at work most frames are.
+  const auto* pdo = frame.remote ? nullptr : pdos_.find(frame.id);
+  if (pdo != nullptr) return decode_pdo(frame, pdo->node, pdo);
+  if (frame.id == canopen::kNmt) return decode_nmt(frame);
+  if (frame.id == canopen::kSync) return decode_sync(frame);
+  if (frame.id == kTime) return decode_time(frame);
+  if (const auto emergency = canopen::parse_emergency(frame)) return decode_emergency(*emergency);
+  if (node_of(frame, canopen::kSdoAnswer) || node_of(frame, canopen::kSdoRequest)) return decode_sdo(frame);
+  if (node_of(frame, canopen::kErrorControl)) return decode_error_control(frame);
+  if (frame.id > kFirstPdo && frame.id < canopen::kSdoAnswer && node != 0)
+    return decode_pdo(frame, node, nullptr);
+  out_.text = fmt::format("identifier 0x{:03X}, {} bytes", frame.id, frame.size);
+}
+
+void FrameDecoder::decode_nmt(const can::Frame& frame) {
+  out_.service = "nmt";
+  const auto message = canopen::parse_nmt(frame);
+  if (!message) {
+    out_.text = "no NMT command of CiA 301";
+    return;
+  }
+  if (message->node != 0) out_.node = message->node;
+  out_.text =
+      fmt::format("NMT {}{}", canopen::name(message->command), message->node == 0 ? ", all nodes" : "");
+  if (options_.fields) out_.fields = {{"command", canopen::name(message->command)}};
+}
+
+void FrameDecoder::decode_sync(const can::Frame& frame) {
+  out_.service = "sync";
+  out_.text = "SYNC";
+  if (frame.remote || frame.size == 0) return;
+  out_.text += fmt::format(" {}", frame.data[0]);
+  if (options_.fields) out_.fields = {{"counter", frame.data[0]}};
+}
+
+void FrameDecoder::decode_time(const can::Frame& frame) {
+  out_.service = "time";
+  if (frame.remote || frame.size < 6) {
+    out_.text = "no TIME of CiA 301";
+    return;
+  }
+  const auto time = time_of_day(frame.payload());
+  out_.text = "TIME " + time;
+  if (options_.fields) out_.fields = {{"tells", time}};
+}
+
+void FrameDecoder::decode_emergency(const canopen::Emergency& emergency) {
+  out_.service = "emcy";
+  out_.node = emergency.node;
+  const auto text = notice_text({{}, emergency.node, emergency}, options_.profile, options_.chinese);
+  out_.text = text.substr(text.find(": ") + 2);
+  if (options_.fields)
+    out_.fields = {{"code", report::Hex{emergency.code, 4}}, {"error_register", emergency.error_register}};
+}
+
+/// By its mapping, or by the pre-defined connection set alone.
+void FrameDecoder::decode_pdo(const can::Frame& frame, std::uint8_t node, const PdoView* view) {
+  out_.service = "pdo";
+  out_.node = node;
+  if (frame.remote) {
+    out_.text = fmt::format("PDO 0x{:03X} asked for by a remote frame", frame.id);
+    return;
+  }
+  const auto data = frame.payload();
+  if (view == nullptr) {
+    const bool receive = (frame.id & 0x80U) == 0;
+    const auto number = static_cast<std::uint16_t>((frame.id - (receive ? 0x180U : 0x080U)) >> 8U);
+    out_.text =
+        canopen::name(receive ? canopen::PdoDirection::receive : canopen::PdoDirection::transmit, number) +
+        " " + to_hex(data) + " (mapping not known)";
+    return;
+  }
+  out_.text += view->name;
+  out_.text += ' ';
+  append_values(*view, data, options_.chinese, out_.text);
+  for (const auto& field : view->fields) out_.objects.push_back(field.entry.object);
+  if (options_.fields) out_.fields = {{"pdo", view->name}, {"values", value_records(*view, data)}};
+}
+
+void FrameDecoder::decode_error_control(const can::Frame& frame) {
+  out_.node = node_of(frame, canopen::kErrorControl);
+  if (frame.remote) {
+    out_.service = "guarding";
+    out_.text = "node guarding asks";
+    return;
+  }
   const auto message = canopen::parse_error_control(frame);
-  if (!message) return {"other", node, "no heartbeat of CiA 301", {}};
-  if (message->boot_up) return {"boot-up", node, "boot-up", {}};
+  if (!message) {
+    out_.text = "no heartbeat of CiA 301";
+    return;
+  }
+  if (message->boot_up) {
+    out_.service = "boot-up";
+    out_.text = "boot-up";
+    pdos_.forget(*out_.node);
+    return;
+  }
   const bool toggle = (frame.data[0] & 0x80U) != 0;
-  return {"heartbeat",
-          node,
-          fmt::format("{}{}", canopen::name(message->state), toggle ? " (answer to node guarding)" : ""),
-          {{"state", canopen::name(message->state)}, {"toggle", toggle}}};
+  out_.service = "heartbeat";
+  out_.text = canopen::name(message->state);
+  if (toggle) out_.text += " (answer to node guarding)";
+  if (options_.fields) out_.fields = {{"state", canopen::name(message->state)}, {"toggle", toggle}};
 }
 
 std::string FrameDecoder::name_of(ObjectAddress object) const {
-  const auto target = drive::target_at(profile_, object);
-  const auto label = chinese_ ? target.label_zh() : target.label();
+  const auto target = drive::target_at(options_.profile, object);
+  const auto label = options_.chinese ? target.label_zh() : target.label();
   return to_string(object) + (label.empty() ? "" : " " + label);
 }
 
-DecodedFrame FrameDecoder::decode_sdo(const can::Frame& frame) {
+void FrameDecoder::decode_sdo(const can::Frame& frame) {
   const auto asked = node_of(frame, canopen::kSdoRequest);
   const auto node = asked ? *asked : *node_of(frame, canopen::kSdoAnswer);
   auto& channel = channels_[node];
   const auto step = asked ? channel.on_client_frame(frame) : channel.on_server_frame(frame);
-  DecodedFrame out{"sdo", node, {}, {}};
-  out.text = phrase(step, step.object ? name_of(*step.object) : "of a transfer begun before");
-  out.fields = {{"step", name(step.kind)}, {"from", step.from_client ? "master" : "node"}};
-  if (step.block) out.fields.push_back({"block", true});
-  if (step.object) {
-    out.fields.push_back({"index", step.object->index});
-    out.fields.push_back({"sub", step.object->sub});
-    const auto target = drive::target_at(profile_, *step.object);
-    out.fields.push_back({"name", report::text_or_null(target.label())});
-    if (step.data) {
-      const auto value = decode_value({node, target, {}, *step.data}, *step.data);
-      out.text += " = " + value.text;
-      const auto& label = chinese_ && !value.label_zh.is_null() ? value.label_zh : value.label;
-      if (const auto* words = std::get_if<std::string>(&label.data())) out.text += " " + *words;
-      out.fields.push_back({"value", value.value});
-      out.fields.push_back({"unit", report::text_or_null(value.unit)});
-      out.fields.push_back({"label", value.label});
-      out.fields.push_back({"bytes", to_hex(*step.data)});
-    }
-  }
-  if (step.announced) {
-    out.fields.push_back({"announced", *step.announced});
-    out.text += fmt::format(", {} bytes", *step.announced);
-  }
-  if (step.kind == Step::abort)
-    out.fields.push_back({"abort", report::Record{{"code", fmt::format("0x{:08X}", step.abort_code)},
-                                                  {"text", canopen::sdo_abort_text(step.abort_code)}}});
-  return out;
+  out_.service = "sdo";
+  out_.node = node;
+  out_.text = phrase(step, step.object ? name_of(*step.object) : "of a transfer begun before");
+  if (step.object) out_.objects.push_back(*step.object);
+  if (options_.fields) add_sdo_fields(step);
+  if (step.object && step.data) add_sdo_value(step);
+  if (step.announced) out_.text += fmt::format(", {} bytes", *step.announced);
+  if (options_.fields && step.announced) out_.fields.push_back({"announced", *step.announced});
+  if (options_.fields && step.kind == Step::abort)
+    out_.fields.push_back({"abort", report::Record{{"code", fmt::format("0x{:08X}", step.abort_code)},
+                                                   {"text", canopen::sdo_abort_text(step.abort_code)}}});
+  learn(step);
+}
+
+void FrameDecoder::add_sdo_fields(const canopen::SdoStep& step) {
+  auto& fields = out_.fields;
+  fields = {{"step", name(step.kind)}, {"from", step.from_client ? "master" : "node"}};
+  if (step.block) fields.push_back({"block", true});
+  if (!step.object) return;
+  fields.push_back({"index", step.object->index});
+  fields.push_back({"sub", step.object->sub});
+  fields.push_back({"name", report::text_or_null(drive::target_at(options_.profile, *step.object).label())});
+}
+
+void FrameDecoder::add_sdo_value(const canopen::SdoStep& step) {
+  const auto target = drive::target_at(options_.profile, *step.object);
+  const auto value = decode_value({*out_.node, target, {}, *step.data}, *step.data);
+  out_.text += " = " + value.text;
+  const auto& label = options_.chinese && !value.label_zh.is_null() ? value.label_zh : value.label;
+  if (const auto* words = std::get_if<std::string>(&label.data())) out_.text += " " + *words;
+  if (!options_.fields) return;
+  out_.fields.push_back({"value", value.value});
+  out_.fields.push_back({"unit", report::text_or_null(value.unit)});
+  out_.fields.push_back({"label", value.label});
+  out_.fields.push_back({"bytes", to_hex(*step.data)});
+}
+
+/// A value that was read holds; one that was written holds when the node has taken it.
+void FrameDecoder::learn(const canopen::SdoStep& step) {
+  auto& pending = pending_[*out_.node];
+  if (!step.object || !canopen::pdo_at(step.object->index)) return;
+  if (step.data && !step.from_client) pdos_.learn(*out_.node, *step.object, *step.data);
+  if (step.data && step.from_client) pending = Pending{*step.object, *step.data};
+  if (step.kind == Step::abort) pending.reset();
+  if (step.kind != Step::acknowledge || !pending || pending->object != *step.object) return;
+  pdos_.learn(*out_.node, pending->object, pending->data);
+  pending.reset();
 }
 
 }  // namespace servoctl::commands

@@ -5,38 +5,70 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "can/frame.hpp"
 #include "canopen/sdo_observer.hpp"
 #include "commands/command.hpp"
+#include "commands/pdo_book.hpp"
 
 namespace servoctl::commands {
 
+/// What a frame can be, as `--service` names it.
+inline constexpr std::string_view kServices[] = {
+    "nmt", "sync", "time", "emcy", "pdo", "sdo", "boot-up", "heartbeat", "guarding", "controller", "other"};
+
 /// What a frame means.
 struct DecodedFrame {
-  std::string_view service;          ///< `nmt sync emcy sdo boot-up heartbeat guarding controller other`
+  std::string_view service;          ///< One of kServices.
   std::optional<std::uint8_t> node;  ///< Empty for frames of the whole bus.
   std::string text;                  ///< For people, without the node.
-  report::Record fields;             ///< What is special to the service, for JSON.
+  report::Record fields;             ///< What is special to the service, for JSON; empty where not asked for.
+  std::vector<ObjectAddress> objects;  ///< Those it carries or names.
 };
 
-/// Explains frames of the pre-defined connection set one by one: SDO with the object's name and value, NMT,
-/// heartbeat, node guarding, emergencies. Remembers what SDO transfers are under way.
+/// Explains frames one by one: NMT, SYNC, TIME, emergencies in the family's words, PDOs by their mapping, SDO
+/// with the object's name and value, heartbeat, node guarding. Remembers what SDO transfers are under way,
+/// and learns PDO mappings from those that read or write them.
 class FrameDecoder {
  public:
-  /// `profile` may be null; it outlives the decoder.
-  FrameDecoder(const drive::Profile* profile, bool chinese) : profile_(profile), chinese_(chinese) {}
+  struct Options {
+    const drive::Profile* profile = nullptr;  ///< May be null; outlives the decoder.
+    bool chinese = false;
+    bool fields = true;  ///< Whether DecodedFrame::fields are wanted: they take longer than the text.
+  };
+  explicit FrameDecoder(Options options) : options_(options), pdos_(options.profile, options.chinese) {}
 
-  DecodedFrame decode(const can::Frame& frame);
+  /// The answer holds until the next call.
+  const DecodedFrame& decode(const can::Frame& frame);
+
+  PdoBook& pdos() { return pdos_; }
 
  private:
-  DecodedFrame decode_sdo(const can::Frame& frame);
-  DecodedFrame decode_error_control(const can::Frame& frame) const;
+  void decode_service(const can::Frame& frame);
+  void decode_nmt(const can::Frame& frame);
+  void decode_sync(const can::Frame& frame);
+  void decode_time(const can::Frame& frame);
+  void decode_emergency(const canopen::Emergency& emergency);
+  void decode_pdo(const can::Frame& frame, std::uint8_t node, const PdoView* view);
+  void decode_error_control(const can::Frame& frame);
+  void decode_sdo(const can::Frame& frame);
+  void add_sdo_fields(const canopen::SdoStep& step);
+  void add_sdo_value(const canopen::SdoStep& step);
+  void learn(const canopen::SdoStep& step);
   std::string name_of(ObjectAddress object) const;
 
-  const drive::Profile* profile_;
-  bool chinese_;
+  /// A write whose acknowledge has not come.
+  struct Pending {
+    ObjectAddress object;
+    Bytes data;
+  };
+
+  Options options_;
+  PdoBook pdos_;
+  DecodedFrame out_;
   std::array<canopen::SdoObserver, 128> channels_;
+  std::array<std::optional<Pending>, 128> pending_;
 };
 
 }  // namespace servoctl::commands

@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <numeric>
 
-#include "base/duration.hpp"
 #include "base/number.hpp"
 #include "canopen/cob_id.hpp"
 #include "commands/command.hpp"
+#include "commands/listening.hpp"
 #include "commands/notice.hpp"
 #include "session/scan.hpp"
 
@@ -20,7 +20,7 @@ constexpr ObjectAddress kHeartbeat{0x1017, 0};
 constexpr Duration kSlice = std::chrono::milliseconds(100);
 
 constexpr Parameter kParameters[] = {
-    {.name = "--for", .help = "how long; until Ctrl-C unless said", .kind = Kind::duration},
+    kForOption,
     {.name = "--guard", .help = "ask by node guarding, once in this time", .kind = Kind::duration},
     {.name = "--life",
      .help = "lost after so many guard times without answer (default 3)",
@@ -32,15 +32,6 @@ struct Plan {
   std::optional<Duration> guard_time;
   std::uint32_t life_factor = 3;
 };
-
-Result<std::optional<Duration>> duration_option(const Arguments& arguments, std::string_view name) {
-  if (!arguments.has(name)) return std::optional<Duration>();
-  const auto time = parse_duration(arguments.text(name));
-  if (!time || *time == Duration::zero())
-    return fail(Errc::usage, fmt::format("'{}' is no time for {}", arguments.text(name), name),
-                "write 500ms or 10s");
-  return std::optional(*time);
-}
 
 Result<Plan> plan_of(const Arguments& arguments) {
   Plan plan;

@@ -54,7 +54,9 @@ extern const Command kTestJog;
 extern const Command kTestHome;
 extern const Command kTestAll;
 extern const Command kReport;
+extern const Command kMonitor;
 extern const Command kDecode;
+extern const Command kReplay;
 extern const Command kDrives;
 extern const Command kEdsCheck;
 extern const Command kRun;
@@ -155,7 +157,9 @@ std::span<const Command* const> registry() {
       &kTestHome,
       &kTestAll,
       &kReport,
+      &kMonitor,
       &kDecode,
+      &kReplay,
       &kDrives,
       &kEdsCheck,
       &kRun,

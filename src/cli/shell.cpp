@@ -120,6 +120,8 @@ Result<Value> Shell::execute(Run& run, const commands::Arguments& arguments) {
     return batch_lines(*this, text, file);
   };
   context.keeps_samples = run.settings.json && !run.settings.samples;
+  context.wants_records = run.settings.samples;
+  context.write = [this](std::string_view lines) { console_->out(lines); };
   context.emit = [this, &run](const report::Record& sample, std::string_view line) {
     if (run.settings.samples)
       console_->out(report::to_json(sample) + "\n");

@@ -1,0 +1,115 @@
+#include "commands/frame_log.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <utility>
+
+#include "base/text.hpp"
+#include "drive/naming.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using report::Value;
+
+/// Columns of the frame itself in a line: `601#4041600000000000`.
+constexpr std::size_t kFrameWidth = 21;
+
+double seconds(Duration time) { return std::chrono::duration<double>(time).count(); }
+
+/// Right-aligned in `width` columns.
+void append_number(std::int64_t number, std::size_t width, char fill, std::string& out) {
+  const fmt::format_int digits(number);
+  if (digits.size() < width) out.append(width - digits.size(), fill);
+  out.append(digits.data(), digits.size());
+}
+
+}  // namespace
+
+bool FrameFilter::passes(const DecodedFrame& frame) const {
+  const auto has = [](const auto& list, const auto& value) {
+    return std::find(list.begin(), list.end(), value) != list.end();
+  };
+  if (!nodes.empty() && frame.node && !has(nodes, *frame.node)) return false;
+  if (!services.empty() && !has(services, frame.service)) return false;
+  return objects.empty() || std::any_of(frame.objects.begin(), frame.objects.end(),
+                                        [&](ObjectAddress object) { return has(objects, object); });
+}
+
+Result<FrameFilter> frame_filter(const Context& context, const Arguments& arguments) {
+  FrameFilter out;
+  if (!context.nodes.empty() && context.nodes.front() != 0) out.nodes = context.nodes;
+  for (const auto& service : arguments.all("--service"))
+    out.services.push_back(*std::find(std::begin(kServices), std::end(kServices), service));
+  for (const auto& name : arguments.all("--object")) {
+    const auto target = drive::resolve(context.profile, name);
+    if (!target) return tl::unexpected<Error>(target.error());
+    out.objects.push_back(target->address);
+  }
+  return out;
+}
+
+FrameLog::FrameLog(Context& context, FrameFilter filter, bool raw)
+    : filter_(std::move(filter)),
+      raw_(raw),
+      writer_(context),
+      decoder_({context.profile, context.chinese, writer_.wants_records()}) {}
+
+void FrameLog::begin_line(Duration time) {
+  const auto since = (time - begin_.value_or(time)).count();
+  line_.clear();
+  append_number(since / 1'000'000, 4, ' ', line_);
+  line_ += '.';
+  append_number(since % 1'000'000, 6, '0', line_);
+  line_ += ' ';
+}
+
+void FrameLog::add_node(std::optional<std::uint8_t> node) {
+  if (node)
+    append_number(*node, 3, ' ', line_);
+  else
+    line_ += "  -";
+  line_ += ' ';
+}
+
+void FrameLog::add(Duration time, std::string_view interface_name, const can::Frame& frame) {
+  ++count_;
+  if (!begin_) begin_ = time;
+  const auto& decoded = decoder_.decode(frame);
+  ++services_[decoded.service];
+  if (!filter_.passes(decoded)) return;
+  if (writer_.wants_records()) {
+    report::Record record{{"time", seconds(time)},
+                          {"interface", interface_name},
+                          {"frame", can::to_string(frame)},
+                          {"service", decoded.service},
+                          {"node", decoded.node ? Value(*decoded.node) : Value()}};
+    record.insert(record.end(), decoded.fields.begin(), decoded.fields.end());
+    record.push_back({"text", decoded.text});
+    return writer_.add_record(std::move(record));
+  }
+  begin_line(time);
+  if (raw_) (line_ += pad_right(can::to_string(frame), kFrameWidth)) += ' ';
+  add_node(decoded.node);
+  line_ += decoded.text;
+  writer_.add_line(line_);
+}
+
+void FrameLog::remark(Duration time, std::string_view service, std::optional<std::uint8_t> node,
+                      std::string_view text, report::Record fields) {
+  if (!filter_.services.empty() && service != "alarm") return;
+  if (writer_.wants_records()) {
+    report::Record record{
+        {"time", seconds(time)}, {"service", service}, {"node", node ? Value(*node) : Value()}};
+    record.insert(record.end(), fields.begin(), fields.end());
+    record.push_back({"text", text});
+    return writer_.add_record(std::move(record));
+  }
+  begin_line(time);
+  if (raw_) line_.append(kFrameWidth + 1, ' ');
+  add_node(node);
+  line_ += text;
+  writer_.add_line(line_);
+}
+
+}  // namespace servoctl::commands

@@ -1,0 +1,48 @@
+#include "commands/listening.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "base/duration.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+/// How late what was gathered is shown, and an end by --for noticed, on a bus that is never silent.
+constexpr Duration kSlice = std::chrono::milliseconds(50);
+
+}  // namespace
+
+Result<std::optional<Duration>> duration_option(const Arguments& arguments, std::string_view name) {
+  if (!arguments.has(name)) return std::optional<Duration>();
+  const auto time = parse_duration(arguments.text(name));
+  if (!time || *time == Duration::zero())
+    return fail(Errc::usage, fmt::format("'{}' is no time for {}", arguments.text(name), name),
+                "write 500ms or 10s");
+  return std::optional(*time);
+}
+
+Result<void> listen(session::Session& session, std::optional<Duration> length, const Listener& listener) {
+  const auto end = length ? session.now() + *length : kNever;
+  auto shown = session.now();
+  for (;;) {
+    const auto due = listener.next ? listener.next() : kNever;
+    auto frame = session.receive(std::min({end, due, shown + kSlice}));
+    if (!frame && frame.error().code == Errc::interrupted) break;
+    if (!frame) return tl::unexpected<Error>(frame.error());
+    const auto now = session.received_at();
+    if (*frame && now < end && listener.on_frame) listener.on_frame(**frame, now);
+    if (!*frame || now >= shown + kSlice) {
+      if (listener.on_pause) listener.on_pause();
+      shown = now;
+    }
+    // A frame may have arrived long before it was taken: what is due is asked of the clock.
+    if (due != kNever && session.now() >= due && session.now() < end)
+      if (const auto done = listener.on_time(session.now()); !done) return done;
+    if (now >= end) break;
+  }
+  if (listener.on_pause) listener.on_pause();
+  return {};
+}
+
+}  // namespace servoctl::commands

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "commands/command.hpp"
+
+/// What commands that listen to the bus have in common.
+namespace servoctl::commands {
+
+inline constexpr Parameter kForOption{
+    .name = "--for", .help = "how long; until Ctrl-C unless said", .kind = Kind::duration};
+
+/// The time of an option; empty when it was not given. Errc::usage when it is no time, or zero.
+Result<std::optional<Duration>> duration_option(const Arguments& arguments, std::string_view name);
+
+/// What is done while listening; any of them may be empty.
+struct Listener {
+  std::function<void(const can::Frame& frame, TimePoint time)> on_frame = {};
+  /// Called whenever nothing more is waiting, and every 50 ms.
+  std::function<void()> on_pause = {};
+  /// Called when `next` (asked each time) has come.
+  std::function<Result<void>(TimePoint now)> on_time = {};
+  std::function<TimePoint()> next = {};
+};
+
+/// Listens until `length` is over or Ctrl-C comes, which is no error.
+Result<void> listen(session::Session& session, std::optional<Duration> length, const Listener& listener);
+
+}  // namespace servoctl::commands

@@ -1,0 +1,168 @@
+#include <fmt/format.h>
+#include <cmath>
+
+#include "base/number.hpp"
+#include "commands/bus_load.hpp"
+#include "commands/command.hpp"
+#include "commands/frame_log.hpp"
+#include "commands/listening.hpp"
+#include "commands/notice.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using canopen::NodeEvent;
+using report::Value;
+
+/// So late frames may be shown: nobody sees the difference, and at full load it halves the work.
+constexpr Duration kDelay = std::chrono::milliseconds(5);
+
+constexpr Parameter kParameters[] = {
+    kForOption,
+    kServiceOption,
+    kObjectOption,
+    {.name = "--ask", .help = "first read the PDO mapping of the nodes given by -n", .kind = Kind::flag},
+    {.name = "--bitrate",
+     .help = "tell the load of the bus at this bitrate, such as 500k",
+     .kind = Kind::text},
+    {.name = "--raw", .help = "show the frames as well", .kind = Kind::flag},
+};
+
+/// `500k`, `1M`, `125000`, in bit/s; 0 when the option was not given.
+Result<std::uint32_t> bitrate_option(const Arguments& arguments) {
+  if (!arguments.has("--bitrate")) return 0U;
+  auto text = arguments.text("--bitrate");
+  std::uint64_t factor = 1;
+  if (!text.empty() && (text.back() == 'k' || text.back() == 'K')) factor = 1000;
+  if (!text.empty() && (text.back() == 'M' || text.back() == 'm')) factor = 1'000'000;
+  if (factor > 1) text.remove_suffix(1);
+  const auto number = parse_digits(text, 10);
+  if (!number || *number == 0 || *number > 1'000'000 || *number * factor > 1'000'000)
+    return fail(Errc::usage, fmt::format("'{}' is no bitrate", arguments.text("--bitrate")),
+                "write 125k, 250k, 500k or 1M; CANopen has at most 1 Mbit/s");
+  return static_cast<std::uint32_t>(*number * factor);
+}
+
+/// Puts the PDOs of the nodes into the book as the drives tell them.
+Result<void> ask_mappings(Context& context, PdoBook& book) {
+  if (context.nodes.empty() || context.nodes.front() == 0)
+    return fail(Errc::usage, "--ask needs to know which nodes", "add -n 1 or a list");
+  auto answers = session::read_pdo_values(*context.session, context.profile, context.nodes);
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    if (!answers[i]) return tl::unexpected<Error>(answers[i].error());
+    book.set(context.nodes[i], std::move(*answers[i]));
+  }
+  return {};
+}
+
+/// Whether the node stopped telling that it lives.
+bool is_loss(const NodeEvent& event) { return std::holds_alternative<NodeEvent::HeartbeatLost>(event.what); }
+
+class Monitor {
+ public:
+  Monitor(Context& context, FrameLog& log, std::uint32_t bitrate)
+      : context_(&context),
+        log_(&log),
+        load_(bitrate, context.session->now()),
+        begin_(context.session->now()) {}
+
+  Result<void> run(std::optional<Duration> length) {
+    Listener listener;
+    listener.on_frame = [this](const can::Frame& frame, TimePoint time) {
+      load_.add(frame, time);
+      log_->add(time - begin_, context_->session->url(), frame);
+    };
+    listener.on_pause = [this] {
+      take_alarms();
+      log_->flush();
+    };
+    context_->session->bus().gather(kDelay);
+    const auto ended = listen(*context_->session, length, listener);
+    context_->session->bus().gather(Duration::zero());
+    return ended;
+  }
+
+  report::Record summary() const {
+    const auto now = context_->session->now();
+    const auto seconds = std::chrono::duration<double>(now - begin_).count();
+    const auto percent = [](std::optional<double> load) {
+      return load ? Value(std::round(*load * 10) / 10) : Value();
+    };
+    report::Table services;
+    services.columns = {{"service"}, {"frames"}};
+    for (const auto& [service, count] : log_->services()) services.rows.push_back({service, count});
+    return {{"frames", log_->count()},
+            {"seconds", std::round(seconds * 1000) / 1000},
+            {"frames_per_second",
+             seconds > 0 ? Value(std::round(static_cast<double>(log_->count()) / seconds)) : Value(),
+             report::Show::everywhere, "frames a second"},
+            {"load", percent(load_.mean(now)), report::Show::everywhere, "bus load (%)"},
+            {"peak_load", percent(load_.peak()), report::Show::everywhere, "peak in 100 ms (%)"},
+            {"heartbeats_lost", lost_, report::Show::everywhere, "heartbeats lost"},
+            {"services", std::move(services)}};
+  }
+
+ private:
+  /// Everything else the session notices is among the frames.
+  void take_alarms() {
+    (void)context_->session->take_reports();
+    for (const auto& event : context_->session->take_events()) {
+      if (!is_loss(event)) continue;
+      ++lost_;
+      auto text = notice_text(event, context_->profile, context_->chinese);
+      text = "ALARM " + text.substr(text.find(": ") + 2);
+      log_->remark(event.time - begin_, "alarm", event.node, text, {{"event", "heartbeat-lost"}});
+    }
+  }
+
+  Context* context_;
+  FrameLog* log_;
+  BusLoad load_;
+  TimePoint begin_;
+  std::size_t lost_ = 0;
+};
+
+Result<Value> run(Context& context, const Arguments& arguments) {
+  auto filter = frame_filter(context, arguments);
+  if (!filter) return tl::unexpected<Error>(filter.error());
+  const auto length = duration_option(arguments, "--for");
+  if (!length) return tl::unexpected<Error>(length.error());
+  const auto bitrate = bitrate_option(arguments);
+  if (!bitrate) return tl::unexpected<Error>(bitrate.error());
+  FrameLog log(context, std::move(*filter), arguments.has("--raw"));
+  if (arguments.has("--ask"))
+    if (const auto asked = ask_mappings(context, log.decoder().pdos()); !asked)
+      return tl::unexpected<Error>(asked.error());
+  Monitor monitor(context, log, *bitrate);
+  if (const auto ended = monitor.run(*length); !ended) return tl::unexpected<Error>(ended.error());
+  auto summary = monitor.summary();
+  if (context.keeps_samples) summary.push_back({"samples", log.take_kept()});
+  return Value(std::move(summary));
+}
+
+}  // namespace
+
+extern const Command kMonitor;
+const Command kMonitor{
+    .path = "monitor",
+    .summary = "Show everything on the bus as it happens, with names and values",
+    .details =
+        "One line a frame: NMT, SYNC, TIME, EMCY in the family's words, PDOs with the objects they carry, "
+        "SDO "
+        "with "
+        "names, values and aborts, heartbeats, boot-ups, node guarding; and an ALARM when a node's heartbeat "
+        "ends. It sends nothing unless told to: with --ask the PDO mapping of the nodes given by -n is read "
+        "first, else "
+        "PDOs are shown by the mapping that is written or read on the bus meanwhile, or by the one the "
+        "family "
+        "(-d) "
+        "leaves the factory with. At the end (--for, or Ctrl-C) it tells how many frames there were, and the "
+        "load of "
+        "the bus when --bitrate is given. `-o jsonl` gives one document a frame.",
+    .parameters = kParameters,
+    .needs = Needs::bus,
+    .effect = Effect::reads,
+    .run = run,
+};
+
+}  // namespace servoctl::commands

@@ -1,0 +1,205 @@
+#include "commands/pdo_book.hpp"
+
+#include <fmt/format.h>
+#include <utility>
+
+#include "canopen/cob_id.hpp"
+#include "commands/reading.hpp"
+#include "commands/records.hpp"
+#include "drive/cia402.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using report::Value;
+
+constexpr ObjectAddress kControlword{0x6040, 0};
+constexpr ObjectAddress kStatusword{0x6041, 0};
+/// PDOs of the pre-defined connection set (CiA 301, 7.3.5).
+constexpr std::uint32_t kFirstPdoId = 0x181;
+constexpr std::uint32_t kLastPdoId = 0x57F;
+
+/// The bits of an entry as a number; at most 64.
+std::uint64_t bits_at(ByteSpan data, std::size_t first, std::size_t count) {
+  const auto whole = load_le(data.first(std::min<std::size_t>(data.size(), 8))) >> first;
+  return count >= 64 ? whole : whole & ((std::uint64_t{1} << count) - 1);
+}
+
+od::DataType unsigned_type(std::size_t bytes) {
+  return bytes == 1   ? od::DataType::u8
+         : bytes == 2 ? od::DataType::u16
+         : bytes <= 4 ? od::DataType::u32
+                      : od::DataType::u64;
+}
+
+PdoField make_field(const drive::Profile* profile, bool chinese, std::uint8_t node, canopen::PdoEntry entry,
+                    std::size_t first_bit) {
+  PdoField out{entry, first_bit, drive::target_at(profile, entry.object), {}, {}, {}};
+  const std::size_t bytes = (entry.bits + 7U) / 8U;
+  out.meaning = drive::fitted(drive::meaning(out.target, node), bytes);
+  out.type = out.meaning.type_known && od::size_of(out.meaning.type) == bytes ? out.meaning.type
+                                                                              : unsigned_type(bytes);
+  out.name = chinese ? out.target.label_zh() : out.target.label();
+  if (out.name.empty()) out.name = to_string(entry.object);
+  return out;
+}
+
+/// The COB-ID of a PDO that was not told, as far as there is one; whether it is in use stays open.
+std::uint32_t predefined_cob_id(const canopen::Pdo& pdo, std::uint8_t node) {
+  constexpr std::uint16_t kPredefined = 4;
+  if (pdo.number > kPredefined) return canopen::kPdoInvalid;
+  const bool receive = pdo.direction == canopen::PdoDirection::receive;
+  return canopen::kPdoInvalid | ((receive ? 0x100U : 0x080U) + 0x100U * pdo.number + node);
+}
+
+bool fits_frame(const PdoView& view, ByteSpan data) { return view.pdo.bits() <= data.size() * 8; }
+
+}  // namespace
+
+od::Value PdoField::value(ByteSpan data) const {
+  auto raw = bits_at(data, first_bit, entry.bits);
+  if (od::is_signed(type) && entry.bits < 64 && (raw >> (entry.bits - 1U) & 1U) != 0)
+    raw |= ~std::uint64_t{0} << entry.bits;
+  if (od::is_signed(type)) return static_cast<std::int64_t>(raw);
+  if (od::is_integer(type)) return raw;
+  const auto decoded = od::decode(type, store_le(raw, (entry.bits + 7U) / 8U));
+  return decoded ? *decoded : od::Value(raw);
+}
+
+PdoView make_view(const drive::Profile* profile, bool chinese, std::uint8_t node, canopen::Pdo pdo) {
+  PdoView out{node, std::move(pdo), {}, {}};
+  out.name = canopen::name(out.pdo.direction, out.pdo.number);
+  std::size_t at = 0;
+  for (const auto& entry : out.pdo.entries) {
+    if (!entry.is_gap() && entry.bits > 0 && at + entry.bits <= 64)
+      out.fields.push_back(make_field(profile, chinese, node, entry, at));
+    at += entry.bits;
+  }
+  return out;
+}
+
+void append_value(const PdoField& field, const od::Value& value, bool chinese, std::string& out) {
+  const auto& meaning = field.meaning;
+  const auto* number = std::get_if<std::uint64_t>(&value);
+  const auto& object = field.entry.object;
+  if (number != nullptr && (object == kStatusword || object == kControlword)) {
+    fmt::format_to(std::back_inserter(out), "0x{:04X}", *number);
+    if (object == kControlword) return;
+    const auto state = drive::decode_state(static_cast<std::uint16_t>(*number));
+    out += ' ';
+    out += chinese ? drive::name_zh(state) : drive::name(state);
+    return;
+  }
+  const bool plain = meaning.encoding == od::Encoding::plain;
+  if (plain && meaning.scale != 1)
+    fmt::format_to(std::back_inserter(out), "{:.12g}", drive::scaled(meaning, value));
+  else if (plain && number != nullptr)
+    out += fmt::format_int(*number).c_str();
+  else if (const auto* whole = std::get_if<std::int64_t>(&value); plain && whole != nullptr)
+    out += fmt::format_int(*whole).c_str();
+  else
+    out += drive::plain_text(meaning, value);
+  if (!meaning.unit.empty()) (out += ' ') += meaning.unit;
+  if (meaning.labels == nullptr || meaning.labels->empty()) return;
+  if (const auto* label = drive::label_of(meaning, value))
+    (out += ' ') += chinese && !label->label_zh.empty() ? label->label_zh : label->label;
+}
+
+void append_values(const PdoView& view, ByteSpan data, bool chinese, std::string& out) {
+  if (!fits_frame(view, data) || view.fields.empty()) {
+    out += to_hex(data);
+    out += view.fields.empty() ? " (mapping not known)" : " (shorter than its mapping)";
+    return;
+  }
+  bool first = true;
+  for (const auto& field : view.fields) {
+    if (!std::exchange(first, false)) out += ", ";
+    out += field.name;
+    out += ' ';
+    append_value(field, field.value(data), chinese, out);
+  }
+}
+
+report::List value_records(const PdoView& view, ByteSpan data) {
+  report::List out;
+  if (!fits_frame(view, data)) return out;
+  for (const auto& field : view.fields) {
+    const auto value = field.value(data);
+    const auto& meaning = field.meaning;
+    const auto raw = od_value(value);
+    const bool as_sent = meaning.scale == 1 && meaning.encoding == od::Encoding::plain;
+    const auto* label = drive::label_of(meaning, value);
+    out.emplace_back(report::Record{{"index", field.entry.object.index},
+                                    {"sub", field.entry.object.sub},
+                                    {"name", report::text_or_null(field.target.label())},
+                                    {"value", as_sent ? raw : Value(drive::scaled(meaning, value))},
+                                    {"raw", raw},
+                                    {"unit", report::text_or_null(std::string(meaning.unit))},
+                                    {"label", label != nullptr ? Value(label->label) : Value()}});
+  }
+  return out;
+}
+
+PdoBook::Node& PdoBook::node(std::uint8_t id) {
+  const auto known = nodes_.find(id);
+  if (known != nodes_.end()) return known->second;
+  auto& out = nodes_[id];
+  if (profile_ != nullptr) out.at_start = session::default_pdo_values(*profile_, id);
+  out.now = out.at_start;
+  rebuild(id);
+  return out;
+}
+
+void PdoBook::set(std::uint8_t id, session::Values values) {
+  auto& place = nodes_[id];
+  place.at_start = std::move(values);
+  place.now = place.at_start;
+  rebuild(id);
+}
+
+void PdoBook::learn(std::uint8_t id, ObjectAddress object, ByteSpan data) {
+  if (!canopen::pdo_at(object.index)) return;
+  node(id).now[object] = Bytes(data.begin(), data.end());
+  rebuild(id);
+}
+
+void PdoBook::forget(std::uint8_t id) {
+  const auto known = nodes_.find(id);
+  if (known == nodes_.end() || known->second.now == known->second.at_start) return;
+  known->second.now = known->second.at_start;
+  rebuild(id);
+}
+
+void PdoBook::rebuild(std::uint8_t id) {
+  auto& place = nodes_[id];
+  place.views.clear();
+  for (auto& pdo : session::pdos_of(place.now)) {
+    if (place.now.count({pdo.communication_index(), 1}) == 0) pdo.cob_id = predefined_cob_id(pdo, id);
+    place.views.push_back(make_view(profile_, chinese_, id, std::move(pdo)));
+  }
+  index();
+}
+
+/// A producer goes before a consumer, one that is in use before one that is switched off.
+void PdoBook::index() {
+  by_id_.fill(nullptr);
+  const auto rank = [](const PdoView& view) {
+    return 2 * view.pdo.is_valid() + (view.pdo.direction == canopen::PdoDirection::transmit);
+  };
+  for (const auto& entry : nodes_)
+    for (const auto& view : entry.second.views) {
+      if (view.can_id() >= by_id_.size() || !canopen::service_of(view.can_id()).empty()) continue;
+      auto& place = by_id_[view.can_id()];
+      if (place == nullptr || rank(view) > rank(*place)) place = &view;
+    }
+}
+
+const PdoView* PdoBook::find(std::uint32_t can_id) {
+  if (can_id >= by_id_.size()) return nullptr;
+  if (by_id_[can_id] != nullptr || can_id < kFirstPdoId || can_id > kLastPdoId) return by_id_[can_id];
+  const auto id = static_cast<std::uint8_t>(can_id & canopen::kLastNode);
+  if (id != 0) node(id);
+  return by_id_[can_id];
+}
+
+}  // namespace servoctl::commands

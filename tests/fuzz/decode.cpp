@@ -1,0 +1,19 @@
+// Logs of frames nobody meant: every frame is explained in one line, whatever mappings the log claims.
+#include "base/text.hpp"
+#include "can/trace.hpp"
+#include "commands/frame_decoder.hpp"
+#include "tests/fuzz/fuzz.hpp"
+
+using namespace servoctl;
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  commands::FrameDecoder decoder({});
+  for (const auto row : split(fuzz::text(data, size), '\n')) {
+    const auto line = can::parse_log_line(row);
+    if (!line) continue;
+    const auto& decoded = decoder.decode(line->frame);
+    fuzz::require(!decoded.text.empty(), "every frame is explained");
+    fuzz::require(!report::to_json(decoded.fields).empty(), "… and can be shown as JSON");
+  }
+  return 0;
+}
