@@ -54,6 +54,10 @@ extern const Command kTestJog;
 extern const Command kTestHome;
 extern const Command kTestAll;
 extern const Command kReport;
+extern const Command kPdoWatch;
+extern const Command kPdoSend;
+extern const Command kSyncOnce;
+extern const Command kSyncStart;
 extern const Command kMonitor;
 extern const Command kDecode;
 extern const Command kReplay;
@@ -157,6 +161,10 @@ std::span<const Command* const> registry() {
       &kTestHome,
       &kTestAll,
       &kReport,
+      &kPdoWatch,
+      &kPdoSend,
+      &kSyncOnce,
+      &kSyncStart,
       &kMonitor,
       &kDecode,
       &kReplay,

@@ -1,0 +1,170 @@
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "commands/change.hpp"
+#include "commands/command.hpp"
+#include "commands/pdo_use.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using canopen::NmtState;
+using report::Value;
+
+constexpr ObjectAddress kGuardTime{0x100C, 0};
+constexpr ObjectAddress kLifeFactor{0x100D, 0};
+constexpr ObjectAddress kHeartbeat{0x1017, 0};
+constexpr Duration kPatience = std::chrono::milliseconds(200);
+constexpr std::uint8_t kLastSynchronous = 240;
+
+constexpr Parameter kParameters[] = {
+    {.name = "pdo", .help = "RPDO1 …", .kind = Kind::text, .required = true},
+    {.name = "value",
+     .help = "one for each mapped object, in their order; with units where known",
+     .kind = Kind::value,
+     .required = true,
+     .many = true},
+};
+
+/// A number the drive holds; 0 where it does not tell.
+std::uint64_t read_number(session::Session& session, std::uint8_t node, ObjectAddress object) {
+  const auto answer = session.upload(node, object);
+  return answer && answer->size() <= 8 ? load_le(*answer) : 0;
+}
+
+/// The NMT state: as heard, else by waiting for a heartbeat, else by node guarding, unless that would start
+/// life guarding, which would end in a fault when nobody asks any more. Empty when nothing tells it.
+Result<std::optional<NmtState>> find_state(session::Session& session, std::uint8_t node) {
+  auto& watch = session.watch();
+  const auto known = [&] { return watch.state(node).has_value(); };
+  if (known()) return watch.state(node);
+  auto patience = kPatience;
+  if (const auto period = read_number(session, node, kHeartbeat); period != 0)
+    patience += std::chrono::milliseconds(2 * period);
+  else if (read_number(session, node, kGuardTime) * read_number(session, node, kLifeFactor) != 0)
+    return std::optional<NmtState>();
+  else if (const auto asked = session.send(canopen::guarding_request(node)); !asked)
+    return tl::unexpected<Error>(asked.error());
+  if (const auto heard = session.wait(known, session.now() + patience); !heard)
+    return tl::unexpected<Error>(heard.error());
+  return watch.state(node);
+}
+
+Result<void> check_usable(const PdoView& view) {
+  if (view.pdo.direction == canopen::PdoDirection::transmit)
+    return fail(Errc::usage, fmt::format("{} is sent by the drive", view.name), "an RPDO can be sent to it");
+  if (!view.pdo.is_valid())
+    return fail(Errc::negative, fmt::format("node {}: {} is not in use", view.node, view.name),
+                "bit 31 of its COB-ID is set; `pdo enable` clears it");
+  if (view.pdo.entries.empty())
+    return fail(Errc::negative, fmt::format("node {}: {} maps nothing", view.node, view.name),
+                "`pdo map` gives it objects");
+  if ((view.pdo.cob_id & canopen::kPdoCobIdMask) > 0x7FF || view.pdo.bits() > 64)
+    return fail(Errc::negative, fmt::format("node {}: {} is no PDO of classical CAN", view.node, view.name),
+                "`pdo show` tells its COB-ID and its length");
+  return {};
+}
+
+Result<void> check_count(const PdoView& view, std::size_t given) {
+  if (given == view.fields.size()) return {};
+  std::vector<std::string> names;
+  for (const auto& field : view.fields) names.push_back(field.name);
+  std::string order;
+  for (const auto& name : names) order += (order.empty() ? "" : ", ") + name;
+  return fail(Errc::usage,
+              fmt::format("{} carries {} value{}, {} given", view.name, names.size(),
+                          names.size() == 1 ? "" : "s", given),
+              "in this order: " + order);
+}
+
+/// The frame that brings these values, and what they are in words.
+struct Message {
+  can::Frame frame;
+  std::string text;
+};
+Result<Message> make_message(Context& context, const PdoView& view, std::span<const std::string> values) {
+  if (const auto right = check_count(view, values.size()); !right)
+    return tl::unexpected<Error>(right.error());
+  std::vector<Bytes> data;
+  std::size_t next = 0;
+  for (const auto& entry : view.pdo.entries) {
+    if (entry.is_gap()) {
+      data.emplace_back();
+      continue;
+    }
+    const auto& field = view.fields[next];
+    auto change = make_change(context, view.node, field.target, values[next], field.type);
+    if (!change) return tl::unexpected<Error>(change.error());
+    data.push_back(std::move(change->data));
+    ++next;
+  }
+  Message out{can::make_frame(view.can_id(), canopen::pack_pdo(view.pdo.entries, data)), {}};
+  append_values(view, out.frame.payload(), context.chinese, out.text);
+  return out;
+}
+
+Result<void> check_operational(Context& context, const PdoView& view) {
+  const auto state = find_state(*context.session, view.node);
+  if (!state) return tl::unexpected<Error>(state.error());
+  if (!*state) {
+    context.notices.push_back(
+        fmt::format("node {} does not tell whether it is operational (no heartbeat); if not, it ignores PDOs",
+                    view.node));
+    return {};
+  }
+  if (**state == NmtState::operational) return {};
+  return fail(Errc::negative,
+              fmt::format("node {} is {}: it ignores PDOs", view.node, canopen::name(**state)),
+              fmt::format("`nmt start -n {}` makes it operational", view.node));
+}
+
+Result<Value> run(Context& context, const Arguments& arguments) {
+  if (context.nodes.size() != 1)
+    return fail(Errc::usage, "`pdo send` is for one node at a time", "name one node, such as -n 1");
+  const auto views = read_views(context, context.nodes.front());
+  if (!views) return tl::unexpected<Error>(views.error());
+  const auto found = find_view(*views, arguments.text("pdo"));
+  if (!found) return tl::unexpected<Error>(found.error());
+  const auto& view = **found;
+  if (const auto usable = check_usable(view); !usable) return tl::unexpected<Error>(usable.error());
+  const auto message = make_message(context, view, arguments.all("value"));
+  if (!message) return tl::unexpected<Error>(message.error());
+  report::Record answer{{"node", view.node},
+                        {"pdo", view.name},
+                        {"frame", can::to_string(message->frame)},
+                        {"values", message->text, report::Show::text},
+                        {"values", value_records(view, message->frame.payload()), report::Show::json}};
+  if (context.dry_run) return Value(std::move(answer));
+  if (const auto ready = check_operational(context, view); !ready)
+    return tl::unexpected<Error>(ready.error());
+  if (const auto sure = context.confirm(
+          fmt::format("Send {} to node {}: {}? The motor may move.", view.name, view.node, message->text));
+      !sure)
+    return tl::unexpected<Error>(sure.error());
+  if (const auto sent = context.session->send(message->frame); !sent)
+    return tl::unexpected<Error>(sent.error());
+  if (view.pdo.type <= kLastSynchronous)
+    context.notices.push_back(fmt::format("{} takes effect at the next SYNC: `sync once`", view.name));
+  return Value(std::move(answer));
+}
+
+}  // namespace
+
+extern const Command kPdoSend;
+const Command kPdoSend{
+    .path = "pdo send",
+    .summary = "Send an RPDO with these values once; asks first",
+    .details =
+        "Reads the mapping of the node and puts the values, one for each mapped object, where they belong: "
+        "`pdo send "
+        "RPDO1 0x0F 1000rpm`. Types, limits and units are checked as for `write`. Refused when the PDO is "
+        "not in "
+        "use or "
+        "the node is not operational. PDOs are not answered: `status` or `pdo watch` tell what became of it.",
+    .parameters = kParameters,
+    .needs = Needs::node,
+    .effect = Effect::moves,
+    .run = run,
+};
+
+}  // namespace servoctl::commands

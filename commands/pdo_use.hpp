@@ -1,0 +1,18 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "commands/pdo_book.hpp"
+
+/// What `pdo watch` and `pdo send` have in common.
+namespace servoctl::commands {
+
+/// The PDOs of a node as the drive tells them.
+Result<std::vector<PdoView>> read_views(Context& context, std::uint8_t node);
+
+/// The one of this name. Errc::usage when the text names none, Errc::negative when the node does not have it.
+Result<const PdoView*> find_view(std::span<const PdoView> views, std::string_view name);
+
+}  // namespace servoctl::commands

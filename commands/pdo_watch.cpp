@@ -1,0 +1,133 @@
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "commands/command.hpp"
+#include "commands/listening.hpp"
+#include "commands/pdo_use.hpp"
+#include "commands/rhythm.hpp"
+#include "commands/sample_writer.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using report::Value;
+
+constexpr Parameter kParameters[] = {
+    {.name = "pdo",
+     .help = "RPDO1, TPDO2 …; all that are in use unless said",
+     .kind = Kind::text,
+     .many = true},
+    kForOption,
+};
+
+/// One PDO that is watched, and how often it came.
+struct Watched {
+  PdoView view;
+  Rhythm rhythm = {};
+};
+
+/// The PDOs of all nodes that were asked for and are in use.
+Result<std::vector<Watched>> pdos_of(Context& context, const Arguments& arguments) {
+  std::vector<Watched> out;
+  for (const auto node : context.nodes) {
+    const auto views = read_views(context, node);
+    if (!views) return tl::unexpected<Error>(views.error());
+    for (const auto& name : arguments.all("pdo")) {
+      const auto view = find_view(*views, name);
+      if (!view) return tl::unexpected<Error>(view.error());
+      if (!(*view)->pdo.is_valid())
+        return fail(Errc::negative, fmt::format("node {}: {} is not in use", node, (*view)->name),
+                    "bit 31 of its COB-ID is set; `pdo enable` clears it");
+      out.push_back({**view});
+    }
+    if (arguments.has("pdo")) continue;
+    for (const auto& view : *views)
+      if (view.pdo.is_valid()) out.push_back({view});
+  }
+  return out;
+}
+
+report::Table summary(std::span<const Watched> watched) {
+  report::Table table;
+  table.columns = {{"node"}, {"pdo"}};
+  for (auto& column : Rhythm::columns()) table.columns.push_back(std::move(column));
+  for (const auto& entry : watched) {
+    report::List row{entry.view.node, entry.view.name};
+    for (auto& cell : entry.rhythm.cells()) row.push_back(std::move(cell));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+void show(Context& context, SampleWriter& writer, const Watched& entry, const can::Frame& frame,
+          Duration time) {
+  const auto& view = entry.view;
+  const auto data = frame.payload();
+  const auto seconds = std::chrono::duration<double>(time).count();
+  if (writer.wants_records()) {
+    return writer.add_record({{"time", seconds},
+                              {"node", view.node},
+                              {"pdo", view.name},
+                              {"bytes", to_hex(data)},
+                              {"values", value_records(view, data)}});
+  }
+  auto line = fmt::format("{:11.6f} {:3} {} ", seconds, view.node, view.name);
+  append_values(view, data, context.chinese, line);
+  writer.add_line(line);
+}
+
+Result<Value> run(Context& context, const Arguments& arguments) {
+  const auto length = duration_option(arguments, "--for");
+  if (!length) return tl::unexpected<Error>(length.error());
+  auto watched = pdos_of(context, arguments);
+  if (!watched) return tl::unexpected<Error>(watched.error());
+  if (watched->empty())
+    return fail(Errc::negative, "none of the PDOs is in use",
+                "`pdo show` tells them, `pdo enable` opens one");
+  auto& session = *context.session;
+  const auto begin = session.now();
+  SampleWriter writer(context);
+  Listener listener;
+  listener.on_pause = [&] { writer.flush(); };
+  listener.on_frame = [&](const can::Frame& frame, TimePoint time) {
+    if (frame.extended || frame.remote || frame.error) return;
+    for (auto& entry : *watched) {
+      if (entry.view.can_id() != frame.id) continue;
+      entry.rhythm.add(time);
+      show(context, writer, entry, frame, time - begin);
+    }
+  };
+  if (const auto ended = listen(session, *length, listener); !ended)
+    return tl::unexpected<Error>(ended.error());
+  const bool silent = std::all_of(watched->begin(), watched->end(),
+                                  [](const Watched& entry) { return entry.rhythm.count() == 0; });
+  if (silent)
+    context.notices.emplace_back(
+        "no PDO came: nodes send them when operational (`nmt start`), synchronous ones at SYNC (`sync "
+        "start`), "
+        "others when a value changes or by their event timer");
+  if (!context.keeps_samples) return Value(summary(*watched));
+  return Value(report::Record{{"pdos", summary(*watched)}, {"samples", writer.take_kept()}});
+}
+
+}  // namespace
+
+extern const Command kPdoWatch;
+const Command kPdoWatch{
+    .path = "pdo watch",
+    .summary = "Show PDOs as they come, by the mapping the drive has now",
+    .details =
+        "Reads the mapping of the nodes and then listens: one line a PDO, with the names, values and units "
+        "of what "
+        "it "
+        "carries. At the end (--for, or Ctrl-C) it tells how often each came, and the periods measured: "
+        "mean, "
+        "shortest, "
+        "longest, standard deviation. RPDOs are shown when a master sends them.",
+    .parameters = kParameters,
+    .needs = Needs::node,
+    .effect = Effect::reads,
+    .run = run,
+};
+
+}  // namespace servoctl::commands
