@@ -58,6 +58,8 @@ extern const Command kPdoWatch;
 extern const Command kPdoSend;
 extern const Command kSyncOnce;
 extern const Command kSyncStart;
+extern const Command kWatch;
+extern const Command kScope;
 extern const Command kMonitor;
 extern const Command kDecode;
 extern const Command kReplay;
@@ -165,6 +167,8 @@ std::span<const Command* const> registry() {
       &kPdoSend,
       &kSyncOnce,
       &kSyncStart,
+      &kWatch,
+      &kScope,
       &kMonitor,
       &kDecode,
       &kReplay,

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/series.hpp"
+#include "base/statistics.hpp"
+#include "commands/pdo_book.hpp"
+#include "commands/reading.hpp"
+
+namespace servoctl::commands {
+
+/// One object of one node that is looked at again and again.
+struct Channel {
+  std::uint8_t node = 0;
+  drive::Target target;
+  std::string name;                          ///< `Statusword`
+  bool several_nodes = false;                ///< The name alone does not tell which it is.
+  std::optional<drive::Bridge> bridge = {};  ///< What the drive's own measures say of the unit.
+};
+
+/// A value of a channel.
+struct Sample {
+  Result<Bytes> bytes = Bytes{};
+  bool by_pdo = false;  ///< A TPDO brought it.
+};
+
+/// Looks at objects of drives: takes what TPDOs bring, and reads by SDO what they do not.
+class Sampler {
+ public:
+  /// The objects of all nodes of the context. Errc::usage for an unknown name. Asks the nodes for their PDO
+  /// mapping; one that does not tell it is read by SDO alone.
+  static Result<Sampler> make(Context& context, std::span<const std::string> names);
+
+  /// A frame that was received: it may carry some of the objects. True when it did.
+  bool on_frame(const can::Frame& frame, TimePoint time);
+  /// A value of each channel: the last one a TPDO brought since the call before, else read now.
+  std::vector<Sample> take();
+
+  std::span<const Channel> channels() const { return channels_; }
+  /// When a TPDO last brought something.
+  TimePoint brought_at() const { return brought_at_; }
+  /// Whether TPDOs have brought every channel since the last take().
+  bool is_complete() const;
+
+ private:
+  explicit Sampler(Context& context) : context_(&context) {}
+  void find_pdos();
+
+  /// Where a channel is found in a TPDO.
+  struct Source {
+    std::size_t channel = 0;
+    std::uint32_t can_id = 0;
+    PdoField field;
+    std::size_t bits = 0;  ///< Of the whole PDO.
+  };
+
+  Context* context_;
+  std::vector<Channel> channels_;
+  std::vector<Source> sources_;
+  std::vector<std::optional<Bytes>> brought_;
+  TimePoint brought_at_{};
+};
+
+/// What was sampled of one channel: a Series with its statistics.
+class ChannelRecord {
+ public:
+  explicit ChannelRecord(const Channel& channel) : channel_(&channel) {}
+
+  void add(double seconds, const Sample& sample);
+
+  const Channel& channel() const { return *channel_; }
+  const Series& series() const { return series_; }
+  const Statistics& statistics() const { return statistics_; }
+  std::size_t failures() const { return failures_; }
+  std::size_t by_pdo() const { return by_pdo_; }
+
+ private:
+  const Channel* channel_;
+  Series series_;
+  Statistics statistics_;
+  std::size_t failures_ = 0;
+  std::size_t by_pdo_ = 0;
+};
+
+/// Object by object: how many values, least, mean, greatest, how many came by PDO, how many reads failed.
+report::Table sampling_table(std::span<const ChannelRecord> records);
+
+/// The series of the channels that had any number.
+std::vector<Series> series_of(std::span<const ChannelRecord> records);
+
+/// Series as CSV: a line for each time, a column for each quantity, empty where it has no value then.
+std::string series_csv(std::span<const Series> series);
+
+}  // namespace servoctl::commands

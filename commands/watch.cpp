@@ -1,0 +1,168 @@
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "commands/command.hpp"
+#include "commands/listening.hpp"
+#include "commands/records.hpp"
+#include "commands/sample_writer.hpp"
+#include "commands/sampler.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using report::Value;
+
+constexpr Duration kDefaultEvery = std::chrono::milliseconds(100);
+
+constexpr Parameter kParameters[] = {
+    {.name = "object",
+     .help = "address, name or parameter number; several are shown side by side",
+     .kind = Kind::object,
+     .required = true,
+     .many = true},
+    {.name = "--every", .help = "time from value to value (default 100ms)", .kind = Kind::duration},
+    kForOption,
+    {.name = "--changes", .help = "only when a value has changed", .kind = Kind::flag},
+    {.name = "--plot", .help = "draw the values at the end", .kind = Kind::flag},
+};
+
+/// Samples as they are shown: the values of one node at one time.
+class Watching {
+ public:
+  Watching(Context& context, Sampler& sampler, bool changes)
+      : context_(&context), sampler_(&sampler), changes_(changes), writer_(context) {
+    for (const auto& channel : sampler.channels()) records_.emplace_back(channel);
+  }
+
+  /// Errc of the first look when nothing could be read; a failure later on is shown and counted.
+  Result<void> look(Duration since) {
+    const auto samples = sampler_->take();
+    const auto failed =
+        std::find_if(samples.begin(), samples.end(), [](const Sample& s) { return !s.bytes; });
+    const bool interrupted = failed != samples.end() && failed->bytes.error().code == Errc::interrupted;
+    if (interrupted || (looks_++ == 0 && failed != samples.end()))
+      return tl::unexpected<Error>(failed->bytes.error());
+    const auto seconds = std::chrono::duration<double>(since).count();
+    for (std::size_t i = 0; i < samples.size(); ++i) records_[i].add(seconds, samples[i]);
+    for (const auto node : context_->nodes) show(node, seconds, samples);
+    before_ = samples;
+    writer_.flush();
+    return {};
+  }
+
+  Value result(bool plot) {
+    report::Record out{{"objects", sampling_table(records_)}};
+    if (plot) out.push_back({"plot", report::Plot{series_of(records_)}, report::Show::text});
+    if (context_->keeps_samples) out.push_back({"samples", writer_.take_kept()});
+    return out;
+  }
+
+ private:
+  bool has_changed(std::size_t i, const std::vector<Sample>& samples) const {
+    if (before_.empty() || before_[i].bytes.has_value() != samples[i].bytes.has_value()) return true;
+    return samples[i].bytes && *samples[i].bytes != *before_[i].bytes;
+  }
+
+  void show(std::uint8_t node, double seconds, const std::vector<Sample>& samples) {
+    report::List values;
+    std::string line = fmt::format("{:10.3f}", seconds);
+    if (context_->nodes.size() > 1) line += fmt::format(" {:3}", node);
+    bool changed = !changes_;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const auto& channel = sampler_->channels()[i];
+      if (channel.node != node) continue;
+      changed = changed || has_changed(i, samples);
+      line += "  " + text_of(channel, samples[i]);
+      if (writer_.wants_records()) values.emplace_back(record_of(channel, samples[i]));
+    }
+    if (!changed) return;
+    if (writer_.wants_records())
+      writer_.add_record({{"time", seconds}, {"node", node}, {"values", std::move(values)}});
+    else
+      writer_.add_line(line);
+  }
+
+  static std::string text_of(const Channel& channel, const Sample& sample) {
+    if (!sample.bytes) return channel.name + " -";
+    const auto value =
+        decode_value({channel.node, channel.target, {}, Bytes{}, channel.bridge}, *sample.bytes);
+    auto out = channel.name + " " + value.text;
+    if (const auto* label = std::get_if<std::string>(&value.label.data())) out += " " + *label;
+    return out;
+  }
+
+  static report::Record record_of(const Channel& channel, const Sample& sample) {
+    const auto& address = channel.target.address;
+    report::Record out{{"index", address.index},
+                       {"sub", address.sub},
+                       {"name", report::text_or_null(channel.target.label())}};
+    if (!sample.bytes) {
+      out.push_back({"error", error_record(sample.bytes.error())});
+      return out;
+    }
+    auto value = decode_value({channel.node, channel.target, {}, Bytes{}, channel.bridge}, *sample.bytes);
+    out.push_back({"value", std::move(value.value)});
+    out.push_back({"raw", std::move(value.raw)});
+    out.push_back({"unit", report::text_or_null(value.unit)});
+    out.push_back({"si", std::move(value.familiar)});
+    out.push_back({"label", std::move(value.label)});
+    out.push_back({"by", sample.by_pdo ? "pdo" : "sdo"});
+    return out;
+  }
+
+  Context* context_;
+  Sampler* sampler_;
+  bool changes_;
+  SampleWriter writer_;
+  std::vector<ChannelRecord> records_;
+  std::vector<Sample> before_;
+  std::size_t looks_ = 0;
+};
+
+Result<Value> run(Context& context, const Arguments& arguments) {
+  const auto every = duration_option(arguments, "--every");
+  if (!every) return tl::unexpected<Error>(every.error());
+  const auto length = duration_option(arguments, "--for");
+  if (!length) return tl::unexpected<Error>(length.error());
+  auto sampler = Sampler::make(context, arguments.all("object"));
+  if (!sampler) return tl::unexpected<Error>(sampler.error());
+  auto& session = *context.session;
+  const auto period = every->value_or(kDefaultEvery);
+  Watching watching(context, *sampler, arguments.has("--changes"));
+  const auto begin = session.now();
+  auto next = begin;
+  Listener listener;
+  listener.on_frame = [&](const can::Frame& frame, TimePoint time) { sampler->on_frame(frame, time); };
+  listener.next = [&] { return next; };
+  listener.on_time = [&](TimePoint now) -> Result<void> {
+    const auto looked = watching.look(now - begin);
+    // A drive that answers slowly is not asked for what was missed.
+    next += (std::max(session.now() - next, Duration::zero()) / period + 1) * period;
+    return looked;
+  };
+  const auto ended = listen(session, *length, listener);
+  if (!ended && ended.error().code != Errc::interrupted) return tl::unexpected<Error>(ended.error());
+  return watching.result(arguments.has("--plot"));
+}
+
+}  // namespace
+
+extern const Command kWatch;
+const Command kWatch{
+    .path = "watch",
+    .summary = "Show how values of objects change",
+    .details =
+        "Every --every, one line for each node, until --for is over or Ctrl-C. What a TPDO brings is taken "
+        "from "
+        "it; "
+        "the rest is read by SDO. At the end it tells for each object how many values there were, the least, "
+        "the "
+        "mean "
+        "and the greatest; --plot draws them. `-o jsonl` gives one document a look.",
+    .parameters = kParameters,
+    .needs = Needs::node,
+    .effect = Effect::reads,
+    .run = run,
+};
+
+}  // namespace servoctl::commands
