@@ -97,6 +97,7 @@ struct Context {
   std::span<const std::filesystem::path> drive_folders;
   std::vector<std::uint8_t> nodes;  ///< Set when the command needs a node; 0 stands for all.
   bool chinese = false;             ///< Names in Chinese where there are any.
+  bool read_only = false;           ///< Nothing in a drive may be changed.
   bool dry_run = false;             ///< Show what would be sent, send nothing.
   /// Asks before something that stores, resets, re-addresses or moves; Errc::refused when the answer is no.
   std::function<Result<void>(std::string_view question)> confirm;
@@ -120,7 +121,8 @@ struct Context {
 
   bool keeps_samples = false;  ///< `--json`: the result carries what emit() was given.
   bool wants_records = false;  ///< `-o jsonl`: samples are shown as records, one document a line.
-  /// Shows many samples at once, rendered already, for commands to which emit() is too slow; see SampleWriter.
+  /// Shows many samples at once, rendered already, for commands to which emit() is too slow; see
+  /// SampleWriter.
   std::function<void(std::string_view lines)> write;
 
   std::vector<Error>

@@ -4,6 +4,7 @@
 #include "commands/change.hpp"
 #include "commands/command.hpp"
 #include "commands/pdo_use.hpp"
+#include "session/nmt_pause.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -11,10 +12,6 @@ namespace {
 using canopen::NmtState;
 using report::Value;
 
-constexpr ObjectAddress kGuardTime{0x100C, 0};
-constexpr ObjectAddress kLifeFactor{0x100D, 0};
-constexpr ObjectAddress kHeartbeat{0x1017, 0};
-constexpr Duration kPatience = std::chrono::milliseconds(200);
 constexpr std::uint8_t kLastSynchronous = 240;
 
 constexpr Parameter kParameters[] = {
@@ -25,30 +22,6 @@ constexpr Parameter kParameters[] = {
      .required = true,
      .many = true},
 };
-
-/// A number the drive holds; 0 where it does not tell.
-std::uint64_t read_number(session::Session& session, std::uint8_t node, ObjectAddress object) {
-  const auto answer = session.upload(node, object);
-  return answer && answer->size() <= 8 ? load_le(*answer) : 0;
-}
-
-/// The NMT state: as heard, else by waiting for a heartbeat, else by node guarding, unless that would start
-/// life guarding, which would end in a fault when nobody asks any more. Empty when nothing tells it.
-Result<std::optional<NmtState>> find_state(session::Session& session, std::uint8_t node) {
-  auto& watch = session.watch();
-  const auto known = [&] { return watch.state(node).has_value(); };
-  if (known()) return watch.state(node);
-  auto patience = kPatience;
-  if (const auto period = read_number(session, node, kHeartbeat); period != 0)
-    patience += std::chrono::milliseconds(2 * period);
-  else if (read_number(session, node, kGuardTime) * read_number(session, node, kLifeFactor) != 0)
-    return std::optional<NmtState>();
-  else if (const auto asked = session.send(canopen::guarding_request(node)); !asked)
-    return tl::unexpected<Error>(asked.error());
-  if (const auto heard = session.wait(known, session.now() + patience); !heard)
-    return tl::unexpected<Error>(heard.error());
-  return watch.state(node);
-}
 
 Result<void> check_usable(const PdoView& view) {
   if (view.pdo.direction == canopen::PdoDirection::transmit)
@@ -104,7 +77,7 @@ Result<Message> make_message(Context& context, const PdoView& view, std::span<co
 }
 
 Result<void> check_operational(Context& context, const PdoView& view) {
-  const auto state = find_state(*context.session, view.node);
+  const auto state = session::ask_nmt_state(*context.session, view.node);
   if (!state) return tl::unexpected<Error>(state.error());
   if (!*state) {
     context.notices.push_back(

@@ -48,14 +48,14 @@ extern const Command kPdoClear;
 extern const Command kPdoPreset;
 extern const Command kPdoApply;
 extern const Command kPdoSave;
+extern const Command kPdoWatch;
+extern const Command kPdoSend;
 extern const Command kTestComm;
 extern const Command kTestIo;
 extern const Command kTestJog;
 extern const Command kTestHome;
 extern const Command kTestAll;
 extern const Command kReport;
-extern const Command kPdoWatch;
-extern const Command kPdoSend;
 extern const Command kSyncOnce;
 extern const Command kSyncStart;
 extern const Command kWatch;
@@ -157,14 +157,14 @@ std::span<const Command* const> registry() {
       &kPdoPreset,
       &kPdoApply,
       &kPdoSave,
+      &kPdoWatch,
+      &kPdoSend,
       &kTestComm,
       &kTestIo,
       &kTestJog,
       &kTestHome,
       &kTestAll,
       &kReport,
-      &kPdoWatch,
-      &kPdoSend,
       &kSyncOnce,
       &kSyncStart,
       &kWatch,

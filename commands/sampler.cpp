@@ -99,6 +99,13 @@ bool Sampler::on_frame(const can::Frame& frame, TimePoint time) {
   return found;
 }
 
+bool Sampler::is_carried() const {
+  for (std::size_t c = 0; c < channels_.size(); ++c)
+    if (std::none_of(sources_.begin(), sources_.end(), [&](const Source& s) { return s.channel == c; }))
+      return false;
+  return true;
+}
+
 bool Sampler::is_complete() const {
   return std::all_of(brought_.begin(), brought_.end(), [](const auto& value) { return value.has_value(); });
 }

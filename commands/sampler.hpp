@@ -39,6 +39,8 @@ class Sampler {
   std::vector<Sample> take();
 
   std::span<const Channel> channels() const { return channels_; }
+  /// Whether some TPDO carries every channel.
+  bool is_carried() const;
   /// When a TPDO last brought something.
   TimePoint brought_at() const { return brought_at_; }
   /// Whether TPDOs have brought every channel since the last take().

@@ -1,10 +1,14 @@
+#include <fmt/format.h>
 #include <cmath>
+#include <memory>
 #include <utility>
+#include <vector>
 
 #include "base/file.hpp"
 #include "commands/command.hpp"
 #include "commands/listening.hpp"
 #include "commands/sampler.hpp"
+#include "commands/scope_mapping.hpp"
 #include "report/svg.hpp"
 
 namespace servoctl::commands {
@@ -13,6 +17,7 @@ namespace {
 using report::Value;
 
 constexpr Duration kDefaultLength = std::chrono::seconds(2);
+constexpr Duration kDefaultPeriod = std::chrono::milliseconds(1);
 
 constexpr Parameter kParameters[] = {
     {.name = "object",
@@ -21,6 +26,8 @@ constexpr Parameter kParameters[] = {
      .required = true,
      .many = true},
     {.name = "--for", .help = "how long (default 2s)", .kind = Kind::duration},
+    {.name = "--map", .help = "put them into a spare TPDO meanwhile", .kind = Kind::flag},
+    {.name = "--every", .help = "period of that TPDO (default 1ms)", .kind = Kind::duration},
     {.name = "--csv", .help = "write the samples to this file", .kind = Kind::file},
     {.name = "--svg", .help = "draw them into this file", .kind = Kind::file},
     {.name = "--plot", .help = "draw them here", .kind = Kind::flag},
@@ -48,8 +55,10 @@ class Scope {
     };
     listener.next = [&] { return next; };
     listener.on_time = [&](TimePoint now) {
+      const bool wait = first_ && sampler_->is_carried();
       const auto added = add(now);
-      next = session_->now();
+      // After the first look the TPDOs get their chance, where there are any.
+      next = wait ? begin_ + kPdoPatience : session_->now();
       return added;
     };
     const auto ended = listen(*session_, length, listener);
@@ -84,6 +93,28 @@ class Scope {
   bool first_ = true;
 };
 
+/// With --map: spare TPDOs carry the objects until the answer is destroyed. A node where that cannot be is
+/// told, and read by SDO.
+Result<std::vector<std::unique_ptr<ScopeMapping>>> map_objects(Context& context, const Arguments& arguments) {
+  std::vector<std::unique_ptr<ScopeMapping>> out;
+  const auto period = duration_option(arguments, "--every");
+  if (!period) return tl::unexpected<Error>(period.error());
+  if (!arguments.has("--map")) return out;
+  if (context.read_only || context.dry_run)
+    return fail(Errc::refused, "--map changes a TPDO of the drive, and that is forbidden",
+                "without --map the objects are read by SDO");
+  for (const auto node : context.nodes) {
+    out.push_back(std::make_unique<ScopeMapping>(context, node));
+    const auto mapped = out.back()->begin(arguments.all("object"), period->value_or(kDefaultPeriod));
+    if (mapped) continue;
+    if (mapped.error().code == Errc::interrupted) return tl::unexpected<Error>(mapped.error());
+    context.notices.push_back(
+        fmt::format("node {}: read by SDO, not mapped: {}{}", node, mapped.error().message,
+                    mapped.error().hint.empty() ? "" : " (" + mapped.error().hint + ")"));
+  }
+  return out;
+}
+
 Result<void> write_files(const Arguments& arguments, std::span<const Series> series) {
   if (arguments.has("--csv"))
     if (const auto done = write_file_atomically(std::string(arguments.text("--csv")), series_csv(series));
@@ -97,10 +128,13 @@ Result<void> write_files(const Arguments& arguments, std::span<const Series> ser
 Result<Value> run(Context& context, const Arguments& arguments) {
   const auto length = duration_option(arguments, "--for");
   if (!length) return tl::unexpected<Error>(length.error());
+  const auto mapping = map_objects(context, arguments);
+  if (!mapping) return tl::unexpected<Error>(mapping.error());
   auto sampler = Sampler::make(context, arguments.all("object"));
   if (!sampler) return tl::unexpected<Error>(sampler.error());
   Scope scope(context, *sampler);
   const auto recorded = scope.run(length->value_or(kDefaultLength));
+  for (const auto& each : *mapping) each->end();
   const auto series = series_of(scope.records());
   // What was sampled before something broke is worth keeping.
   const auto written = write_files(arguments, series);
@@ -123,13 +157,12 @@ const Command kScope{
     .summary = "Record values of objects as fast as the bus allows",
     .details =
         "Takes every TPDO that carries the objects; without one it reads them by SDO, one read after the "
-        "other. The "
-        "samples "
-        "go into a file (--csv, --svg) or are drawn (--plot); with --json they are in the result. It changes "
-        "nothing "
-        "in "
-        "the drive: `pdo map` puts objects into a TPDO, which makes the samples denser and their times "
-        "exact.",
+        "other. --map puts them into a TPDO that is not in use, sent every millisecond (--every), and puts "
+        "it "
+        "back at the end: samples are denser then and their times exact. The samples go into a file (--csv, "
+        "--svg) or are drawn (--plot); with --json they are in the result. Without --map nothing in the "
+        "drive "
+        "is changed.",
     .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::reads,

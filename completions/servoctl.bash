@@ -9,12 +9,12 @@ _servoctl_scan() {
       continue
     fi
     case $word in
-      --bus|-b|--node|-n|--drive|-d|--timeout|--retries|--output|-o|--lang|--trace|--type|--to|--transfer|--from|--only|--for|--guard|--life|--var) skip=$word ;;
+      --bus|-b|--node|-n|--drive|-d|--timeout|--retries|--output|-o|--lang|--trace|--type|--to|--transfer|--from|--format|--only|--turn|--for|--turns|--limit|--accel|--max-torque|--max-following-error|--window|--master-node|--csv|--speed|--search|--offset|--within|--guard|--life|--inhibit|--event|--cob-id|--sync-start|--count|--longest|--junit|--expect|--tolerance|--stop-within|--repeat|--spread|--title|--tests|--period|--counter|--every|--svg|--service|--object|--bitrate|--var) skip=$word ;;
       -*) ;;
       *)
         case $command in
           '') command=$word ;;
-          param|fault|nmt|eds) command="$command $word" ;;
+          param|fault|nmt|pdo|test|sync|eds) command="$command $word" ;;
         esac ;;
     esac
   done
@@ -32,19 +32,57 @@ _servoctl_scan() {
       --to) source='files' ;;
       --transfer) source='=auto expedited segmented block' ;;
       --from) source='files' ;;
+      --format) source='=json dcf csv batch' ;;
       --only) source='none' ;;
+      --turn) source='none' ;;
       --for) source='none' ;;
+      --turns) source='none' ;;
+      --limit) source='none' ;;
+      --accel) source='none' ;;
+      --max-torque) source='none' ;;
+      --max-following-error) source='none' ;;
+      --window) source='none' ;;
+      --master-node) source='none' ;;
+      --csv) source='files' ;;
+      --speed) source='none' ;;
+      --search) source='none' ;;
+      --offset) source='none' ;;
+      --within) source='none' ;;
       --guard) source='none' ;;
       --life) source='none' ;;
+      --inhibit) source='none' ;;
+      --event) source='none' ;;
+      --cob-id) source='none' ;;
+      --sync-start) source='none' ;;
+      --count) source='none' ;;
+      --longest) source='none' ;;
+      --junit) source='files' ;;
+      --expect) source='none' ;;
+      --tolerance) source='none' ;;
+      --stop-within) source='none' ;;
+      --repeat) source='none' ;;
+      --spread) source='none' ;;
+      --title) source='none' ;;
+      --tests) source='files' ;;
+      --period) source='none' ;;
+      --counter) source='none' ;;
+      --every) source='none' ;;
+      --svg) source='files' ;;
+      --service) source='=nmt sync time emcy pdo sdo boot-up heartbeat guarding controller other' ;;
+      --object) source='objects' ;;
+      --bitrate) source='none' ;;
       --var) source='none' ;;
     esac
     return
   fi
   case $command in
-    '') source='=scan info status read write objects param backup diff verify restore clone store defaults fault nmt decode drives eds run sim completion help' ;;
+    '') source='=scan info status read write objects param backup diff verify restore clone store defaults fault enable disable quick-stop mode jog move home torque nmt pdo test report sync watch scope monitor decode replay drives eds run sim help completion' ;;
     param) source='=list get set search explain' ;;
     fault) source='=show list reset clear-history' ;;
     nmt) source='=start stop preop reset reset-comm watch' ;;
+    pdo) source='=show map enable disable clear preset apply save watch send' ;;
+    test) source='=comm io jog home all' ;;
+    sync) source='=once start' ;;
     eds) source='=check' ;;
     'read') source='objects' ;;
     'write') source='objects' ;;
@@ -61,28 +99,73 @@ _servoctl_scan() {
     'store') source='=all communication application vendor' ;;
     'defaults') source='=all communication application vendor' ;;
     'fault list') source='none' ;;
+    'mode') source='none' ;;
+    'jog') source='none' ;;
+    'move') source='none' ;;
+    'home') source='none' ;;
+    'torque') source='none' ;;
+    'pdo map') source='none' ;;
+    'pdo enable') source='none' ;;
+    'pdo disable') source='none' ;;
+    'pdo clear') source='none' ;;
+    'pdo preset') source='none' ;;
+    'pdo apply') source='files' ;;
+    'pdo save') source='files' ;;
+    'pdo watch') source='none' ;;
+    'pdo send') source='none' ;;
+    'test jog') source='none' ;;
+    'test home') source='none' ;;
+    'test all') source='none' ;;
+    'report') source='files' ;;
+    'watch') source='objects' ;;
+    'scope') source='objects' ;;
     'decode') source='files' ;;
+    'replay') source='files' ;;
     'drives') source='families' ;;
     'eds check') source='files' ;;
     'run') source='files' ;;
     'sim') source='none' ;;
+    'help') source='=scan info status read write objects param backup diff verify restore clone store defaults fault enable disable quick-stop mode jog move home torque nmt pdo test report sync watch scope monitor decode replay drives eds run sim help completion' ;;
     'completion') source='=bash zsh fish objects parameters families' ;;
-    'help') source='=scan info status read write objects param backup diff verify restore clone store defaults fault nmt decode drives eds run sim completion help' ;;
   esac
   case $command in
     'read') options+=' --type --to --transfer' ;;
     'write') options+=' --type --from --transfer --keep --unlock' ;;
     'param set') options+=' --keep --unlock' ;;
-    'backup') options+=' --only' ;;
-    'restore') options+=' --with-address --no-rollback --force --keep --unlock --resume' ;;
+    'backup') options+=' --format --only' ;;
+    'diff') options+=' --batch' ;;
+    'restore') options+=' --only --with-address --no-rollback --force --keep --unlock --resume' ;;
     'clone') options+=' --from --to --force --keep --unlock --resume' ;;
+    'enable') options+=' --turn' ;;
+    'jog') options+=' --for --turns --until-key --limit --accel --max-torque --max-following-error --window --turn --master-node --csv --plot' ;;
+    'move') options+=' --relative --speed --limit --accel --max-torque --max-following-error --window --turn --master-node --csv --plot' ;;
+    'home') options+=' --speed --search --offset --within --limit --max-torque --max-following-error --window --turn --master-node --csv --plot' ;;
+    'torque') options+=' --for --limit --max-torque --max-following-error --window --turn --master-node --csv --plot' ;;
     'nmt start') options+=' --wait' ;;
     'nmt stop') options+=' --wait' ;;
     'nmt preop') options+=' --wait' ;;
     'nmt reset') options+=' --wait' ;;
     'nmt reset-comm') options+=' --wait' ;;
     'nmt watch') options+=' --for --guard --life' ;;
-    'decode') options+=' --raw' ;;
+    'pdo map') options+=' --type --inhibit --event --cob-id --sync-start --keep --unlock' ;;
+    'pdo enable') options+=' --keep --unlock' ;;
+    'pdo disable') options+=' --keep --unlock' ;;
+    'pdo clear') options+=' --keep --unlock' ;;
+    'pdo preset') options+=' --keep --unlock' ;;
+    'pdo apply') options+=' --keep --unlock' ;;
+    'pdo watch') options+=' --for' ;;
+    'test comm') options+=' --count --longest --junit' ;;
+    'test io') options+=' --expect --for --junit' ;;
+    'test jog') options+=' --for --tolerance --stop-within --limit --accel --max-torque --max-following-error --window --turn --master-node --csv --plot --junit' ;;
+    'test home') options+=' --repeat --spread --limit --accel --max-torque --max-following-error --window --turn --master-node --csv --plot --junit' ;;
+    'test all') options+=' --expect --for --tolerance --stop-within --no-home --repeat --spread --limit --accel --max-torque --max-following-error --window --turn --master-node --plot --junit' ;;
+    'report') options+=' --title --tests' ;;
+    'sync start') options+=' --period --counter --for' ;;
+    'watch') options+=' --every --for --changes --plot' ;;
+    'scope') options+=' --for --map --every --csv --svg --plot' ;;
+    'monitor') options+=' --for --service --object --ask --bitrate --raw' ;;
+    'decode') options+=' --raw --service --object' ;;
+    'replay') options+=' --speed --only --master' ;;
     'run') options+=' --var --check' ;;
   esac
 }

@@ -101,6 +101,7 @@ Result<Value> Shell::execute(Run& run, const commands::Arguments& arguments) {
   auto& context = run.context;
   context.chinese = run.settings.chinese;
   context.dry_run = run.settings.dry_run;
+  context.read_only = run.settings.read_only;
   context.drive_folders = options_.drive_folders;
   context.confirm = [this, &run](std::string_view question) -> Result<void> {
     if (run.settings.yes) return {};

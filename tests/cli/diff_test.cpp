@@ -31,8 +31,8 @@ TEST_F(BackupTest, GivesTheLinesThatLeadFromOneToAnother) {
   use("sim:gsd600@1,gsd600@2", "gsd600");
   ASSERT_EQ(run("param set Pn0214=450 Pn0202=321 -n 2"), 0);
   for (const auto* line :
-       {"write 0x1800:1 0xC0000182 -n 2", "write 0x1A00:0 0 -n 2", "write 0x1A00:2 0x60640020 -n 2",
-        "write 0x1A00:0 2 -n 2", "write 0x1800:1 0x40000182 -n 2"})
+       {"write 0x1800:1 0xC0000182 -n 2", "write 0x1A00:0 0 -n 2", "write 0x1A00:1 0x60410010 -n 2",
+        "write 0x1A00:2 0x60640020 -n 2", "write 0x1A00:0 2 -n 2", "write 0x1800:1 0x40000182 -n 2"})
     ASSERT_EQ(run(line), 0) << console.err_text;
   EXPECT_EQ(run("diff node:1 node:2 --batch"), 1);
   EXPECT_EQ(console.out_text,
@@ -40,6 +40,7 @@ TEST_F(BackupTest, GivesTheLinesThatLeadFromOneToAnother) {
             "use 1\n"
             "write 0x1800:1 0xC0000181  # COB-ID used by TPDO\n"
             "write 0x1A00:0 0  # Number of mapped objects\n"
+            "write 0x1A00:1 0x60410010  # Mapped object 1\n"
             "write 0x1A00:2 0x60640020  # Mapped object 2\n"
             "write 0x1A00:0 2  # Number of mapped objects\n"
             "write 0x1800:1 0x40000181  # COB-ID used by TPDO\n"

@@ -1,0 +1,111 @@
+#include "commands/scope_mapping.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <utility>
+
+#include "commands/pdo_changing.hpp"
+#include "commands/pdo_check.hpp"
+#include "session/deaf.hpp"
+#include "session/nmt_pause.hpp"
+#include "session/pdo_change.hpp"
+#include "session/pdo_setup.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using canopen::Pdo;
+
+/// Event-driven, by the device profile where the family knows it, else by the manufacturer.
+std::uint8_t event_type(const drive::Profile& profile) {
+  const auto& refused = profile.rules.pdo.refused_types;
+  return std::find(refused.begin(), refused.end(), 255) == refused.end() ? 255 : 254;
+}
+
+bool is_spare(const Pdo& pdo, const session::Values& values) {
+  return pdo.direction == canopen::PdoDirection::transmit && !pdo.is_valid() && pdo.event &&
+         values.count({pdo.communication_index(), 1}) > 0;
+}
+
+}  // namespace
+
+Result<Pdo> ScopeMapping::choose(std::span<const std::string> objects, Duration period,
+                                 const std::vector<Pdo>& pdos) const {
+  Pdo out;
+  for (const auto& object : objects) {
+    const auto entry = parse_mapped(*context_->profile, object);
+    if (!entry) return tl::unexpected<Error>(entry.error());
+    out.entries.push_back(*entry);
+  }
+  const auto ms = std::chrono::ceil<std::chrono::milliseconds>(period).count();
+  Result<void> fits = fail(Errc::negative, "every TPDO with an event timer is in use");
+  for (const auto& spare : pdos) {
+    if (!is_spare(spare, before_)) continue;
+    auto wanted = spare;
+    wanted.entries = out.entries;
+    wanted.type = event_type(*context_->profile);
+    wanted.event = static_cast<std::uint16_t>(std::clamp<std::int64_t>(ms, 1, 0xFFFF));
+    if (wanted.inhibit) wanted.inhibit = 0;
+    fits = check_mapping(*context_->profile, wanted);
+    if (fits) fits = switch_on(wanted, node_);
+    auto all = pdos;
+    for (auto& each : all)
+      if (each.direction == wanted.direction && each.number == wanted.number) each = wanted;
+    if (fits) fits = check_communication(*context_->profile, spare, wanted, all);
+    if (fits) return wanted;
+  }
+  return tl::unexpected<Error>(fits.error());
+}
+
+Result<void> ScopeMapping::check_state(const std::vector<session::PlannedWrite>& plan) const {
+  const auto state = session::ask_nmt_state(*context_->session, node_);
+  if (!state) return tl::unexpected<Error>(state.error());
+  if (*state != canopen::NmtState::operational)
+    return fail(Errc::negative, "it is not known to be operational, and sends TPDOs only then",
+                fmt::format("`nmt start -n {}`", node_));
+  if (!session::needs_pre_operational(context_->profile, plan)) return {};
+  return session::check_not_energised(*context_->session, node_);
+}
+
+Result<void> ScopeMapping::begin(std::span<const std::string> objects, Duration period) {
+  if (context_->profile == nullptr) return fail(Errc::usage, "mapping needs the drive family", "-d FAMILY");
+  const std::uint8_t nodes[] = {node_};
+  auto read = std::move(session::read_pdo_values(*context_->session, context_->profile, nodes).front());
+  if (!read) return tl::unexpected<Error>(read.error());
+  before_ = std::move(*read);
+  const auto done = [&]() -> Result<void> {
+    const auto wanted = choose(objects, period, session::pdos_of(before_));
+    if (!wanted) return tl::unexpected<Error>(wanted.error());
+    mapped_ = session::values_of(*wanted, before_);
+    if (const auto full = session::complete(*context_->session, node_, before_, mapped_); !full) return full;
+    const auto plan = session::plan_writes(context_->profile, before_, mapped_);
+    if (const auto able = check_state(plan); !able) return able;
+    const auto outcome =
+        session::change_pdos(*context_->session, context_->profile, node_, before_, mapped_, {});
+    if (outcome.failure) return tl::unexpected<Error>(*outcome.failure);
+    return {};
+  }();
+  if (!done) before_.clear();
+  return done;
+}
+
+void ScopeMapping::end() {
+  const auto before = std::exchange(before_, {});
+  if (before.empty()) return;
+  const session::Deaf deaf(*context_->session);
+  auto present = before;
+  session::Values wanted;
+  for (const auto& [object, data] : mapped_) {
+    present[object] = data;
+    wanted.emplace(object, before.at(object));
+  }
+  const auto outcome = session::change_pdos(*context_->session, context_->profile, node_, present, wanted,
+                                            {.roll_back = false});
+  if (!outcome.failure) return;
+  auto error = *outcome.failure;
+  error.message = "the TPDO could not be put back as it was: " + error.message;
+  error.hint = fmt::format("`pdo show -n {}` shows it; a restart of the drive brings its stored one", node_);
+  context_->errors.push_back(std::move(error));
+}
+
+}  // namespace servoctl::commands
