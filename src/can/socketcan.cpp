@@ -20,6 +20,11 @@ namespace {
 
 using std::chrono::milliseconds;
 
+/// Frames one call takes from the kernel.
+constexpr std::size_t kBatch = 16;
+/// Frames that wait here at most, some 24 MB; beyond that the kernel's queue has to do.
+constexpr std::size_t kMostWaiting = 1U << 20U;
+
 can_frame encode(const Frame& frame) {
   can_frame raw{};
   raw.can_id = frame.id;
@@ -118,33 +123,44 @@ Result<std::optional<Frame>> SocketCanBus::receive(TimePoint deadline) {
   if (inbox_.empty() && delay_ > Duration::zero())
     nap(std::min(delay_, std::max(deadline - now(), Duration{})));
   while (inbox_.empty()) {
+    if (failed_) return tl::unexpected<Error>(*std::exchange(failed_, std::nullopt));
     if (wait_for(socket_.get(), POLLIN, deadline) != Wake::ready) return std::optional<Frame>();
     if (const auto filled = fill(); !filled) return tl::unexpected<Error>(filled.error());
+    given_ = 0;
   }
+  if (inbox_.size() >= kBatch && given_ % kBatch == 0) drain();
+  ++given_;
   const auto [frame, time] = inbox_.front();
   inbox_.pop_front();
   arrived_ = time;
   return std::optional(frame);
 }
 
+/// Whoever is slower than the bus finds its frames here: the kernel drops what its queue has no room for.
+void SocketCanBus::drain() {
+  for (auto before = inbox_.size(); !failed_ && before < kMostWaiting; before = inbox_.size()) {
+    if (const auto filled = fill(); !filled) failed_ = filled.error();
+    if (inbox_.size() < before + kBatch) return;
+  }
+}
+
 /// Takes what is there into the inbox, as many frames as one call gives.
 Result<void> SocketCanBus::fill() {
-  constexpr std::size_t kMost = 16;
-  std::array<can_frame, kMost> raw;
-  std::array<iovec, kMost> parts;
-  std::array<mmsghdr, kMost> messages{};
+  std::array<can_frame, kBatch> raw;
+  std::array<iovec, kBatch> parts;
+  std::array<mmsghdr, kBatch> messages{};
   struct Control {
     alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(std::uint32_t)) + CMSG_SPACE(sizeof(timespec))> bytes;
   };
-  std::array<Control, kMost> controls;
-  for (std::size_t i = 0; i < kMost; ++i) {
+  std::array<Control, kBatch> controls;
+  for (std::size_t i = 0; i < kBatch; ++i) {
     parts[i] = {&raw[i], sizeof raw[i]};
     messages[i].msg_hdr.msg_iov = &parts[i];
     messages[i].msg_hdr.msg_iovlen = 1;
     messages[i].msg_hdr.msg_control = controls[i].bytes.data();
     messages[i].msg_hdr.msg_controllen = controls[i].bytes.size();
   }
-  const int count = ::recvmmsg(socket_.get(), messages.data(), kMost, MSG_DONTWAIT, nullptr);
+  const int count = ::recvmmsg(socket_.get(), messages.data(), kBatch, MSG_DONTWAIT, nullptr);
   if (count < 0 && (errno == EAGAIN || errno == EINTR)) return {};
   if (count <= 0 || messages[0].msg_len == 0) {
     is_bus_off_ = false;

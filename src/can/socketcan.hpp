@@ -62,6 +62,7 @@ class SocketCanBus final : public Bus {
 
  private:
   Result<void> fill();
+  void drain();
   void take(const ::can_frame& raw, std::optional<std::uint32_t> lost_in_all, TimePoint time);
 
   Descriptor socket_;
@@ -73,8 +74,10 @@ class SocketCanBus final : public Bus {
     Frame frame;
     TimePoint time;
   };
-  std::deque<Received> inbox_;  ///< Received, not given yet.
-  Duration delay_{};            ///< See gather().
+  std::deque<Received> inbox_;   ///< Received, not given yet.
+  std::optional<Error> failed_;  ///< What ended drain(); told when the inbox is empty.
+  std::size_t given_ = 0;        ///< Frames out of the inbox since it was empty.
+  Duration delay_{};             ///< See gather().
   TimePoint arrived_{};
 };
 

@@ -162,6 +162,22 @@ TEST_F(SocketCan, KeepsTheOrderOfFrames) {
   EXPECT_EQ(received(), std::nullopt);
 }
 
+TEST_F(SocketCan, EmptiesTheKernelsQueueBeforeItGivesOutManyFrames) {
+  connect(SOCK_SEQPACKET);
+  constexpr std::uint8_t kFrames = 200;
+  for (std::uint8_t i = 0; i < kFrames; ++i) put(raw_frame(0x181, 1, {i}));
+  for (std::uint8_t i = 0; i < kFrames; ++i) {
+    const auto frame = bus_->receive(bus_->now());
+    ASSERT_TRUE(frame && *frame);
+    EXPECT_EQ((*frame)->data[0], i);
+    pollfd waiting{bus_->poll_fd(), POLLIN, 0};
+    if (i == 20) {
+      EXPECT_EQ(::poll(&waiting, 1, 0), 0) << "frames wait where the kernel may drop them";
+    }
+  }
+  EXPECT_FALSE(*bus_->receive(bus_->now()));
+}
+
 TEST_F(SocketCan, AsksOnceWhenTheDeadlineHasPassed) {
   EXPECT_EQ(bus_->receive(TimePoint::min()).value(), std::nullopt);
   put(raw_frame(0x581, 0, {}));
