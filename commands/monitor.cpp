@@ -7,6 +7,7 @@
 #include "commands/frame_log.hpp"
 #include "commands/listening.hpp"
 #include "commands/notice.hpp"
+#include "session/open_bus.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -23,7 +24,7 @@ constexpr Parameter kParameters[] = {
     kObjectOption,
     {.name = "--ask", .help = "first read the PDO mapping of the nodes given by -n", .kind = Kind::flag},
     {.name = "--bitrate",
-     .help = "tell the load of the bus at this bitrate, such as 500k",
+     .help = "bitrate for the load of the bus, where the interface does not tell it: 500k",
      .kind = Kind::text},
     {.name = "--raw", .help = "show the frames as well", .kind = Kind::flag},
 };
@@ -127,8 +128,10 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   if (!filter) return tl::unexpected<Error>(filter.error());
   const auto length = duration_option(arguments, "--for");
   if (!length) return tl::unexpected<Error>(length.error());
-  const auto bitrate = bitrate_option(arguments);
+  auto bitrate = bitrate_option(arguments);
   if (!bitrate) return tl::unexpected<Error>(bitrate.error());
+  if (const auto link = session::link_of(context.session->url()); *bitrate == 0 && link)
+    bitrate = link->bitrate.value_or(0);
   FrameLog log(context, std::move(*filter), arguments.has("--raw"));
   if (arguments.has("--ask"))
     if (const auto asked = ask_mappings(context, log.decoder().pdos()); !asked)
@@ -149,16 +152,14 @@ const Command kMonitor{
     .details =
         "One line a frame: NMT, SYNC, TIME, EMCY in the family's words, PDOs with the objects they carry, "
         "SDO "
-        "with "
-        "names, values and aborts, heartbeats, boot-ups, node guarding; and an ALARM when a node's heartbeat "
-        "ends. It sends nothing unless told to: with --ask the PDO mapping of the nodes given by -n is read "
-        "first, else "
-        "PDOs are shown by the mapping that is written or read on the bus meanwhile, or by the one the "
-        "family "
-        "(-d) "
-        "leaves the factory with. At the end (--for, or Ctrl-C) it tells how many frames there were, and the "
-        "load of "
-        "the bus when --bitrate is given. `-o jsonl` gives one document a frame.",
+        "with names, values and aborts, heartbeats, boot-ups, node guarding; and an ALARM when a node's "
+        "heartbeat ends. It sends nothing unless told to: with --ask the PDO mapping of the nodes given by "
+        "-n "
+        "is read first, else PDOs are shown by the mapping that is written or read on the bus meanwhile, or "
+        "by "
+        "the one the family (-d) leaves the factory with. At the end (--for, or Ctrl-C) it tells how many "
+        "frames there were, and the load of the bus where the interface or --bitrate tells the bitrate. "
+        "`-o jsonl` gives one document a frame.",
     .parameters = kParameters,
     .needs = Needs::bus,
     .effect = Effect::reads,

@@ -125,6 +125,22 @@ TEST_F(RestoreTest, WritesNoMemorySwitchAndNoPasswordWhateverTheFileSays) {
   }
 }
 
+TEST_F(RestoreTest, MakesAFactoryDriveOfEveryFamilyTheSame) {
+  for (const auto& c : {Changed{"da200", "param set P5.12 77"}, Changed{"dm", "write 6065h 1.25"},
+                        Changed{"gsd600", "param set Pn0214=450 Pn0215=900"},
+                        Changed{"sv2", "write 2001h:1 60"}, Changed{"ts", "param set Fn_33=120 Fn_3A=3"}}) {
+    SCOPED_TRACE(c.family);
+    use(fmt::format("sim:{}@1", c.family), c.family);
+    ASSERT_EQ(run(c.line), 0) << console.err_text;
+    ASSERT_EQ(run("backup %drive.json"), 0);
+    // Another drive, as it comes from the factory.
+    use(fmt::format("sim:{}@1", c.family), c.family);
+    ASSERT_EQ(run("verify %drive.json"), 1);
+    ASSERT_EQ(run("restore %drive.json --yes"), 0) << console.out_text << console.err_text;
+    EXPECT_EQ(run("diff %drive.json node:1"), 0) << console.out_text;
+  }
+}
+
 TEST_F(RestoreTest, KeepsWhatTheDriveHeldInItsRamAlready) {
   for (const auto& c : {Changed{"ts", "param set Fn_33=120"}, Changed{"sv2", "write 2001h:1 60"}}) {
     SCOPED_TRACE(c.family);
