@@ -20,6 +20,7 @@ class Run {
       : session_(&session), profile_(profile), node_(node), present_(&present), wanted_(&wanted) {}
 
   RestoreOutcome carry_out(const RestoreOptions& options) {
+    boots_ = session_->watch().boots(node_);
     StorageScope storage(*session_, profile_, node_);
     Result<void> done = storage.open(options.keep, options.unlock, true);
     const auto plan =
@@ -27,6 +28,7 @@ class Run {
     touched_ = touched_by(plan, *present_);
     if (done) done = write(plan, out_.writes);
     if (done) done = check();
+    if (done) done = check_restart();
     out_.all_written = done.has_value();
     if (!done) {
       out_.failure = done.error();
@@ -90,6 +92,17 @@ class Run {
     return {};
   }
 
+  /// One that restarts while its values are read for the last time has shown some of them before it.
+  Result<void> check_restart() const {
+    if (session_->watch().boots(node_) == boots_) return {};
+    Error error;
+    error.code = Errc::negative;
+    error.node = node_;
+    error.message = fmt::format("node {} restarted while it was written to", node_);
+    error.hint = "is its supply steady? what it does not keep by itself is lost then";
+    return fail(std::move(error));
+  }
+
   /// Reads where things stand, puts back what is not as it was, and reads again. Deaf to Ctrl-C.
   void go_back() {
     const Deaf deaf(*session_);
@@ -137,7 +150,8 @@ class Run {
   const Values* present_;
   const Values* wanted_;
   std::set<ObjectAddress> touched_;
-  bool silent_ = false;  ///< The node has stopped answering.
+  std::uint32_t boots_ = 0;  ///< Boot-ups heard before the first write.
+  bool silent_ = false;      ///< The node has stopped answering.
   RestoreOutcome out_;
 };
 

@@ -17,6 +17,7 @@ namespace servoctl::session {
 struct Trouble {
   double lose = 0;
   double repeat = 0;
+  double late = 0;  ///< A frame arrives when nobody waits for it any more.
   int reset_at = -1;
   int silent_at = -1;
   int abort_at = -1;
@@ -59,9 +60,16 @@ class TroubledBus final : public can::Bus {
     if (killed_) return bus_->receive(deadline);
     if (waiting_) return std::exchange(waiting_, std::nullopt);
     for (;;) {
-      auto frame = bus_->receive(deadline);
-      if (!frame || !*frame) return frame;
+      if (late_ && now() >= late_->second) return std::optional(std::exchange(late_, std::nullopt)->first);
+      auto frame = bus_->receive(late_ ? std::min(deadline, late_->second) : deadline);
+      if (!frame) return frame;
+      if (!*frame && late_ && now() >= late_->second) continue;
+      if (!*frame) return frame;
       if (chance(trouble_.lose)) continue;
+      if (!late_ && chance(trouble_.late)) {
+        late_ = {**frame, now() + kLateness};
+        continue;
+      }
       if (chance(trouble_.repeat)) waiting_ = **frame;
       return frame;
     }
@@ -71,6 +79,9 @@ class TroubledBus final : public can::Bus {
   const std::vector<std::string>& sent() const { return sent_; }
 
  private:
+  /// Longer than the patience for an answer.
+  static constexpr Duration kLateness = std::chrono::milliseconds(700);
+
   bool chance(double probability) { return std::bernoulli_distribution(probability)(random_); }
 
   sim::SimBus* bus_;
@@ -78,6 +89,7 @@ class TroubledBus final : public can::Bus {
   Trouble trouble_;
   std::mt19937 random_;
   std::optional<can::Frame> waiting_;
+  std::optional<std::pair<can::Frame, TimePoint>> late_;
   int frames_ = 0;
   bool killed_ = false;
   std::vector<std::string> sent_;
