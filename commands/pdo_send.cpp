@@ -13,6 +13,7 @@ using canopen::NmtState;
 using report::Value;
 
 constexpr std::uint8_t kLastSynchronous = 240;
+constexpr ObjectAddress kControlword{0x6040, 0};
 
 constexpr Parameter kParameters[] = {
     {.name = "pdo", .help = "RPDO1 …", .kind = Kind::text, .required = true},
@@ -114,6 +115,9 @@ Result<Value> run(Context& context, const Arguments& arguments) {
           fmt::format("Send {} to node {}: {}? The motor may move.", view.name, view.node, message->text));
       !sure)
     return tl::unexpected<Error>(sure.error());
+  const auto& entries = view.pdo.entries;
+  if (std::any_of(entries.begin(), entries.end(), [](const auto& e) { return e.object == kControlword; }))
+    context.session->energised().insert(view.node);
   if (const auto sent = context.session->send(message->frame); !sent)
     return tl::unexpected<Error>(sent.error());
   if (view.pdo.type <= kLastSynchronous)

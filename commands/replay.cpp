@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "base/number.hpp"
 #include "canopen/cob_id.hpp"
@@ -36,7 +37,8 @@ constexpr Parameter kParameters[] = {
 struct Plan {
   std::vector<can::LogFrame> frames;
   std::map<std::string_view, std::size_t> services;
-  std::size_t dangerous = 0;  ///< NMT start, RPDOs, writes of the controlword.
+  std::size_t dangerous = 0;     ///< NMT start, RPDOs, writes of the controlword.
+  std::set<std::uint8_t> nodes;  ///< That these are sent to.
 };
 
 /// Whether a drive takes the frame for a command that can move its motor.
@@ -74,7 +76,9 @@ Strays choose(Context& context, const Arguments& arguments, std::string_view tex
     if (!only.empty() && std::find(only.begin(), only.end(), decoded.service) == only.end()) return true;
     if (master && !is_of_master(frame, decoded, pdo)) return true;
     ++plan.services[decoded.service];
-    plan.dangerous += may_move(frame, decoded, pdo);
+    const bool moves = may_move(frame, decoded, pdo);
+    plan.dangerous += moves;
+    if (moves && decoded.node) plan.nodes.insert(*decoded.node);
     plan.frames.push_back(line);
     return true;
   });
@@ -135,6 +139,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   if (!context.dry_run) {
     if (const auto sure = context.confirm(question(plan, file, context.session->url())); !sure)
       return tl::unexpected<Error>(sure.error());
+    context.session->energised().insert(plan.nodes.begin(), plan.nodes.end());
     const auto sent = send_all(*context.session, plan.frames, *speed);
     if (!sent) return tl::unexpected<Error>(sent.error());
     answer.push_back({"sent", *sent});

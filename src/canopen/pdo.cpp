@@ -15,7 +15,7 @@ constexpr std::uint16_t kMappingOffset = 0x200;
 constexpr std::uint16_t kMostPdos = 512;
 
 bool bit_at(ByteSpan data, std::size_t bit) {
-  return bit / 8 < data.size() && ((data[bit / 8] >> (bit % 8)) & 1U) != 0;
+  return bit / 8 < data.size() && ((static_cast<unsigned>(data[bit / 8]) >> (bit % 8)) & 1U) != 0;
 }
 
 void set_bit(Bytes& data, std::size_t bit) {

@@ -169,6 +169,8 @@ std::vector<std::pair<std::uint8_t, Result<void>>> de_energise(Session& session)
   const drive::Profile plain;
   for (const auto node : std::set(session.energised())) {
     Power power(session, plain, node);
+    // It may have been disabled by others meanwhile.
+    if (const auto state = power.state(); state && !drive::is_energised(*state)) continue;
     (void)power.quick_stop();
     out.emplace_back(node, power.disable());
   }

@@ -53,7 +53,8 @@ TEST_F(BatchTest, ShowsLinesAsThePromptDoesAndTheSummaryOnStderr) {
 }
 
 TEST_F(BatchTest, ThatStopsInTheMiddleLeavesNoDriveEnergised) {
-  for (const auto* up : {"enable -y", "write 0x6040 6\nwrite 0x6040 7\nwrite 0x6040 15 -y"}) {
+  for (const auto* up : {"enable -y", "write 0x6040 6\nwrite 0x6040 7\nwrite 0x6040 15 -y",
+                         "nmt start -y\npdo send RPDO1 6 -y\npdo send RPDO1 7 -y\npdo send RPDO1 15 -y"}) {
     EXPECT_EQ(run(std::string("use 1\n") + up + "\nread 0x5FFF\nread 0x6061"), 5) << console.err_text;
     EXPECT_TRUE(told("notice: node 1 was left energised; it is stopped and disabled now\n"));
     EXPECT_EQ(run("use 1\nstatus\nexpect .energised == false"), 0) << console.out_text << console.err_text;
