@@ -301,7 +301,7 @@ complete -c servoctl -n '__servoctl_in monitor' -l for -x -d 'how long; until Ct
 complete -c servoctl -n '__servoctl_in monitor' -l service -x -a 'nmt sync time emcy pdo sdo boot-up heartbeat guarding controller other' -d 'only this service, such as sdo (may be given several times)'
 complete -c servoctl -n '__servoctl_in monitor' -l object -x -a '(__servoctl_names objects)' -d 'only frames that carry or name this object'
 complete -c servoctl -n '__servoctl_in monitor' -l ask -d 'first read the PDO mapping of the nodes given by -n'
-complete -c servoctl -n '__servoctl_in monitor' -l bitrate -x -d 'tell the load of the bus at this bitrate, such as 500k'
+complete -c servoctl -n '__servoctl_in monitor' -l bitrate -x -d 'bitrate for the load of the bus, where the interface does not tell it: 500k'
 complete -c servoctl -n '__servoctl_in monitor' -l raw -d 'show the frames as well'
 complete -c servoctl -n __servoctl_at -a decode -d 'Explain a recording: PDO and SDO with names and values, NMT, EMCY'
 complete -c servoctl -n '__servoctl_in decode' -r -F

@@ -79,5 +79,6 @@ case $bus in
 esac
 
 echo "$family: $kills kills, $moving of them while the drive was energised, $failures failures"
-[ "$moving" -gt $((kills / 4)) ] || { echo "FAILED: too few kills met a moving drive: the test itself is broken"; exit 1; }
+# How many depends on how fast the program starts: that is long before it moves in a slow build.
+[ "$moving" -gt $((kills / 10)) ] || { echo "FAILED: too few kills met an energised drive: the test itself is broken"; exit 1; }
 [ "$failures" -eq 0 ]
