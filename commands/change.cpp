@@ -6,6 +6,7 @@
 #include "canopen/sdo_client.hpp"
 #include "commands/keeping_nodes.hpp"
 #include "drive/cia402.hpp"
+#include "drive/standard_objects.hpp"
 #include "session/measure.hpp"
 
 namespace servoctl::commands {
@@ -116,7 +117,7 @@ bool is_parameter(const drive::Profile& profile, const Change& change, const std
 bool enables(const Change& change) {
   // Bit 7 is left out: with it set the drive looks at its edge only, and the word may follow another.
   const auto controlword = static_cast<std::uint16_t>(load_le(change.data) & 0xFF7FU);
-  return change.target.address.index == 0x6040 &&
+  return change.target.address == objects::kControlword &&
          drive::decode_command(controlword, 0) == drive::ControlCommand::enable_operation;
 }
 
@@ -125,8 +126,8 @@ std::string_view reason_to_ask(const drive::Profile* profile, const Change& chan
   const auto* entry = change.target.entry;
   const auto* parameter = change.target.parameter;
   const auto index = change.target.address.index;
-  if (index == 0x1010 || index == 0x1011 || (entry != nullptr && entry->command) ||
-      (parameter != nullptr && parameter->command))
+  if (index == objects::kStoreIndex || index == objects::kRestoreIndex ||
+      (entry != nullptr && entry->command) || (parameter != nullptr && parameter->command))
     return "It starts an action or stores or restores parameters.";
   if (enables(change)) return "It enables the drive: the motor is energised and may move.";
   if (profile != nullptr && (is_parameter(*profile, change, profile->rules.nmt.node_id) ||

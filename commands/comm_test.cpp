@@ -6,6 +6,7 @@
 #include "base/duration.hpp"
 #include "commands/notice.hpp"
 #include "commands/verdict.hpp"
+#include "drive/standard_objects.hpp"
 #include "session/open_bus.hpp"
 
 namespace servoctl::commands {
@@ -16,8 +17,6 @@ using report::Record;
 using report::Show;
 using report::TestResult;
 
-constexpr ObjectAddress kDeviceType{0x1000, 0};
-constexpr ObjectAddress kHeartbeat{0x1017, 0};
 /// A node that has let so many reads in succession pass is not there: the rest would only cost time.
 constexpr std::uint32_t kGone = 3;
 constexpr std::uint32_t kHeartbeats = 4;
@@ -73,7 +72,7 @@ class Communication {
     std::uint32_t silent = 0;
     for (sent_ = 0; sent_ < test_.count && silent < kGone; ++sent_) {
       const auto begin = session_->now();
-      const auto answer = session_->upload(node_, kDeviceType);
+      const auto answer = session_->upload(node_, objects::kDeviceType);
       const auto code = answer ? Errc::negative : answer.error().code;
       if (code == Errc::bus || code == Errc::interrupted) return tl::unexpected<Error>(answer.error());
       silent = code == Errc::timeout ? silent + 1 : 0;
@@ -111,7 +110,7 @@ class Communication {
 
   Result<void> judge_heartbeat() {
     const auto name = say("heartbeat", "心跳");
-    const auto period = session_->upload(node_, kHeartbeat);
+    const auto period = session_->upload(node_, objects::kProducerHeartbeat);
     if (!period && period.error().code != Errc::sdo_abort && period.error().code != Errc::timeout)
       return tl::unexpected<Error>(period.error());
     const auto milliseconds = period ? load_le(*period) & 0xFFFFU : 0;

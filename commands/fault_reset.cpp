@@ -2,6 +2,7 @@
 
 #include "commands/command.hpp"
 #include "commands/records.hpp"
+#include "drive/standard_objects.hpp"
 #include "session/fault_reset.hpp"
 
 namespace servoctl::commands {
@@ -9,8 +10,6 @@ namespace {
 
 using report::Show;
 using report::Value;
-
-constexpr ObjectAddress kHistory{0x1003, 0};
 
 report::Table result_table() {
   report::Table table;
@@ -59,15 +58,16 @@ Result<Value> run_clear(Context& context, const Arguments&) {
       table.rows.push_back({node, "would be cleared", Value()});
       continue;
     }
-    const auto written = context.session->download(node, kHistory, {0});
-    const auto left = written ? context.session->upload(node, kHistory) : Result<Bytes>(Bytes{});
+    const auto written = context.session->download(node, objects::kErrorHistory, {0});
+    const auto left =
+        written ? context.session->upload(node, objects::kErrorHistory) : Result<Bytes>(Bytes{});
     if (!written) {
       add_failure(context, table, node, written.error());
     } else if (!left || load_le(*left) != 0) {
       Error error;
       error.code = Errc::negative;
       error.node = node;
-      error.object = kHistory;
+      error.object = objects::kErrorHistory;
       error.message = fmt::format("node {}: the drive acknowledged, but its history is not empty", node);
       add_failure(context, table, node, left ? error : left.error());
     } else {

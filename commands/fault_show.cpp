@@ -7,6 +7,7 @@
 #include "commands/reading.hpp"
 #include "commands/records.hpp"
 #include "drive/cia402.hpp"
+#include "drive/standard_objects.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -16,10 +17,6 @@ using report::Record;
 using report::Show;
 using report::Value;
 
-constexpr ObjectAddress kErrorCode{0x603F, 0};
-constexpr ObjectAddress kErrorRegister{0x1001, 0};
-constexpr ObjectAddress kStatusword{0x6041, 0};
-constexpr ObjectAddress kHistory{0x1003, 0};
 constexpr std::uint8_t kMostHistory = 254;
 
 std::string code_text(std::uint16_t code, const std::string& words) {
@@ -34,7 +31,7 @@ class FaultReport {
   FaultReport(Context& context, std::uint8_t node) : context_(&context), node_(node) {}
 
   Result<Record> make() {
-    const auto statusword = read(kStatusword);
+    const auto statusword = read(objects::kStatusword);
     out_ = {{"node", node_}};
     if (statusword) {
       const auto state = drive::decode_state(static_cast<std::uint16_t>(load_le(*statusword)));
@@ -85,7 +82,7 @@ class FaultReport {
   }
 
   void add_code() {
-    const auto answer = read(kErrorCode);
+    const auto answer = read(objects::kErrorCode);
     if (!answer) {
       out_.push_back({"code_text", std::string(kMissing), Show::text, "error code 603Fh"});
       out_.push_back({"code", Value(), Show::json});
@@ -99,7 +96,7 @@ class FaultReport {
   }
 
   void add_register() {
-    const auto answer = read(kErrorRegister);
+    const auto answer = read(objects::kErrorRegister);
     const auto bits = answer ? static_cast<std::uint8_t>(load_le(*answer)) : std::uint8_t{0};
     out_.push_back({"register_text",
                     answer ? fmt::format("0x{:02X} {}", bits, canopen::error_register_text(bits))
@@ -144,12 +141,12 @@ class FaultReport {
   }
 
   void add_history() {
-    const auto count = read(kHistory);
+    const auto count = read(objects::kErrorHistory);
     List records;
     report::Table table;
     table.columns = {{"number", ""}, {"code"}, {"vendor"}, {"text", "meaning"}};
     for (std::uint8_t i = 1; count && i <= std::min<std::uint64_t>(load_le(*count), kMostHistory); ++i) {
-      const auto entry = read({kHistory.index, i});
+      const auto entry = read({objects::kErrorHistory.index, i});
       if (!entry) break;
       const auto value = static_cast<std::uint32_t>(load_le(*entry));
       const auto code = static_cast<std::uint16_t>(value & 0xFFFFU);

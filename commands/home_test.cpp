@@ -4,6 +4,7 @@
 
 #include "commands/motion_run.hpp"
 #include "commands/verdict.hpp"
+#include "drive/standard_objects.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -13,7 +14,6 @@ using report::TestResult;
 using session::Channel;
 
 /// Encoder counts that homing does not set to zero (CiA 402-2, 6063h).
-constexpr ObjectAddress kInternalPosition{0x6063, 0};
 
 /// Where one homing ended.
 struct Found {
@@ -68,14 +68,14 @@ class Homings {
     out.seconds = seconds_of(time);
     if (!done.samples.empty()) out.position = done.samples.back()[Channel::position];
     const auto& units = motion.units();
-    if (!out.position || !units.has(kInternalPosition) ||
-        units.unit(kInternalPosition) != units.unit(session::kPositionActual))
+    if (!out.position || !units.has(objects::kInternalPosition) ||
+        units.unit(objects::kInternalPosition) != units.unit(objects::kPositionActual))
       return out;
-    const auto counts = motion.session().upload(motion.node(), kInternalPosition);
-    const auto now = motion.session().upload(motion.node(), session::kPositionActual);
+    const auto counts = motion.session().upload(motion.node(), objects::kInternalPosition);
+    const auto now = motion.session().upload(motion.node(), objects::kPositionActual);
     if (!counts || !now) return out;
-    const auto encoder = units.physical(kInternalPosition, *counts);
-    const auto position = units.physical(session::kPositionActual, *now);
+    const auto encoder = units.physical(objects::kInternalPosition, *counts);
+    const auto position = units.physical(objects::kPositionActual, *now);
     if (encoder && position) out.encoder = encoder->value - position->value;
     return out;
   }

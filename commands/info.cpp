@@ -3,16 +3,13 @@
 #include "commands/command.hpp"
 #include "commands/identity.hpp"
 #include "commands/records.hpp"
+#include "drive/standard_objects.hpp"
 
 namespace servoctl::commands {
 namespace {
 
 using report::Record;
 using report::Value;
-
-constexpr ObjectAddress kErrorRegister{0x1001, 0};
-constexpr ObjectAddress kHeartbeat{0x1017, 0};
-constexpr ObjectAddress kModes{0x6502, 0};
 
 Value optional_hex(std::optional<std::uint32_t> number) {
   return number ? Value(report::Hex{*number, 8}) : Value();
@@ -76,7 +73,8 @@ Result<report::Value> run(Context& context, const Arguments&) {
   std::vector<session::SdoRequest> requests;
   for (const auto& node : *found)
     for (const auto& [object, size] :
-         {std::pair{kErrorRegister, 1U}, std::pair{kHeartbeat, 2U}, std::pair{kModes, 4U}})
+         {std::pair{objects::kErrorRegister, 1U}, std::pair{objects::kProducerHeartbeat, 2U},
+          std::pair{objects::kSupportedModes, 4U}})
       requests.push_back({.node = node.node, .object = object, .size = size});
   const auto answers = context.session->transfer(requests);
   const auto families = drive::find_families(context.drive_folders);

@@ -6,6 +6,7 @@
 
 #include "base/text.hpp"
 #include "commands/verdict.hpp"
+#include "drive/standard_objects.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -15,7 +16,6 @@ using report::Record;
 using report::Show;
 using report::TestResult;
 
-constexpr ObjectAddress kInputs{0x60FD, 0};
 constexpr unsigned kBits = 32;
 constexpr Duration kEvery = std::chrono::milliseconds(10);
 
@@ -89,7 +89,7 @@ class InputWatch {
 
  private:
   Result<std::uint32_t> read() {
-    const auto answer = session_->upload(node_, kInputs);
+    const auto answer = session_->upload(node_, objects::kDigitalInputs);
     if (answer) return static_cast<std::uint32_t>(load_le(*answer));
     auto error = answer.error();
     if (error.code == Errc::sdo_abort)

@@ -4,6 +4,7 @@
 #include "commands/command.hpp"
 #include "commands/records.hpp"
 #include "drive/quantity.hpp"
+#include "drive/standard_objects.hpp"
 #include "session/operation_mode.hpp"
 #include "session/power.hpp"
 
@@ -31,7 +32,7 @@ std::vector<std::string> words_of(const std::string& label) {
 
 /// By number, by label, by what stands in its parentheses (`pv`), or by its first words.
 Result<std::int8_t> parse_mode(const drive::Profile& profile, std::string_view text) {
-  const auto meaning = drive::meaning(drive::target_at(&profile, session::kModeOfOperation), 0);
+  const auto meaning = drive::meaning(drive::target_at(&profile, objects::kModeOfOperation), 0);
   std::vector<std::string> offered;
   if (meaning.labels != nullptr) {
     for (const auto& label : *meaning.labels)

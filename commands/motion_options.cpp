@@ -6,6 +6,7 @@
 #include "base/number.hpp"
 #include "canopen/cob_id.hpp"
 #include "commands/motion_result.hpp"
+#include "drive/standard_objects.hpp"
 #include "session/operation_mode.hpp"
 
 namespace servoctl::commands {
@@ -48,13 +49,13 @@ Value planned(const Context& context, const session::Motion& motion, const sessi
         {step, to_string(object), value ? fmt::format("{:g} {}", value->value, value->unit) : to_hex(data)});
   };
   steps.rows.push_back({"watchdog", "", session::to_string(motion.watchdog())});
-  steps.rows.push_back({"mode", to_string(session::kModeOfOperation),
+  steps.rows.push_back({"mode", to_string(objects::kModeOfOperation),
                         session::mode_text(*context.profile, plan.mode, context.chinese)});
   for (const auto& [object, data] : plan.settings) add("setting", object, data);
-  steps.rows.push_back({"enable", to_string(session::kControlword), "0x0006, 0x0007, 0x000F"});
+  steps.rows.push_back({"enable", to_string(objects::kControlword), "0x0006, 0x0007, 0x000F"});
   steps.rows.push_back({"motion", "", plan.summary});
   steps.rows.push_back(
-      {"end", to_string(session::kControlword), "stop, disable, put everything back, verify"});
+      {"end", to_string(objects::kControlword), "stop, disable, put everything back, verify"});
   return Record{{"node", motion.node()}, {"preflight", preflight_table(items)}, {"steps", std::move(steps)}};
 }
 

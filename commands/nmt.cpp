@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "commands/command.hpp"
+#include "drive/standard_objects.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -11,7 +12,6 @@ namespace {
 using canopen::NmtCommand;
 using report::Value;
 
-constexpr ObjectAddress kHeartbeat{0x1017, 0};
 constexpr Duration kBootPatience = std::chrono::seconds(5);
 constexpr Duration kStatePatience = std::chrono::seconds(2);
 
@@ -41,7 +41,8 @@ bool confirmed(session::Session& session, const Before& before, NmtCommand comma
 /// Longest heartbeat period of the nodes, read before the command: a stopped node answers no SDO.
 Duration longest_period(Context& context) {
   std::vector<session::SdoRequest> requests;
-  for (const auto node : context.nodes) requests.push_back({.node = node, .object = kHeartbeat, .size = 2});
+  for (const auto node : context.nodes)
+    requests.push_back({.node = node, .object = objects::kProducerHeartbeat, .size = 2});
   Duration longest{};
   for (const auto& answer : context.session->transfer(requests))
     if (answer && answer->size() <= 8)

@@ -7,6 +7,7 @@
 #include "commands/command.hpp"
 #include "commands/listening.hpp"
 #include "commands/notice.hpp"
+#include "drive/standard_objects.hpp"
 #include "session/scan.hpp"
 
 namespace servoctl::commands {
@@ -16,7 +17,6 @@ using canopen::NodeEvent;
 using report::Show;
 using report::Value;
 
-constexpr ObjectAddress kHeartbeat{0x1017, 0};
 constexpr Duration kSlice = std::chrono::milliseconds(100);
 
 constexpr Parameter kParameters[] = {
@@ -67,7 +67,8 @@ Result<std::vector<std::uint8_t>> nodes_of(Context& context) {
 /// A node without heartbeat would be silent whatever happens to it.
 void complain_of_silent_nodes(Context& context, std::span<const std::uint8_t> nodes) {
   std::vector<session::SdoRequest> requests;
-  for (const auto node : nodes) requests.push_back({.node = node, .object = kHeartbeat, .size = 2});
+  for (const auto node : nodes)
+    requests.push_back({.node = node, .object = objects::kProducerHeartbeat, .size = 2});
   const auto answers = context.session->transfer(requests);
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     if (answers[i] && (load_le(*answers[i]) & 0xFFFFU) != 0) continue;

@@ -7,14 +7,13 @@
 #include "commands/reading.hpp"
 #include "commands/records.hpp"
 #include "drive/cia402.hpp"
+#include "drive/standard_objects.hpp"
 
 namespace servoctl::commands {
 namespace {
 
 using report::Value;
 
-constexpr ObjectAddress kControlword{0x6040, 0};
-constexpr ObjectAddress kStatusword{0x6041, 0};
 /// PDOs of the pre-defined connection set (CiA 301, 7.3.5).
 constexpr std::uint32_t kFirstPdoId = 0x181;
 constexpr std::uint32_t kLastPdoId = 0x57F;
@@ -82,9 +81,9 @@ void append_value(const PdoField& field, const od::Value& value, bool chinese, s
   const auto& meaning = field.meaning;
   const auto* number = std::get_if<std::uint64_t>(&value);
   const auto& object = field.entry.object;
-  if (number != nullptr && (object == kStatusword || object == kControlword)) {
+  if (number != nullptr && (object == objects::kStatusword || object == objects::kControlword)) {
     fmt::format_to(std::back_inserter(out), "0x{:04X}", *number);
-    if (object == kControlword) return;
+    if (object == objects::kControlword) return;
     const auto state = drive::decode_state(static_cast<std::uint16_t>(*number));
     out += ' ';
     out += chinese ? drive::name_zh(state) : drive::name(state);

@@ -4,6 +4,7 @@
 #include "commands/change.hpp"
 #include "commands/command.hpp"
 #include "commands/pdo_use.hpp"
+#include "drive/standard_objects.hpp"
 #include "session/nmt_pause.hpp"
 
 namespace servoctl::commands {
@@ -13,7 +14,6 @@ using canopen::NmtState;
 using report::Value;
 
 constexpr std::uint8_t kLastSynchronous = 240;
-constexpr ObjectAddress kControlword{0x6040, 0};
 
 constexpr Parameter kParameters[] = {
     {.name = "pdo", .help = "RPDO1 …", .kind = Kind::text, .required = true},
@@ -116,7 +116,8 @@ Result<Value> run(Context& context, const Arguments& arguments) {
       !sure)
     return tl::unexpected<Error>(sure.error());
   const auto& entries = view.pdo.entries;
-  if (std::any_of(entries.begin(), entries.end(), [](const auto& e) { return e.object == kControlword; }))
+  if (std::any_of(entries.begin(), entries.end(),
+                  [](const auto& e) { return e.object == objects::kControlword; }))
     context.session->energised().insert(view.node);
   if (const auto sent = context.session->send(message->frame); !sent)
     return tl::unexpected<Error>(sent.error());

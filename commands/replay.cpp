@@ -9,13 +9,12 @@
 #include "commands/command.hpp"
 #include "commands/frame_decoder.hpp"
 #include "commands/recording.hpp"
+#include "drive/standard_objects.hpp"
 
 namespace servoctl::commands {
 namespace {
 
 using report::Value;
-
-constexpr std::uint16_t kControlword = 0x6040;
 
 constexpr Parameter kParameters[] = {
     {.name = "file",
@@ -51,7 +50,7 @@ bool may_move(const can::Frame& frame, const DecodedFrame& decoded, const PdoVie
       frame.id > canopen::kSdoRequest && frame.id <= canopen::kSdoRequest + canopen::kLastNode;
   return decoded.service == "sdo" && request &&
          std::any_of(decoded.objects.begin(), decoded.objects.end(),
-                     [](ObjectAddress object) { return object.index == kControlword; });
+                     [](ObjectAddress object) { return object == objects::kControlword; });
 }
 
 /// Whether only a master sends it (CiA 301, 7.3.5).

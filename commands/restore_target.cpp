@@ -7,6 +7,7 @@
 #include "commands/comparison.hpp"
 #include "drive/cia402.hpp"
 #include "drive/drive_settings.hpp"
+#include "drive/standard_objects.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -57,7 +58,7 @@ Result<void> RestoreTarget::check_identity() {
 
 /// Gains and limits are no things to change under a drive that holds a load.
 Result<void> RestoreTarget::check_standstill() const {
-  const auto word = context_->session->upload(node_, {0x6041, 0});
+  const auto word = context_->session->upload(node_, objects::kStatusword);
   if (!word && word.error().code != Errc::sdo_abort) return tl::unexpected<Error>(word.error());
   if (!word || !drive::is_energised(drive::decode_state(static_cast<std::uint16_t>(load_le(*word)))))
     return {};

@@ -7,6 +7,7 @@
 #include "commands/records.hpp"
 #include "drive/cia402.hpp"
 #include "drive/quantity.hpp"
+#include "drive/standard_objects.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -15,12 +16,8 @@ using report::Record;
 using report::Show;
 using report::Value;
 
-constexpr ObjectAddress kStatusword{0x6041, 0};
-constexpr ObjectAddress kModeDisplay{0x6061, 0};
-constexpr ObjectAddress kErrorCode{0x603F, 0};
-constexpr ObjectAddress kErrorRegister{0x1001, 0};
-constexpr ObjectAddress kHeartbeat{0x1017, 0};
-constexpr ObjectAddress kObjects[] = {kStatusword, kModeDisplay, kErrorCode, kErrorRegister, kHeartbeat};
+constexpr ObjectAddress kObjects[] = {objects::kStatusword, objects::kModeDisplay, objects::kErrorCode,
+                                      objects::kErrorRegister, objects::kProducerHeartbeat};
 constexpr std::size_t kSizes[] = {2, 1, 2, 1, 2};  ///< CiA 301 and 402-2.
 constexpr std::size_t kCount = std::size(kObjects);
 
@@ -55,7 +52,7 @@ Result<void> hear_heartbeats(Context& context, std::span<const Result<Bytes>> an
 
 std::string mode_text(const Context& context, std::int8_t mode) {
   if (context.profile == nullptr) return {};
-  const auto meaning = drive::meaning(drive::target_at(context.profile, kModeDisplay), 0);
+  const auto meaning = drive::meaning(drive::target_at(context.profile, objects::kModeDisplay), 0);
   const auto* label = drive::label_of(meaning, od::Value(std::int64_t{mode}));
   if (label == nullptr) return {};
   return context.chinese && !label->label_zh.empty() ? label->label_zh : label->label;

@@ -7,6 +7,7 @@
 
 #include "base/file.hpp"
 #include "base/text.hpp"
+#include "drive/standard_objects.hpp"
 #include "od/eds.hpp"
 
 namespace servoctl::drive {
@@ -35,7 +36,8 @@ constexpr std::string_view kGenericFamily = "cia402";
 
 /// Whether it has controlword and statusword: the numbers from 6000h on mean other things in other profiles.
 bool is_drive(const od::Dictionary& dictionary) {
-  return dictionary.find({0x6040, 0}) != nullptr && dictionary.find({0x6041, 0}) != nullptr;
+  return dictionary.find(objects::kControlword) != nullptr &&
+         dictionary.find(objects::kStatusword) != nullptr;
 }
 
 Result<void> add_dictionary(Profile& profile, const fs::path& path) {

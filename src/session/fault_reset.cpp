@@ -4,6 +4,7 @@
 
 #include "drive/cia402.hpp"
 #include "drive/quantity.hpp"
+#include "drive/standard_objects.hpp"
 #include "session/deaf.hpp"
 
 namespace servoctl::session {
@@ -11,15 +12,13 @@ namespace {
 
 using drive::DriveState;
 
-constexpr ObjectAddress kControlword{0x6040, 0};
-constexpr ObjectAddress kStatusword{0x6041, 0};
 constexpr std::uint16_t kResetEdge = 0x0080;
 /// How long a drive may take for the transition; manuals name none.
 constexpr Duration kPatience = std::chrono::milliseconds(500);
 constexpr Duration kPause = std::chrono::milliseconds(20);
 
 Result<DriveState> read_state(Session& session, std::uint8_t node) {
-  const auto answer = session.upload(node, kStatusword);
+  const auto answer = session.upload(node, objects::kStatusword);
   if (!answer) return tl::unexpected<Error>(answer.error());
   return drive::decode_state(static_cast<std::uint16_t>(load_le(*answer)));
 }
@@ -40,12 +39,12 @@ Result<bool> left_fault(Session& session, std::uint8_t node) {
 /// Writes the edge and takes it back, whatever becomes of it: while bit 7 stays set the drive obeys no other
 /// command, so neither Ctrl-C nor a lost answer may come between the two.
 Result<bool> by_controlword(Session& session, std::uint8_t node) {
-  const auto prepared = session.download(node, kControlword, store_le(0, 2));
+  const auto prepared = session.download(node, objects::kControlword, store_le(0, 2));
   if (!prepared) return tl::unexpected<Error>(prepared.error());
   const Deaf deaf(session);
-  const auto edge = session.download(node, kControlword, store_le(kResetEdge, 2));
+  const auto edge = session.download(node, objects::kControlword, store_le(kResetEdge, 2));
   const auto left = edge ? left_fault(session, node) : tl::unexpected<Error>(edge.error());
-  const auto released = session.download(node, kControlword, store_le(0, 2));
+  const auto released = session.download(node, objects::kControlword, store_le(0, 2));
   if (left && released) return left;
   auto error = left ? released.error() : left.error();
   if (!released)

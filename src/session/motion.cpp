@@ -5,13 +5,10 @@
 #include <cmath>
 
 #include "drive/soft_ramp.hpp"
+#include "drive/standard_objects.hpp"
 
 namespace servoctl::session {
 namespace {
-
-constexpr ObjectAddress kMaxProfileVelocity{0x607F, 0};
-constexpr ObjectAddress kMaxMotorSpeed{0x6080, 0};
-constexpr ObjectAddress kAcceleration{0x6083, 0};
 
 /// A motor at rest shows some noise: this part of the commanded speed, and 3 rpm where it is told in rpm.
 constexpr double kNoisePart = 0.02;
@@ -66,19 +63,20 @@ Result<void> Motion::read_limits() {
 
 /// A speed the drive holds, when it is told in the unit of the target velocity.
 std::optional<double> Motion::read_speed(ObjectAddress object) {
-  if (!units_->has(object) || units_->unit(object) != units_->unit(kTargetVelocity)) return std::nullopt;
+  if (!units_->has(object) || units_->unit(object) != units_->unit(objects::kTargetVelocity))
+    return std::nullopt;
   const auto answer = session_->upload(node_, object);
   const auto value = answer ? units_->physical(object, *answer) : std::nullopt;
   return value && value->value > 0 ? std::optional(value->value) : std::nullopt;
 }
 
 Result<double> Motion::find_speed_cap() {
-  const auto unit = units_->unit(kTargetVelocity);
+  const auto unit = units_->unit(objects::kTargetVelocity);
   std::optional<double> most;
-  for (const auto object : {kMaxProfileVelocity, kMaxMotorSpeed})
+  for (const auto object : {objects::kMaxProfileVelocity, objects::kMaxMotorSpeed})
     if (const auto speed = read_speed(object)) most = std::min(*speed, most.value_or(*speed));
   if (!options_.speed_limit.empty()) {
-    const auto asked = units_->parse_physical(kTargetVelocity, options_.speed_limit);
+    const auto asked = units_->parse_physical(objects::kTargetVelocity, options_.speed_limit);
     if (!asked) return tl::unexpected<Error>(asked.error());
     if (most && std::abs(asked->value) > *most)
       return fail(error(Errc::refused,
@@ -99,7 +97,7 @@ Result<double> Motion::find_speed_cap() {
 Result<void> Motion::check_speed(double speed) const {
   if (!speed_cap_) return tl::unexpected<Error>(speed_cap_.error());
   if (std::abs(speed) <= *speed_cap_ * kRounding) return {};
-  const auto unit = units_->unit(kTargetVelocity);
+  const auto unit = units_->unit(objects::kTargetVelocity);
   return fail(error(
       Errc::refused,
       fmt::format("{:g} {} is above the limit of {:g} {}", std::abs(speed), unit, *speed_cap_, unit),
@@ -111,7 +109,7 @@ Result<std::vector<PreflightItem>> Motion::look(bool chinese) {
 }
 
 void Motion::set_standstill(double speed) {
-  const bool rpm = units_->unit(kVelocityActual) == "rpm";
+  const bool rpm = units_->unit(objects::kVelocityActual) == "rpm";
   standstill_ = std::max(rpm ? kNoiseRpm : 0, std::abs(speed) * kNoisePart);
   if (guard_) guard_->set_standstill(standstill_);
 }
@@ -126,12 +124,12 @@ std::vector<MotionSetting> Motion::ramps(double speed, std::initializer_list<Obj
   for (const auto object : objects) {
     if (!units_->has(object)) continue;
     if (!options_.acceleration.empty()) {
-      if (const auto data = units_->parse(kAcceleration, options_.acceleration))
+      if (const auto data = units_->parse(objects::kProfileAcceleration, options_.acceleration))
         out.emplace_back(object, *data);
       continue;
     }
     const auto ramp =
-        drive::soft_ramp(units_->unit(object), units_->unit(kTargetVelocity), speed, kRampSeconds);
+        drive::soft_ramp(units_->unit(object), units_->unit(objects::kTargetVelocity), speed, kRampSeconds);
     const auto data = ramp ? units_->bytes(object, *ramp) : std::nullopt;
     if (data) out.emplace_back(object, *data);
   }
@@ -139,8 +137,8 @@ std::vector<MotionSetting> Motion::ramps(double speed, std::initializer_list<Obj
 }
 
 std::optional<Duration> Motion::duration(double way, double speed) const {
-  const auto of_way = units_->unit(kPositionActual);
-  const auto of_speed = units_->unit(kTargetVelocity);
+  const auto of_way = units_->unit(objects::kPositionActual);
+  const auto of_speed = units_->unit(objects::kTargetVelocity);
   const double degrees_a_second = of_speed == "rpm" && of_way == "deg" ? 6 : 1;
   const bool fits = degrees_a_second != 1 || of_speed == of_way + "/s";
   if (!fits || speed == 0) return std::nullopt;
@@ -151,7 +149,7 @@ std::optional<Duration> Motion::duration(double way, double speed) const {
 Result<void> Motion::begin(std::int8_t mode, const std::vector<MotionSetting>& settings,
                            std::optional<ObjectAddress> kept_target) {
   if (!options_.acceleration.empty())
-    if (const auto data = units_->parse(kAcceleration, options_.acceleration); !data)
+    if (const auto data = units_->parse(objects::kProfileAcceleration, options_.acceleration); !data)
       return tl::unexpected<Error>(data.error());
   guard_ = std::make_unique<MotionGuard>(*session_, *units_, node_);
   guard_->set_standstill(standstill_);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "drive/standard_objects.hpp"
 #include "session/deaf.hpp"
 #include "session/operation_mode.hpp"
 
@@ -13,9 +14,6 @@ namespace {
 
 using drive::DriveState;
 
-constexpr std::uint16_t kConsumerIndex = 0x1016;
-constexpr ObjectAddress kGuardTime{0x100C, 0};
-constexpr ObjectAddress kLifeFactor{0x100D, 0};
 constexpr std::uint32_t kLife = 5;  ///< Guard times in the life time.
 
 constexpr std::uint32_t kNoSuchObject = 0x0602'0000;  ///< CiA 301, table of SDO abort codes.
@@ -59,42 +57,43 @@ Result<void> MotionGuard::change(ObjectAddress object, const Bytes& data) {
 
 Result<void> MotionGuard::change_mode(std::int8_t mode) {
   // 6061h may show another one: a drive starts in none and has one waiting.
-  const auto before = session_->upload(node_, kModeOfOperation);
+  const auto before = session_->upload(node_, objects::kModeOfOperation);
   if (!before) return tl::unexpected<Error>(before.error());
-  changed_.push_back({kModeOfOperation, *before});
+  changed_.push_back({objects::kModeOfOperation, *before});
   return set_mode(*session_, units_->profile(), node_, mode);
 }
 
 Result<void> MotionGuard::neutral_targets(std::optional<ObjectAddress> except) {
-  for (const auto object : {kTargetVelocity, kTargetTorque}) {
+  for (const auto object : {objects::kTargetVelocity, objects::kTargetTorque}) {
     if (!units_->has(object) || object == except) continue;
     const auto size = od::size_of(units_->meaning(object).type).value_or(4);
     const auto done = change(object, Bytes(size, 0));
     // The dictionary may promise more than the drive has.
     if (!done && done.error().abort_code != kNoSuchObject) return done;
   }
-  if (!units_->has(kTargetPosition) || !units_->has(kPositionActual)) return {};
-  const auto here = session_->upload(node_, kPositionActual);
+  if (!units_->has(objects::kTargetPosition) || !units_->has(objects::kPositionActual)) return {};
+  const auto here = session_->upload(node_, objects::kPositionActual);
   if (!here) return tl::unexpected<Error>(here.error());
-  return change(kTargetPosition, *here);
+  return change(objects::kTargetPosition, *here);
 }
 
 Result<void> MotionGuard::arm(const WatchdogPlan& plan) {
   watchdog_ = plan;
   if (plan.reaction_off)
-    if (const auto done = change(kAbortConnectionOption, store_le(kReactWithFault, 2)); !done) return done;
+    if (const auto done = change(objects::kAbortConnectionOption, store_le(kReactWithFault, 2)); !done)
+      return done;
   const auto ms =
       static_cast<std::uint32_t>(std::chrono::duration_cast<std::chrono::milliseconds>(plan.time).count());
   if (plan.kind == WatchdogPlan::Kind::heartbeat) {
-    if (const auto done =
-            change({kConsumerIndex, plan.entry}, store_le(std::uint32_t{plan.producer} << 16U | ms, 4));
+    if (const auto done = change({objects::kConsumerHeartbeatIndex, plan.entry},
+                                 store_le(std::uint32_t{plan.producer} << 16U | ms, 4));
         !done)
       return done;
     session_->produce_heartbeat(plan.producer, plan.time / kLife);
   }
   if (plan.kind == WatchdogPlan::Kind::guarding) {
     for (const auto& [object, value, size] :
-         {std::tuple{kGuardTime, ms / kLife, 2U}, std::tuple{kLifeFactor, kLife, 1U}})
+         {std::tuple{objects::kGuardTime, ms / kLife, 2U}, std::tuple{objects::kLifeTimeFactor, kLife, 1U}})
       if (const auto done = change(object, store_le(value, size)); !done) return done;
     session_->guard(node_, {plan.time / kLife, kLife});
   }
@@ -146,9 +145,9 @@ Result<bool> MotionGuard::wait_for_standstill(Duration patience) {
     const auto state = power_.state();
     if (!state) return tl::unexpected<Error>(state.error());
     if (!drive::is_energised(*state)) return true;
-    const auto answer = session_->upload(node_, kVelocityActual);
+    const auto answer = session_->upload(node_, objects::kVelocityActual);
     if (!answer && is_lost(answer.error())) return tl::unexpected<Error>(answer.error());
-    const auto speed = answer ? units_->physical(kVelocityActual, *answer) : std::nullopt;
+    const auto speed = answer ? units_->physical(objects::kVelocityActual, *answer) : std::nullopt;
     if (speed && std::abs(speed->value) <= standstill_.value_or(0)) return true;
     if (speed && !first) first = std::abs(speed->value);
     const bool slower = speed && std::abs(speed->value) < *first * kSlower;
@@ -170,7 +169,7 @@ void MotionGuard::stop() {
   const bool by_target = mode && (*mode == rules.velocity || *mode == rules.torque);
   if (*state == DriveState::operation_enabled) {
     if (rules.halt) (void)power_.command(kHalted);
-    const auto target = mode && *mode == rules.torque ? kTargetTorque : kTargetVelocity;
+    const auto target = mode && *mode == rules.torque ? objects::kTargetTorque : objects::kTargetVelocity;
     if (by_target) {
       const auto size = od::size_of(units_->meaning(target).type).value_or(4);
       (void)session_->download(node_, target, Bytes(size, 0));

@@ -2,16 +2,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "drive/standard_objects.hpp"
 #include "session/motion_kinds.hpp"
 #include "session/operation_mode.hpp"
 
 namespace servoctl::session {
 namespace {
-
-constexpr ObjectAddress kHomeOffset{0x607C, 0};
-constexpr ObjectAddress kMethod{0x6098, 0};
-constexpr ObjectAddress kFast{0x6099, 1};
-constexpr ObjectAddress kSlow{0x6099, 2};
 
 /// Methods that take the present position for home (CiA 402-2): they may be done before anybody looks.
 constexpr std::array<std::int64_t, 2> kAtOnce{35, 37};
@@ -95,9 +91,9 @@ Result<Bytes> value_of(Motion& motion, ObjectAddress object, const MotionPlan& p
 }
 
 Result<void> check_method(Motion& motion, MotionPlan& plan) {
-  const auto method = value_of(motion, kMethod, plan);
+  const auto method = value_of(motion, objects::kHomingMethod, plan);
   if (!method) return tl::unexpected<Error>(method.error());
-  const auto meaning = motion.units().meaning(kMethod);
+  const auto meaning = motion.units().meaning(objects::kHomingMethod);
   const auto value = od::decode(meaning.type, *method);
   if (!value) return tl::unexpected<Error>(value.error());
   const auto number = static_cast<std::int64_t>(od::to_double(*value));
@@ -122,14 +118,15 @@ Result<MotionPlan> plan_home(Motion& motion, const Home& home) {
     return fail(motion.error(Errc::refused, "this family cannot home by itself: it has no such mode"));
   MotionPlan plan;
   plan.mode = *mode;
-  for (const auto& [object, text] : {std::pair(kMethod, &home.method), std::pair(kFast, &home.fast),
-                                     std::pair(kSlow, &home.slow), std::pair(kHomeOffset, &home.offset)})
+  for (const auto& [object, text] :
+       {std::pair(objects::kHomingMethod, &home.method), std::pair(objects::kHomingSpeedSwitch, &home.fast),
+        std::pair(objects::kHomingSpeedZero, &home.slow), std::pair(objects::kHomeOffset, &home.offset)})
     if (const auto added = add(motion, object, *text, plan); !added)
       return tl::unexpected<Error>(added.error());
   if (const auto known = check_method(motion, plan); !known) return tl::unexpected<Error>(known.error());
-  const auto fast = value_of(motion, kFast, plan);
+  const auto fast = value_of(motion, objects::kHomingSpeedSwitch, plan);
   if (!fast) return tl::unexpected<Error>(fast.error());
-  const auto speed = motion.units().physical(kFast, *fast).value_or(Physical{});
+  const auto speed = motion.units().physical(objects::kHomingSpeedSwitch, *fast).value_or(Physical{});
   if (const auto allowed = motion.check_speed(speed.value); !allowed)
     return tl::unexpected<Error>(allowed.error());
   plan.speed = speed.value;

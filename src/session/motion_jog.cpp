@@ -2,13 +2,11 @@
 #include <cmath>
 
 #include "base/duration.hpp"
+#include "drive/standard_objects.hpp"
 #include "session/motion_kinds.hpp"
 
 namespace servoctl::session {
 namespace {
-
-constexpr ObjectAddress kAcceleration{0x6083, 0};
-constexpr ObjectAddress kDeceleration{0x6084, 0};
 
 constexpr Duration kSettling = std::chrono::milliseconds(1500);
 /// So long after the command a motor that obeys turns, and the right way round.
@@ -47,8 +45,9 @@ class Jogging {
     wrong_looks_ = 0;
     Bytes data(plan_->command.size(), 0);
     if (direction == 1) data = plan_->command;
-    if (direction == -1) data = motion_->units().bytes(kTargetVelocity, -plan_->value).value_or(data);
-    return motion_->write(kTargetVelocity, data);
+    if (direction == -1)
+      data = motion_->units().bytes(objects::kTargetVelocity, -plan_->value).value_or(data);
+    return motion_->write(objects::kTargetVelocity, data);
   }
 
   Result<bool> look(const MotionSample& sample) {
@@ -124,7 +123,7 @@ class Jogging {
 
 /// The way of so many turns in the unit of the position.
 Result<double> way_of(const Motion& motion, double turns) {
-  if (motion.units().unit(kPositionActual) == "deg") return std::abs(turns) * kDegrees;
+  if (motion.units().unit(objects::kPositionActual) == "deg") return std::abs(turns) * kDegrees;
   return fail(motion.error(Errc::usage, "does not tell how many counts a turn of its motor has",
                            "add --turn COUNTS, or say --for TIME"));
 }
@@ -142,16 +141,16 @@ Result<MotionPlan> plan_jog(Motion& motion, const Jog& jog) {
   if (!mode) return fail(motion.error(Errc::refused, "this family has no velocity mode"));
   MotionPlan plan;
   plan.mode = *mode;
-  const auto data = motion.units().parse(kTargetVelocity, jog.speed);
+  const auto data = motion.units().parse(objects::kTargetVelocity, jog.speed);
   if (!data) return tl::unexpected<Error>(data.error());
-  const auto speed = motion.units().physical(kTargetVelocity, *data).value_or(Physical{});
+  const auto speed = motion.units().physical(objects::kTargetVelocity, *data).value_or(Physical{});
   if (speed.value == 0) return fail(Errc::usage, "a speed of 0 does not move anything", "say how fast");
   if (const auto allowed = motion.check_speed(speed.value); !allowed)
     return tl::unexpected<Error>(allowed.error());
   plan.command = *data;
   plan.value = plan.speed = speed.value;
   plan.unit = speed.unit;
-  plan.settings = motion.ramps(speed.value, {kAcceleration, kDeceleration});
+  plan.settings = motion.ramps(speed.value, {objects::kProfileAcceleration, objects::kProfileDeceleration});
   if (jog.turns) {
     const auto way = way_of(motion, *jog.turns);
     if (!way) return tl::unexpected<Error>(way.error());

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "drive/standard_objects.hpp"
 #include "session/hurry.hpp"
 #include "session/power.hpp"
 
@@ -30,8 +31,8 @@ std::string_view name(Channel channel) {
 }
 
 ObjectAddress object_of(Channel channel) {
-  constexpr std::array<ObjectAddress, kChannels> kObjects{kPositionActual, kVelocityActual, kTorqueActual,
-                                                          kFollowingError};
+  constexpr std::array<ObjectAddress, kChannels> kObjects{objects::kPositionActual, objects::kVelocityActual,
+                                                          objects::kTorqueActual, objects::kFollowingError};
   return kObjects[static_cast<std::size_t>(channel)];
 }
 
@@ -42,7 +43,7 @@ MotionMonitor::MotionMonitor(Session& session, const MotionUnits& units, std::ui
 }
 
 Result<MotionSample> MotionMonitor::sample() {
-  std::vector<SdoRequest> requests{{.node = node_, .object = kStatusword, .size = 2}};
+  std::vector<SdoRequest> requests{{.node = node_, .object = objects::kStatusword, .size = 2}};
   for (const auto channel : channels_) requests.push_back({.node = node_, .object = object_of(channel)});
   const auto answers = [&] {
     const Hurry hurry(*session_, kPatience, 1);

@@ -2,15 +2,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "drive/standard_objects.hpp"
 #include "session/motion_kinds.hpp"
 #include "session/operation_mode.hpp"
 
 namespace servoctl::session {
 namespace {
-
-constexpr ObjectAddress kAcceleration{0x6083, 0};
-constexpr ObjectAddress kDeceleration{0x6084, 0};
-constexpr ObjectAddress kPositionWindow{0x6067, 0};
 
 constexpr std::uint16_t kEnabled = 0x000F;
 constexpr std::uint16_t kNewSetpoint = 0x001F;
@@ -33,7 +30,8 @@ class Moving {
 
   Result<void> run() {
     if (const auto window = read_window(); !window) return window;
-    if (const auto written = motion_->write(kTargetPosition, plan_->command); !written) return written;
+    if (const auto written = motion_->write(objects::kTargetPosition, plan_->command); !written)
+      return written;
     if (motion_->rules().handshake)
       if (const auto taken = hand_over(); !taken) return taken;
     const auto longest = motion_->duration(plan_->way, plan_->speed).value_or(kUnknownDuration) * 3 / 2;
@@ -52,10 +50,10 @@ class Moving {
   Result<void> read_window() {
     const double least = plan_->unit == "deg" ? kLeastDegrees : kLeastCounts;
     window_ = std::max(least, std::abs(plan_->way) * kPartOfWay);
-    if (!motion_->units().has(kPositionWindow)) return {};
-    const auto answer = motion_->session().upload(motion_->node(), kPositionWindow);
+    if (!motion_->units().has(objects::kPositionWindow)) return {};
+    const auto answer = motion_->session().upload(motion_->node(), objects::kPositionWindow);
     if (!answer && answer.error().code != Errc::sdo_abort) return tl::unexpected<Error>(answer.error());
-    const auto told = answer ? motion_->units().physical(kPositionWindow, *answer) : std::nullopt;
+    const auto told = answer ? motion_->units().physical(objects::kPositionWindow, *answer) : std::nullopt;
     if (told && told->unit == plan_->unit) window_ = std::max(window_, told->value);
     return {};
   }
@@ -104,16 +102,16 @@ class Moving {
 /// The target, counted from where the motor stands when it is relative.
 Result<void> find_target(Motion& motion, const Move& move, MotionPlan& plan) {
   const auto& units = motion.units();
-  const auto asked = units.parse_physical(kTargetPosition, move.target);
+  const auto asked = units.parse_physical(objects::kTargetPosition, move.target);
   if (!asked) return tl::unexpected<Error>(asked.error());
-  const auto answer = motion.session().upload(motion.node(), kPositionActual);
+  const auto answer = motion.session().upload(motion.node(), objects::kPositionActual);
   if (!answer) return tl::unexpected<Error>(answer.error());
-  const auto here = units.physical(kPositionActual, *answer).value_or(Physical{});
+  const auto here = units.physical(objects::kPositionActual, *answer).value_or(Physical{});
   plan.value = asked->value + (move.relative ? here.value : 0);
   plan.unit = asked->unit;
   plan.way = plan.value - here.value;
-  const auto data = units.bytes(kTargetPosition, plan.value);
-  const auto said = data ? units.physical(kTargetPosition, *data) : std::nullopt;
+  const auto data = units.bytes(objects::kTargetPosition, plan.value);
+  const auto said = data ? units.physical(objects::kTargetPosition, *data) : std::nullopt;
   // Kept within limits silently it would go elsewhere.
   if (!said || std::abs(said->value - plan.value) > std::max(1e-3, std::abs(plan.value) * 1e-6))
     return fail(motion.error(Errc::usage,
@@ -150,9 +148,9 @@ Result<MotionPlan> plan_move(Motion& motion, const Move& move) {
   if (const auto allowed = motion.check_speed(fast->value); !allowed)
     return tl::unexpected<Error>(allowed.error());
   plan.speed = fast->value;
-  plan.settings = motion.ramps(plan.speed, {kAcceleration, kDeceleration});
+  plan.settings = motion.ramps(plan.speed, {objects::kProfileAcceleration, objects::kProfileDeceleration});
   plan.settings.emplace_back(*speed_object, *speed);
-  if (speed_object == kTargetVelocity) plan.kept_target = *speed_object;
+  if (speed_object == objects::kTargetVelocity) plan.kept_target = *speed_object;
   plan.summary = fmt::format("go {:g} {} to {:g} {} at {:g} {}", plan.way, plan.unit, plan.value, plan.unit,
                              plan.speed, fast->unit);
   motion.set_standstill(plan.speed);

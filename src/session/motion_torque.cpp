@@ -2,12 +2,12 @@
 #include <cmath>
 
 #include "base/duration.hpp"
+#include "drive/standard_objects.hpp"
 #include "session/motion_kinds.hpp"
 
 namespace servoctl::session {
 namespace {
 
-constexpr ObjectAddress kTorqueSlope{0x6087, 0};
 /// A drive that limits its speed overshoots a little.
 constexpr double kOvershoot = 1.2;
 
@@ -15,24 +15,25 @@ constexpr double kOvershoot = 1.2;
 void limit_speed(const Motion& motion, double cap, MotionPlan& plan) {
   for (const auto& name : motion.rules().speed_limit) {
     const auto object = motion.units().object(name);
-    if (!object || motion.units().unit(*object) != motion.units().unit(kTargetVelocity)) continue;
+    if (!object || motion.units().unit(*object) != motion.units().unit(objects::kTargetVelocity)) continue;
     const auto data = motion.units().bytes(*object, cap);
     if (!data) continue;
     plan.settings.emplace_back(*object, *data);
-    if (*object == kTargetVelocity) plan.kept_target = *object;
+    if (*object == objects::kTargetVelocity) plan.kept_target = *object;
   }
   if (plan.settings.empty())
     plan.notes.push_back(fmt::format(
         "the drive has no speed limit of its own in torque mode that the manual tells: servoctl looks at the "
         "speed every {} ms and stops above {:g} {}",
         std::chrono::duration_cast<std::chrono::milliseconds>(MotionMonitor::kPeriod).count(),
-        cap * kOvershoot, motion.units().unit(kTargetVelocity)));
+        cap * kOvershoot, motion.units().unit(objects::kTargetVelocity)));
 }
 
 void soften(const Motion& motion, double torque, MotionPlan& plan) {
-  if (!motion.units().has(kTorqueSlope) || motion.units().unit(kTorqueSlope) != "%/s") return;
-  if (const auto data = motion.units().bytes(kTorqueSlope, std::abs(torque) / Motion::kRampSeconds))
-    plan.settings.emplace_back(kTorqueSlope, *data);
+  if (!motion.units().has(objects::kTorqueSlope) || motion.units().unit(objects::kTorqueSlope) != "%/s")
+    return;
+  if (const auto data = motion.units().bytes(objects::kTorqueSlope, std::abs(torque) / Motion::kRampSeconds))
+    plan.settings.emplace_back(objects::kTorqueSlope, *data);
 }
 
 }  // namespace
@@ -43,9 +44,9 @@ Result<MotionPlan> plan_torque(Motion& motion, const Torque& torque) {
   const auto cap = motion.speed_cap();
   if (!cap) return tl::unexpected<Error>(cap.error());
   if (*cap <= 0) return fail(Errc::usage, "a speed limit of 0 lets nothing move", "give --limit a speed");
-  const auto data = motion.units().parse(kTargetTorque, torque.torque);
+  const auto data = motion.units().parse(objects::kTargetTorque, torque.torque);
   if (!data) return tl::unexpected<Error>(data.error());
-  const auto value = motion.units().physical(kTargetTorque, *data).value_or(Physical{});
+  const auto value = motion.units().physical(objects::kTargetTorque, *data).value_or(Physical{});
   if (value.value == 0) return fail(Errc::usage, "a torque of 0 does nothing", "say how much");
   MotionPlan plan;
   plan.mode = *mode;
@@ -57,14 +58,15 @@ Result<MotionPlan> plan_torque(Motion& motion, const Torque& torque) {
   soften(motion, value.value, plan);
   motion.limits().speed = *cap * kOvershoot;
   motion.set_standstill(*cap);
-  plan.summary = fmt::format("push with {:g} {} for {}, no faster than {:g} {}", value.value, value.unit,
-                             servoctl::to_string(torque.length), *cap, motion.units().unit(kTargetVelocity));
+  plan.summary =
+      fmt::format("push with {:g} {} for {}, no faster than {:g} {}", value.value, value.unit,
+                  servoctl::to_string(torque.length), *cap, motion.units().unit(objects::kTargetVelocity));
   return plan;
 }
 
 MotionReport run_torque(Motion& motion, const Torque& torque, const MotionPlan& plan) {
   auto done = motion.begin(plan.mode, plan.settings, plan.kept_target);
-  if (done) done = motion.write(kTargetTorque, plan.command);
+  if (done) done = motion.write(objects::kTargetTorque, plan.command);
   if (done) {
     const auto watched =
         motion.watch([](const MotionSample&) -> Result<bool> { return false; }, torque.length);

@@ -5,19 +5,13 @@
 #include <string>
 
 #include "drive/quantity.hpp"
+#include "drive/standard_objects.hpp"
 #include "session/session.hpp"
 
 namespace servoctl::session {
 
 /// Objects in which drives tell how they move (CiA 402-2).
-inline constexpr ObjectAddress kPositionActual{0x6064, 0};
-inline constexpr ObjectAddress kVelocityActual{0x606C, 0};
-inline constexpr ObjectAddress kTorqueActual{0x6077, 0};
-inline constexpr ObjectAddress kFollowingError{0x60F4, 0};
 /// Objects in which they are told where to go.
-inline constexpr ObjectAddress kTargetTorque{0x6071, 0};
-inline constexpr ObjectAddress kTargetPosition{0x607A, 0};
-inline constexpr ObjectAddress kTargetVelocity{0x60FF, 0};
 
 /// A number with the unit people think in (`rpm`, `deg`, `%`), or the drive's own where nothing better is
 /// known (`inc/s`).

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "canopen/error_control.hpp"
+#include "drive/standard_objects.hpp"
 
 namespace servoctl::session {
 namespace {
@@ -12,9 +13,6 @@ namespace {
 using canopen::NmtCommand;
 using canopen::NmtState;
 
-constexpr ObjectAddress kGuardTime{0x100C, 0};
-constexpr ObjectAddress kLifeFactor{0x100D, 0};
-constexpr ObjectAddress kHeartbeat{0x1017, 0};
 /// Longest wait for a heartbeat.
 constexpr Duration kMostPatience = std::chrono::seconds(3);
 
@@ -30,9 +28,9 @@ Result<void> tell(Session& session, std::uint8_t node, NmtCommand command) {
 }  // namespace
 
 Result<std::optional<NmtState>> ask_nmt_state(Session& session, std::uint8_t node) {
-  const SdoRequest questions[] = {{.node = node, .object = kHeartbeat, .size = 2},
-                                  {.node = node, .object = kGuardTime, .size = 2},
-                                  {.node = node, .object = kLifeFactor, .size = 1}};
+  const SdoRequest questions[] = {{.node = node, .object = objects::kProducerHeartbeat, .size = 2},
+                                  {.node = node, .object = objects::kGuardTime, .size = 2},
+                                  {.node = node, .object = objects::kLifeTimeFactor, .size = 1}};
   const auto answers = session.transfer(questions);
   for (const auto& answer : answers)
     if (!answer && answer.error().code != Errc::sdo_abort) return tl::unexpected<Error>(answer.error());

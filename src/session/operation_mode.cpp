@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include "drive/quantity.hpp"
+#include "drive/standard_objects.hpp"
 #include "session/power.hpp"
 
 namespace servoctl::session {
 namespace {
 
-constexpr ObjectAddress kSupportedModes{0x6502, 0};
 constexpr Duration kPatience = std::chrono::seconds(1);
 constexpr Duration kPause = std::chrono::milliseconds(5);
 
@@ -22,26 +22,26 @@ std::string known_modes(const drive::Meaning& meaning) {
 }  // namespace
 
 std::string mode_text(const drive::Profile& profile, std::int8_t mode, bool chinese) {
-  const auto meaning = drive::meaning(drive::target_at(&profile, kModeDisplay), 0);
+  const auto meaning = drive::meaning(drive::target_at(&profile, objects::kModeDisplay), 0);
   const auto* label = drive::label_of(meaning, od::Value(std::int64_t{mode}));
   if (label == nullptr) return mode == 0 ? std::string("0 none") : fmt::format("{}", mode);
   return fmt::format("{} {}", mode, chinese && !label->label_zh.empty() ? label->label_zh : label->label);
 }
 
 Result<std::int8_t> read_mode(Session& session, std::uint8_t node) {
-  const auto answer = session.upload(node, kModeDisplay);
+  const auto answer = session.upload(node, objects::kModeDisplay);
   if (!answer) return tl::unexpected<Error>(answer.error());
   return static_cast<std::int8_t>(load_le(*answer));
 }
 
 Result<void> check_mode(Session& session, const drive::Profile& profile, std::uint8_t node,
                         std::int8_t mode) {
-  const auto meaning = drive::meaning(drive::target_at(&profile, kModeOfOperation), node);
+  const auto meaning = drive::meaning(drive::target_at(&profile, objects::kModeOfOperation), node);
   if (meaning.labels != nullptr && drive::label_of(meaning, od::Value(std::int64_t{mode})) == nullptr)
     return fail(drive_error(Errc::refused, node, fmt::format("this family has no mode {}", mode),
                             "modes: " + known_modes(meaning)));
-  if (mode < 1 || mode > 32 || profile.dictionary.find(kSupportedModes) == nullptr) return {};
-  const auto supported = session.upload(node, kSupportedModes);
+  if (mode < 1 || mode > 32 || profile.dictionary.find(objects::kSupportedModes) == nullptr) return {};
+  const auto supported = session.upload(node, objects::kSupportedModes);
   if (!supported && supported.error().code != Errc::sdo_abort)
     return tl::unexpected<Error>(supported.error());
   const auto bits = supported ? load_le(*supported) : 0;
@@ -53,10 +53,10 @@ Result<void> check_mode(Session& session, const drive::Profile& profile, std::ui
 }
 
 Result<void> set_mode(Session& session, const drive::Profile& profile, std::uint8_t node, std::int8_t mode) {
-  const auto meaning = drive::meaning(drive::target_at(&profile, kModeOfOperation), node);
+  const auto meaning = drive::meaning(drive::target_at(&profile, objects::kModeOfOperation), node);
   const auto size = meaning.type_known ? od::size_of(meaning.type).value_or(1) : 1;
   const auto raw = static_cast<std::uint64_t>(static_cast<std::int64_t>(mode));
-  if (const auto written = session.download(node, kModeOfOperation, store_le(raw, size)); !written)
+  if (const auto written = session.download(node, objects::kModeOfOperation, store_le(raw, size)); !written)
     return written;
   const auto end = session.now() + kPatience;
   for (;;) {

@@ -3,12 +3,10 @@
 #include <cstdint>
 
 #include "drive/profile.hpp"
+#include "drive/standard_objects.hpp"
 #include "session/session.hpp"
 
 namespace servoctl::session {
-
-inline constexpr ObjectAddress kModeOfOperation{0x6060, 0};
-inline constexpr ObjectAddress kModeDisplay{0x6061, 0};
 
 /// The mode the drive is in, by 6061h.
 Result<std::int8_t> read_mode(Session& session, std::uint8_t node);

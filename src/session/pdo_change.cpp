@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "drive/cia402.hpp"
+#include "drive/standard_objects.hpp"
 #include "session/deaf.hpp"
 #include "session/nmt_pause.hpp"
 
@@ -12,8 +13,6 @@ namespace {
 
 using canopen::Pdo;
 using drive::PdoRules;
-
-constexpr ObjectAddress kStatusword{0x6041, 0};
 
 std::uint64_t number(const Bytes& bytes) {
   return load_le(ByteSpan(bytes).first(std::min<std::size_t>(bytes.size(), 8)));
@@ -194,7 +193,7 @@ Result<void> complete(Session& session, std::uint8_t node, Values& present, cons
 }
 
 Result<void> check_not_energised(Session& session, std::uint8_t node) {
-  const auto word = session.upload(node, kStatusword);
+  const auto word = session.upload(node, objects::kStatusword);
   if (!word && word.error().code != Errc::sdo_abort) return tl::unexpected<Error>(word.error());
   if (!word || !drive::is_energised(drive::decode_state(static_cast<std::uint16_t>(number(*word)))))
     return {};

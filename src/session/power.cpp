@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "drive/quantity.hpp"
+#include "drive/standard_objects.hpp"
 #include "session/deaf.hpp"
 
 namespace servoctl::session {
@@ -11,7 +12,6 @@ namespace {
 
 using drive::DriveState;
 
-constexpr ObjectAddress kQuickStopOption{0x605A, 0};
 constexpr std::uint16_t kQuickStop = 0x0002;
 constexpr std::uint16_t kDisableVoltage = 0x0000;
 constexpr Duration kPause = std::chrono::milliseconds(5);
@@ -36,7 +36,7 @@ Result<void> pause(Session& session, Duration time) {
 }
 
 Result<std::uint16_t> Power::statusword() {
-  const auto answer = session_->upload(node_, kStatusword);
+  const auto answer = session_->upload(node_, objects::kStatusword);
   if (!answer) return tl::unexpected<Error>(answer.error());
   statusword_ = static_cast<std::uint16_t>(load_le(*answer));
   return statusword_;
@@ -51,7 +51,7 @@ Result<DriveState> Power::state() {
 }
 
 Result<void> Power::command(std::uint16_t controlword) {
-  return session_->download(node_, kControlword, store_le(controlword, 2));
+  return session_->download(node_, objects::kControlword, store_le(controlword, 2));
 }
 
 bool Power::tells(std::uint16_t bit) const {
@@ -62,7 +62,7 @@ bool Power::tells(std::uint16_t bit) const {
 /// 605Ah decides whether a quick stop can be left upwards.
 bool Power::resumes() {
   const auto& staying = profile_->rules.quick_stop_stays_enabled;
-  const auto option = session_->upload(node_, kQuickStopOption);
+  const auto option = session_->upload(node_, objects::kQuickStopOption);
   const auto value = option ? static_cast<std::int16_t>(load_le(*option)) : std::int16_t{0};
   return std::find(staying.begin(), staying.end(), value) != staying.end();
 }

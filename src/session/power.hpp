@@ -6,12 +6,10 @@
 
 #include "drive/power_path.hpp"
 #include "drive/profile.hpp"
+#include "drive/standard_objects.hpp"
 #include "session/session.hpp"
 
 namespace servoctl::session {
-
-inline constexpr ObjectAddress kControlword{0x6040, 0};
-inline constexpr ObjectAddress kStatusword{0x6041, 0};
 
 /// Bits of the statusword that are no part of the state (CiA 402-2, 8.4.2).
 inline constexpr std::uint16_t kVoltageEnabled = 1U << 4U;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <array>
 
+#include "drive/standard_objects.hpp"
 #include "session/operation_mode.hpp"
 #include "session/power.hpp"
 
@@ -11,18 +12,14 @@ namespace {
 
 using Weight = PreflightItem::Weight;
 
-constexpr ObjectAddress kInputs{0x60FD, 0};
-constexpr ObjectAddress kSupply{0x6079, 0};
-constexpr ObjectAddress kFollowingErrorWindow{0x6065, 0};
-
 /// Settings and readings that are shown as they are.
 struct Shown {
   ObjectAddress object;
   std::string_view what;
 };
 constexpr std::array kShown{
-    Shown{kSupply, "supply"},
-    Shown{kFollowingErrorWindow, "following error window"},
+    Shown{objects::kSupplyVoltage, "supply"},
+    Shown{objects::kFollowingErrorWindow, "following error window"},
     Shown{{0x607F, 0}, "max speed"},
     Shown{{0x6080, 0}, "max motor speed"},
     Shown{{0x607D, 1}, "lower position limit"},
@@ -81,17 +78,18 @@ class Preflight {
       requests.push_back({.node = node_, .object = object});
       names.push_back(what);
     };
-    ask(kInputs, "inputs");
+    ask(objects::kDigitalInputs, "inputs");
     for (const auto& shown : kShown) ask(shown.object, shown.what);
     const auto answers = session_->transfer(requests);
     for (std::size_t i = 0; i < answers.size(); ++i) {
       if (!answers[i] && answers[i].error().code != Errc::sdo_abort)
         return tl::unexpected<Error>(answers[i].error());
       if (!answers[i]) continue;
-      if (requests[i].object == kInputs) {
+      if (requests[i].object == objects::kDigitalInputs) {
         add_inputs(static_cast<std::uint32_t>(load_le(*answers[i])));
       } else if (const auto value = units_->physical(requests[i].object, *answers[i])) {
-        if (value->value != 0 || requests[i].object == kFollowingErrorWindow || requests[i].object == kSupply)
+        if (value->value != 0 || requests[i].object == objects::kFollowingErrorWindow ||
+            requests[i].object == objects::kSupplyVoltage)
           add(Weight::note, names[i], fmt::format("{:.9g} {}", value->value, value->unit));
       }
     }

@@ -1,4 +1,5 @@
 #include "session/scan.hpp"
+#include "drive/standard_objects.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +8,6 @@
 namespace servoctl::session {
 namespace {
 
-constexpr ObjectAddress kDeviceType{0x1000, 0};
 constexpr std::array kNumbers{ObjectAddress{0x1018, 1}, ObjectAddress{0x1018, 2}, ObjectAddress{0x1018, 3},
                               ObjectAddress{0x1018, 4}};
 constexpr std::array kTexts{ObjectAddress{0x1008, 0}, ObjectAddress{0x1009, 0}, ObjectAddress{0x100A, 0}};
@@ -27,7 +27,7 @@ std::string text(const Result<Bytes>& answer) {
 /// The first nodes' worth of requests asks who is there.
 Result<std::vector<Identity>> find_nodes(Session& session, std::span<const std::uint8_t> nodes) {
   std::vector<SdoRequest> requests;
-  for (const auto node : nodes) requests.push_back({node, kDeviceType, {}});
+  for (const auto node : nodes) requests.push_back({node, objects::kDeviceType, {}});
   const auto retries = std::exchange(session.options().retries, 0);
   const auto answers = session.transfer(requests);
   session.options().retries = retries;
@@ -72,7 +72,7 @@ Result<std::vector<Identity>> scan(Session& session, std::span<const std::uint8_
 namespace {
 
 std::optional<std::uint32_t> identity_number(const Identity& identity, ObjectAddress object) {
-  if (object == kDeviceType) return identity.device_type;
+  if (object == objects::kDeviceType) return identity.device_type;
   if (object == kNumbers[0]) return identity.vendor_id;
   if (object == kNumbers[1]) return identity.product_code;
   if (object == kNumbers[2]) return identity.revision;

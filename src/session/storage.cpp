@@ -5,15 +5,11 @@
 #include <utility>
 
 #include "drive/quantity.hpp"
+#include "drive/standard_objects.hpp"
 #include "session/deaf.hpp"
 
 namespace servoctl::session {
 namespace {
-
-constexpr std::uint16_t kStoreIndex = 0x1010;
-constexpr std::uint16_t kRestoreIndex = 0x1011;
-constexpr std::uint32_t kSave = 0x6576'6173;  ///< "save" (CiA 301, 7.5.2.13)
-constexpr std::uint32_t kLoad = 0x6461'6F6C;  ///< "load" (CiA 301, 7.5.2.14)
 
 /// The session with more patience for one answer.
 class Patience {
@@ -69,7 +65,8 @@ Result<void> store_parameters(Session& session, const drive::Profile* profile, s
                               ParameterGroup group) {
   const Patience patience(session, kStorePatience);
   if (by_objects(profile))
-    return session.download(node, {kStoreIndex, static_cast<std::uint8_t>(group)}, store_le(kSave, 4));
+    return session.download(node, {objects::kStoreIndex, static_cast<std::uint8_t>(group)},
+                            store_le(objects::kSaveSignature, 4));
   const auto& rules = profile->rules.store;
   if (!rules.store.empty()) return write_settings(session, *profile, node, rules.store);
   auto hint = rules.flash_switch.empty()
@@ -83,7 +80,8 @@ Result<void> restore_defaults(Session& session, const drive::Profile* profile, s
                               ParameterGroup group) {
   const Patience patience(session, kStorePatience);
   if (by_objects(profile))
-    return session.download(node, {kRestoreIndex, static_cast<std::uint8_t>(group)}, store_le(kLoad, 4));
+    return session.download(node, {objects::kRestoreIndex, static_cast<std::uint8_t>(group)},
+                            store_le(objects::kLoadSignature, 4));
   const auto& rules = profile->rules.store;
   if (!rules.restore.empty()) return write_settings(session, *profile, node, rules.restore);
   if (!rules.restore_at_start.empty())

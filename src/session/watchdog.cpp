@@ -7,16 +7,13 @@
 #include "base/duration.hpp"
 #include "canopen/cob_id.hpp"
 #include "drive/quantity.hpp"
+#include "drive/standard_objects.hpp"
 #include "session/hurry.hpp"
 #include "session/power.hpp"
 
 namespace servoctl::session {
 namespace {
 
-constexpr std::uint16_t kConsumerIndex = 0x1016;
-constexpr ObjectAddress kGuardTime{0x100C, 0};
-constexpr ObjectAddress kLifeFactor{0x100D, 0};
-constexpr ObjectAddress kDeviceType{0x1000, 0};
 constexpr std::uint8_t kMostEntries = 8;
 /// A node answers within some milliseconds.
 constexpr Duration kProbe = std::chrono::milliseconds(50);
@@ -31,7 +28,7 @@ bool is_free(std::uint64_t entry) { return node_of(entry) == 0 || (entry & 0xFFF
 /// Whether a node is there that has not been heard: its heartbeats must not be sent by two.
 bool answers(Session& session, std::uint8_t node) {
   const Hurry hurry(session, kProbe, 0);
-  const auto answer = session.upload(node, kDeviceType);
+  const auto answer = session.upload(node, objects::kDeviceType);
   return answer || answer.error().code == Errc::sdo_abort;
 }
 
@@ -50,8 +47,8 @@ Result<WatchdogPlan> plan_heartbeat(Session& session, const drive::Profile& prof
                                     std::optional<std::uint8_t> producer) {
   std::vector<SdoRequest> requests;
   for (std::uint8_t sub = 1; sub <= kMostEntries; ++sub)
-    if (has(profile, {kConsumerIndex, sub}))
-      requests.push_back({.node = node, .object = {kConsumerIndex, sub}});
+    if (has(profile, {objects::kConsumerHeartbeatIndex, sub}))
+      requests.push_back({.node = node, .object = {objects::kConsumerHeartbeatIndex, sub}});
   const auto answers = session.transfer(requests);
   std::vector<std::uint64_t> entries;
   WatchdogPlan plan;
@@ -79,14 +76,15 @@ Result<WatchdogPlan> plan_watchdog(Session& session, const drive::Profile& profi
                 "give servoctl another one, such as 127");
   auto plan = plan_heartbeat(session, profile, node, producer);
   if (!plan) return plan;
-  if (plan->kind == WatchdogPlan::Kind::none && has(profile, kGuardTime) && has(profile, kLifeFactor)) {
+  if (plan->kind == WatchdogPlan::Kind::none && has(profile, objects::kGuardTime) &&
+      has(profile, objects::kLifeTimeFactor)) {
     plan->kind = WatchdogPlan::Kind::guarding;
     plan->time = 2 * kWatchdogTime;
   }
-  if (plan->kind == WatchdogPlan::Kind::none || !has(profile, kAbortConnectionOption)) return plan;
-  const auto option = session.upload(node, kAbortConnectionOption);
+  if (plan->kind == WatchdogPlan::Kind::none || !has(profile, objects::kAbortConnectionOption)) return plan;
+  const auto option = session.upload(node, objects::kAbortConnectionOption);
   if (!option) return plan;
-  const auto meaning = drive::meaning(drive::target_at(&profile, kAbortConnectionOption), node);
+  const auto meaning = drive::meaning(drive::target_at(&profile, objects::kAbortConnectionOption), node);
   plan->reaction_off = load_le(*option) == 0;
   const auto value =
       od::decode(meaning.type, plan->reaction_off ? store_le(kReactWithFault, option->size()) : *option);

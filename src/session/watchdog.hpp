@@ -5,6 +5,7 @@
 #include <string>
 
 #include "drive/profile.hpp"
+#include "drive/standard_objects.hpp"
 #include "session/session.hpp"
 
 namespace servoctl::session {
@@ -25,7 +26,6 @@ struct WatchdogPlan {
 };
 
 /// 6007h, and its value for a fault (CiA 402-2, abort connection option code).
-inline constexpr ObjectAddress kAbortConnectionOption{0x6007, 0};
 inline constexpr std::uint8_t kReactWithFault = 1;
 
 /// Time of the watchdog unless asked otherwise; servoctl sends five messages in it.

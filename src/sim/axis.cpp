@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "drive/quantity.hpp"
-#include "sim/known_objects.hpp"
+#include "drive/standard_objects.hpp"
 
 namespace servoctl::sim {
 namespace {
@@ -22,17 +22,6 @@ constexpr std::uint16_t kTargetReached = 1U << 10U;
 constexpr std::uint16_t kModeBit = 1U << 12U;
 constexpr std::uint16_t kHomed = 1U << 15U;
 
-constexpr ObjectAddress kPositionActual{0x6064, 0};
-constexpr ObjectAddress kVelocityActual{0x606C, 0};
-constexpr ObjectAddress kTargetTorque{0x6071, 0};
-constexpr ObjectAddress kTorqueActual{0x6077, 0};
-constexpr ObjectAddress kTargetPosition{0x607A, 0};
-constexpr ObjectAddress kHomeOffset{0x607C, 0};
-constexpr ObjectAddress kAcceleration{0x6083, 0};
-constexpr ObjectAddress kTargetVelocity{0x60FF, 0};
-constexpr ObjectAddress kHomingMethod{0x6098, 0};
-constexpr ObjectAddress kHomingSpeed{0x6099, 1};
-
 constexpr std::int8_t kInterpolatedMode = 7;  ///< CiA 402-2.
 
 }  // namespace
@@ -45,7 +34,7 @@ void Axis::reset(TimePoint now) {
 }
 
 Axis::Kind Axis::kind() const {
-  const auto mode = static_cast<std::int8_t>(values_->number(kModeDisplay));
+  const auto mode = static_cast<std::int8_t>(values_->number(objects::kModeDisplay));
   const auto& motion = profile_->rules.motion;
   if (mode == 0) return Kind::none;
   if (mode == motion.position) return Kind::position;
@@ -85,7 +74,7 @@ void Axis::take_setpoint(bool relative, bool at_once) {
   acknowledged_ = true;
   at_once_ = at_once;
   const double from = !waiting_.empty() ? waiting_.back() : target_.value_or(position_);
-  const double to = read(kTargetPosition) + (relative ? from : 0);
+  const double to = read(objects::kTargetPosition) + (relative ? from : 0);
   if (at_once) waiting_.clear();
   if (at_once || !target_)
     target_ = to;
@@ -101,7 +90,7 @@ bool Axis::is_full() const {
 
 void Axis::start_homing(TimePoint now) {
   const auto& nothing = profile_->rules.motion.no_homing;
-  const auto method = static_cast<std::int8_t>(values_->number(kHomingMethod));
+  const auto method = static_cast<std::int8_t>(values_->number(objects::kHomingMethod));
   if (std::find(nothing.begin(), nothing.end(), method) != nothing.end()) return;
   was_homed_ = homed_;
   homed_ = false;
@@ -130,7 +119,7 @@ void Axis::advance(bool enabled, TimePoint now) {
       velocity_ = 0;
       homing_failed_ = faults_.bad_home;
       homed_ = !homing_failed_;
-      if (homed_) position_ = read(kHomeOffset);
+      if (homed_) position_ = read(objects::kHomeOffset);
     }
   }
   publish();
@@ -139,7 +128,7 @@ void Axis::advance(bool enabled, TimePoint now) {
 /// Without a handshake the target is followed as it stands.
 void Axis::follow_target() {
   if (kind() != Kind::position || profile_->rules.motion.handshake) return;
-  const double target = read(kTargetPosition);
+  const double target = read(objects::kTargetPosition);
   if (target != position_)
     target_ = target;
   else
@@ -156,7 +145,7 @@ void Axis::travel(double seconds) {
 }
 
 bool Axis::is_out_of_window() const {
-  const double window = read(kFollowingErrorWindow);
+  const double window = read(objects::kFollowingErrorWindow);
   return window > 0 && std::abs(behind_) > window;
 }
 
@@ -164,8 +153,9 @@ bool Axis::is_out_of_window() const {
 bool Axis::is_steady() const {
   const bool halted = profile_->rules.motion.halt && (controlword_ & kHalt) != 0;
   switch (kind()) {
-    case Kind::velocity: return !halted && velocity_ == read(kTargetVelocity) * speed_factor(kTargetVelocity);
-    case Kind::torque: return torque_ == 0 && read(kTargetTorque) == 0;
+    case Kind::velocity:
+      return !halted && velocity_ == read(objects::kTargetVelocity) * speed_factor(objects::kTargetVelocity);
+    case Kind::torque: return torque_ == 0 && read(objects::kTargetTorque) == 0;
     default: return velocity_ == 0 && !target_;
   }
 }
@@ -175,16 +165,16 @@ void Axis::step(double seconds) {
   switch (kind()) {
     case Kind::position: halted ? approach(0, seconds) : step_position(seconds); break;
     case Kind::velocity:
-      approach(halted ? 0 : read(kTargetVelocity) * speed_factor(kTargetVelocity), seconds);
+      approach(halted ? 0 : read(objects::kTargetVelocity) * speed_factor(objects::kTargetVelocity), seconds);
       break;
     case Kind::torque:
-      torque_ = halted ? 0 : read(kTargetTorque);
+      torque_ = halted ? 0 : read(objects::kTargetTorque);
       velocity_ += torque_ / 100 * kTurnsPerSecondOfRatedTorque * units_per_turn() * seconds;
       velocity_ = std::clamp(velocity_, -fastest_by_torque(), fastest_by_torque());
       break;
     case Kind::homing:
       approach(homing_ends_ && time_ >= homing_begins_ && !halted && homing_moves_
-                   ? read(kHomingSpeed) * speed_factor(kHomingSpeed)
+                   ? read(objects::kHomingSpeedSwitch) * speed_factor(objects::kHomingSpeedSwitch)
                    : 0,
                seconds);
       break;
@@ -195,14 +185,14 @@ void Axis::step(double seconds) {
 }
 
 void Axis::approach(double wanted, double seconds) {
-  const double most = ramp(kAcceleration) * seconds;
+  const double most = ramp(objects::kProfileAcceleration) * seconds;
   velocity_ += std::clamp(wanted - velocity_, -most, most);
 }
 
 void Axis::step_position(double seconds) {
   if (!target_) return approach(0, seconds);
   const double left = *target_ - position_;
-  const double ramp_rate = ramp(kAcceleration);
+  const double ramp_rate = ramp(objects::kProfileAcceleration);
   const double braking = std::sqrt(2 * ramp_rate * std::abs(left));
   const auto speed = speed_object();
   const double fastest = std::min(std::abs(read(speed) * speed_factor(speed)), braking);
@@ -239,10 +229,11 @@ std::uint16_t Axis::bits(bool enabled) const {
     switch (kind()) {
       case Kind::position: return position_bits();
       case Kind::velocity: {
-        const bool reached = velocity_ == read(kTargetVelocity) * speed_factor(kTargetVelocity);
+        const bool reached =
+            velocity_ == read(objects::kTargetVelocity) * speed_factor(objects::kTargetVelocity);
         return static_cast<std::uint16_t>((reached ? kTargetReached : 0U) | (velocity_ == 0 ? kModeBit : 0U));
       }
-      case Kind::torque: return torque_ == read(kTargetTorque) ? kTargetReached : std::uint16_t{0};
+      case Kind::torque: return torque_ == read(objects::kTargetTorque) ? kTargetReached : std::uint16_t{0};
       case Kind::homing: return homing_bits();
       case Kind::interpolated:
         return static_cast<std::uint16_t>(kTargetReached |
@@ -255,11 +246,11 @@ std::uint16_t Axis::bits(bool enabled) const {
 }
 
 void Axis::publish() {
-  write(kPositionActual, position_);
+  write(objects::kPositionActual, position_);
   const double turning = faults_.stalled ? 0 : faults_.reversed ? -velocity_ : velocity_;
-  write(kVelocityActual, turning / speed_factor(kVelocityActual));
-  write(kTorqueActual, torque_);
-  write(kFollowingError, behind_ + turning * faults_.lag);
+  write(objects::kVelocityActual, turning / speed_factor(objects::kVelocityActual));
+  write(objects::kTorqueActual, torque_);
+  write(objects::kFollowingError, behind_ + turning * faults_.lag);
 }
 
 }  // namespace servoctl::sim

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "drive/quantity.hpp"
+#include "drive/standard_objects.hpp"
 #include "sim/axis.hpp"
 
 namespace servoctl::sim {
@@ -15,9 +16,6 @@ constexpr double kAssumedTurn = 10000;
 /// Speed that ramps given as a time lead to.
 constexpr double kRampSpeedRpm = 3000;
 constexpr double kNoRamp = 1e12;
-
-constexpr ObjectAddress kPositionActual{0x6064, 0};
-constexpr ObjectAddress kProfileVelocity{0x6081, 0};
 
 }  // namespace
 
@@ -52,11 +50,11 @@ double Axis::fastest_by_torque() const {
 
 ObjectAddress Axis::speed_object() const {
   const auto target = drive::resolve(profile_, profile_->rules.motion.position_speed);
-  return target ? target->address : kProfileVelocity;
+  return target ? target->address : objects::kProfileVelocity;
 }
 
 double Axis::units_per_turn() const {
-  if (drive::meaning(drive::target_at(profile_, kPositionActual), 0).unit == "rad") return 2 * kPi;
+  if (drive::meaning(drive::target_at(profile_, objects::kPositionActual), 0).unit == "rad") return 2 * kPi;
   const auto rule = profile_->rules.units.find(drive::Measure::increments_per_turn);
   if (rule == profile_->rules.units.end()) return kAssumedTurn;
   double out = 1;

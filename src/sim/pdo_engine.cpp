@@ -5,6 +5,7 @@
 
 #include "canopen/cob_id.hpp"
 #include "drive/naming.hpp"
+#include "drive/standard_objects.hpp"
 
 namespace servoctl::sim {
 namespace {
@@ -12,7 +13,6 @@ namespace {
 using canopen::Pdo;
 using canopen::PdoDirection;
 
-constexpr ObjectAddress kSyncCobId{0x1005, 0};
 constexpr std::uint8_t kLastSynchronous = 240;
 constexpr std::uint8_t kFirstEvent = 254;
 /// How often a drive compares what an event-driven TPDO carries with what it last sent.
@@ -61,7 +61,7 @@ void PdoEngine::stop() {
 
 void PdoEngine::on_frame(const can::Frame& frame, TimePoint now) {
   if (!operational_ || frame.extended || frame.remote || frame.error) return;
-  const auto sync = static_cast<std::uint32_t>(values_->number(kSyncCobId)) & canopen::kPdoCobIdMask;
+  const auto sync = static_cast<std::uint32_t>(values_->number(objects::kSyncCobId)) & canopen::kPdoCobIdMask;
   if (frame.id == (sync == 0 ? canopen::kSync : sync)) return on_sync(frame, now);
   for (const auto& known : known_) {
     if (known.direction != PdoDirection::receive) continue;

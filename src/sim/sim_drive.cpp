@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "canopen/cob_id.hpp"
-#include "sim/known_objects.hpp"
+#include "drive/standard_objects.hpp"
 
 namespace servoctl::sim {
 using canopen::NmtCommand;
@@ -197,15 +197,16 @@ void SimDrive::set_nmt(NmtState state) {
 }
 
 void SimDrive::set_up_error_control(TimePoint now) {
-  error_control_.set_heartbeat(std::chrono::milliseconds(values_.number(kHeartbeatTime)), now);
-  error_control_.set_life_time(std::chrono::milliseconds(values_.number(kGuardTime)),
-                               static_cast<std::uint32_t>(values_.number(kLifeFactor)));
+  error_control_.set_heartbeat(std::chrono::milliseconds(values_.number(objects::kProducerHeartbeat)), now);
+  error_control_.set_life_time(std::chrono::milliseconds(values_.number(objects::kGuardTime)),
+                               static_cast<std::uint32_t>(values_.number(objects::kLifeTimeFactor)));
 }
 
 void SimDrive::set_up_consumers() {
   for (std::uint8_t entry = 1; entry <= HeartbeatConsumer::kMost; ++entry)
-    if (values_.has({kConsumerIndex, entry}))
-      consumer_.set(entry, static_cast<std::uint32_t>(values_.number({kConsumerIndex, entry})));
+    if (values_.has({objects::kConsumerHeartbeatIndex, entry}))
+      consumer_.set(entry,
+                    static_cast<std::uint32_t>(values_.number({objects::kConsumerHeartbeatIndex, entry})));
 }
 
 /// Lets the axis move up to now; it cannot follow for long without a fault.

@@ -3,7 +3,7 @@
 
 #include "canopen/sdo_abort.hpp"
 #include "drive/naming.hpp"
-#include "sim/known_objects.hpp"
+#include "drive/standard_objects.hpp"
 #include "sim/pdo_guard.hpp"
 #include "sim/sim_drive.hpp"
 
@@ -27,8 +27,8 @@ void SimDrive::raise_fault(std::uint16_t code, std::array<std::uint8_t, 5> vendo
     return send_emergency(code, vendor);
   fault_ = found.size() == 1 ? found.front() : nullptr;
   power_.raise_fault(now);
-  values_.set_number(kErrorCode, code);
-  values_.set_number(kErrorRegister, kGenericAndVendor);
+  values_.set_number(objects::kErrorCode, code);
+  values_.set_number(objects::kErrorRegister, kGenericAndVendor);
   if (const auto alarm = drive::resolve(profile_, profile_->rules.fault.alarm); alarm)
     values_.set_number(alarm->address, code);
   history_.push_front(static_cast<std::uint32_t>(vendor[0] | vendor[1] << 8U) << 16U | code);
@@ -39,8 +39,8 @@ void SimDrive::raise_fault(std::uint16_t code, std::array<std::uint8_t, 5> vendo
 /// A heartbeat that 1016h watches has not come: emergency, and what 6007h says; a fault where there is none.
 void SimDrive::on_producer_lost(TimePoint now) {
   enum : std::uint64_t { kNoAction, kFault, kDisable, kQuickStop };
-  const bool has_option = values_.has(kAbortConnectionOption);
-  const auto option = has_option ? values_.number(kAbortConnectionOption) : kFault;
+  const bool has_option = values_.has(objects::kAbortConnectionOption);
+  const auto option = has_option ? values_.number(objects::kAbortConnectionOption) : kFault;
   if (option == kFault) return raise_fault(kHeartbeatError, {}, now);
   send_emergency(kHeartbeatError, {});
   if (option == kDisable) power_.disable();
@@ -71,8 +71,8 @@ bool SimDrive::may_reset() const {
 
 void SimDrive::clear_fault() {
   fault_ = nullptr;
-  values_.set_number(kErrorCode, 0);
-  values_.set_number(kErrorRegister, 0);
+  values_.set_number(objects::kErrorCode, 0);
+  values_.set_number(objects::kErrorRegister, 0);
   if (const auto alarm = drive::resolve(profile_, profile_->rules.fault.alarm); alarm)
     values_.set_number(alarm->address, 0);
   send_emergency(0, {});
@@ -83,7 +83,7 @@ void SimDrive::send_emergency(std::uint16_t code, std::array<std::uint8_t, 5> ve
   canopen::Emergency emergency;
   emergency.node = node_;
   emergency.code = code;
-  emergency.error_register = static_cast<std::uint8_t>(values_.number(kErrorRegister));
+  emergency.error_register = static_cast<std::uint8_t>(values_.number(objects::kErrorRegister));
   emergency.vendor = vendor;
   emergency.size = profile_->rules.emergency.size;
   tx_.push_back(canopen::emergency_frame(emergency));

@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "canopen/sdo_abort.hpp"
-#include "sim/known_objects.hpp"
+#include "drive/standard_objects.hpp"
 #include "sim/sim_drive.hpp"
 
 namespace servoctl::sim {
@@ -40,7 +40,7 @@ std::uint32_t SimDrive::save_objects() {
   for (const auto& object : profile_->dictionary.objects())
     for (const auto& entry : object.entries)
       if (entry.access == od::Access::rw && !entry.command && !entry.is_volatile &&
-          entry.address != kControlword)
+          entry.address != objects::kControlword)
         cells[entry.address] = values_.get(entry.address);
   return memory_->save() ? 0 : abort::kCannotStore;
 }

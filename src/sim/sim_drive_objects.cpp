@@ -3,7 +3,7 @@
 
 #include "canopen/sdo_abort.hpp"
 #include "drive/quantity.hpp"
-#include "sim/known_objects.hpp"
+#include "drive/standard_objects.hpp"
 #include "sim/pdo_guard.hpp"
 #include "sim/sim_drive.hpp"
 
@@ -14,12 +14,12 @@ using canopen::NmtState;
 std::uint32_t SimDrive::read(ObjectAddress object, Bytes& out) {
   if (const auto code = values_.check_read(object); code != 0) return code;
   move_axis();
-  if (object == kStatusword) {
-    const auto word = power_.statusword(static_cast<std::int8_t>(values_.number(kModeDisplay)));
+  if (object == objects::kStatusword) {
+    const auto word = power_.statusword(static_cast<std::int8_t>(values_.number(objects::kModeDisplay)));
     out = store_le(static_cast<std::uint16_t>(word | axis_.bits(is_enabled())), 2);
     return 0;
   }
-  if (object.index == kErrorHistory.index) {
+  if (object.index == objects::kErrorHistory.index) {
     if (object.sub == 0) out = store_le(history_.size(), 1);
     if (object.sub > 0 && object.sub > history_.size()) return abort::kNoData;
     if (object.sub > 0) out = store_le(history_[object.sub - 1U], 4);
@@ -35,8 +35,9 @@ std::uint32_t SimDrive::check_state(ObjectAddress object, ByteSpan data) const {
   if (effect == od::Effect::standstill && drive::is_energised(power_.state())) return abort::kDeviceState;
   // Mode 0 is "no mode": what a drive without a default starts in (CiA 402-2, 6060h).
   const bool no_mode = target.entry != nullptr && load_le(data) == 0 &&
-                       (!target.entry->default_value || load_le(values_.get(kModeDisplay)) == 0);
-  if (object == kModes && !no_mode && target.entry != nullptr && !target.entry->labels.empty()) {
+                       (!target.entry->default_value || load_le(values_.get(objects::kModeDisplay)) == 0);
+  if (object == objects::kModeOfOperation && !no_mode && target.entry != nullptr &&
+      !target.entry->labels.empty()) {
     const auto value = od::decode(target.entry->type, data);
     if (!value || drive::label_of(drive::meaning(target, node_), *value) == nullptr) return abort::kRange;
   }
@@ -58,7 +59,7 @@ bool SimDrive::is_locked(ObjectAddress object) const {
 }
 
 std::uint32_t SimDrive::write(ObjectAddress object, ByteSpan data) {
-  if (object == kErrorHistory && data.size() == 1 && data[0] != 0) return abort::kRange;
+  if (object == objects::kErrorHistory && data.size() == 1 && data[0] != 0) return abort::kRange;
   auto code = values_.check_write(object, data, node_);
   if (code == 0) code = check_state(object, data);
   if (code != 0) {
@@ -76,13 +77,14 @@ std::uint32_t SimDrive::write(ObjectAddress object, ByteSpan data) {
 
 std::uint32_t SimDrive::write_command(ObjectAddress object, ByteSpan data, bool& handled) {
   handled = true;
-  if (object == kErrorHistory) {
+  if (object == objects::kErrorHistory) {
     history_.clear();
     return 0;
   }
-  if (object == kStore) return load_le(data) == kSaveSignature ? save_objects() : abort::kCannotStore;
-  if (object == kRestore) {
-    if (load_le(data) != kLoadSignature) return abort::kCannotStore;
+  if (object == objects::kStoreAll)
+    return load_le(data) == objects::kSaveSignature ? save_objects() : abort::kCannotStore;
+  if (object == objects::kRestoreAll) {
+    if (load_le(data) != objects::kLoadSignature) return abort::kCannotStore;
     memory_->cells(key_).clear();
     return memory_->save() ? 0 : abort::kCannotStore;
   }
@@ -115,13 +117,16 @@ void SimDrive::after_write(ObjectAddress object, ByteSpan data) {
       load_le(data) == 0)
     if (const auto* mapping = profile_->dictionary.object(object.index))
       for (const auto& entry : mapping->entries) values_.set_number(entry.address, 0);
-  if (object == kHeartbeatTime || object == kGuardTime || object == kLifeFactor) set_up_error_control(now_);
-  if (object.index == kConsumerIndex && object.sub > 0)
+  if (object == objects::kProducerHeartbeat || object == objects::kGuardTime ||
+      object == objects::kLifeTimeFactor)
+    set_up_error_control(now_);
+  if (object.index == objects::kConsumerHeartbeatIndex && object.sub > 0)
     consumer_.set(object.sub, static_cast<std::uint32_t>(values_.number(object)));
-  if (object == kModes) values_.set(kModeDisplay, data);
-  if (object == kControlword) {
+  if (object == objects::kModeOfOperation) values_.set(objects::kModeDisplay, data);
+  if (object == objects::kControlword) {
     power_.on_controlword(static_cast<std::uint16_t>(load_le(data)),
-                          static_cast<std::int64_t>(values_.number(kQuickStopOption)), may_reset(), now_);
+                          static_cast<std::int64_t>(values_.number(objects::kQuickStopOption)), may_reset(),
+                          now_);
     if (power_.was_reset()) clear_fault();
     axis_.on_controlword(static_cast<std::uint16_t>(load_le(data)), is_enabled(), now_);
   }

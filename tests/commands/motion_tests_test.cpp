@@ -1,15 +1,13 @@
 // `test jog`, `test home`, `test all`: what makes them fail, and in which state they leave the drive.
 #include <gtest/gtest.h>
 
+#include "drive/standard_objects.hpp"
 #include "tested_drive.hpp"
 
 namespace servoctl::commands {
 namespace {
 
 using namespace std::chrono_literals;
-
-constexpr ObjectAddress kVelocity{0x606C, 0};
-constexpr ObjectAddress kFollowingError{0x60F4, 0};
 
 class MotionTests : public TestedDrive {
  protected:
@@ -64,16 +62,16 @@ TEST_F(MotionTests, JogFailsWhenTheMotorIsStalled) {
 
 TEST_F(MotionTests, JogFailsWhenTheSpeedIsOff) {
   build("sv2@1", "sv2");
-  distort(kVelocity, [](double value) { return value * 0.8; });
+  distort(objects::kVelocityActual, [](double value) { return value * 0.8; });
   EXPECT_TRUE(criterion(jog(), "speed_forward").starts_with("failed 2"));
   EXPECT_TRUE(criterion(jog({{"--tolerance", "25"}}), "speed_forward").starts_with("passed 2"));
 }
 
 TEST_F(MotionTests, JogFailsWhenTheFollowingErrorGrows) {
   build("sv2@1", "sv2");
-  distort(kFollowingError, [this](double) { return seconds() * 1000; });
+  distort(objects::kFollowingError, [this](double) { return seconds() * 1000; });
   EXPECT_TRUE(criterion(jog(), "following_error_forward").starts_with("failed"));
-  distort(kFollowingError, [](double) { return 500; });
+  distort(objects::kFollowingError, [](double) { return 500; });
   EXPECT_EQ(criterion(jog(), "following_error_forward"), "passed 0") << "one that stays is no growth";
 }
 

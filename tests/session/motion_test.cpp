@@ -133,7 +133,7 @@ TEST_P(MotionOfFamily, SpeedAboveTheSafeOneIsRefusedBeforeAnythingIsWritten) {
 /// What an earlier master left in the targets must not move the motor when it is enabled.
 TEST_P(MotionOfFamily, EnablingMovesNothingWhateverTheTargetsHeld) {
   MotionUnits units(*bench.session, bench.profile(), 1, bench.options.turn);
-  for (const auto& [object, value] : {std::pair(kTargetVelocity, 60.), std::pair(kTargetPosition, 360.)}) {
+  for (const auto& [object, value] : {std::pair(objects::kTargetVelocity, 60.), std::pair(objects::kTargetPosition, 360.)}) {
     const auto data = units.bytes(object, value);
     ASSERT_TRUE(data);
     ASSERT_TRUE(bench.session->download(1, object, *data));
