@@ -107,6 +107,7 @@ class BatchRun {
     Outcome out{.command = "wait", .settings = shell_->defaults()};
     out.notices = shell_->take_notices(profile(), shell_->defaults().chinese);
     if (!waited) out.errors.push_back(waited.error());
+    if (!waited && waited.error().code == Errc::bus) shell_->lose_bus();
     return out;
   }
 

@@ -112,7 +112,7 @@ bool Prompt::wait_for_key() {
     if (const auto heard = session->listen(); !heard && heard.error().code == Errc::bus) {
       console_->err("\r\033[K");
       shell_->report_error(heard.error(), false);
-      shell_->close_bus();
+      shell_->lose_bus();
       rl_forced_update_display();
     }
   return (fds[0].revents & (POLLIN | POLLHUP)) != 0;

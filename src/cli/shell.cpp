@@ -6,14 +6,11 @@
 #include <span>
 
 #include "base/text.hpp"
-#include "can/socketcan.hpp"
 #include "canopen/cob_id.hpp"
 #include "cli/batch_lines.hpp"
 #include "cli/signals.hpp"
 #include "commands/help.hpp"
 #include "commands/notice.hpp"
-#include "session/open_bus.hpp"
-#include "session/power.hpp"
 #include "session/scan.hpp"
 
 namespace servoctl::cli {
@@ -22,17 +19,6 @@ namespace {
 using commands::Effect;
 using commands::Needs;
 using report::Value;
-
-Error no_bus() {
-  Error error;
-  error.code = Errc::usage;
-  error.message = "which bus?";
-  const auto interfaces = can::can_interfaces();
-  error.hint = interfaces.empty() ? "this machine has no CAN interface now; try `--bus sim:FAMILY@1` "
-                                    "(`drives` lists families), or local:NAME"
-                                  : fmt::format("add --bus {} or set SERVOCTL_BUS", one_of(interfaces));
-  return error;
-}
 
 bool wants_json(const std::vector<std::string>& words) {
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -63,6 +49,26 @@ Error no_node(const commands::Command& command) {
   return fail(Errc::usage, fmt::format("'{}' needs a node", command.path),
               "add -n 1 (or a list, or all); `scan` shows who is there")
       .value();
+}
+
+Shell::Shell(Console& console, Options options)
+    : console_(&console),
+      options_(std::move(options)),
+      progress_(console),
+      bus_(console, {.drive_folders = options_.drive_folders, .trace = {}, .clock = options_.clock},
+           session_options()) {}
+
+session::Options Shell::session_options() {
+  session::Options out;
+  out.cancelled = options_.cancelled;
+  out.protect = protect_from_signals;
+  out.progress = [this](std::size_t done, std::optional<std::size_t> total, TimePoint now) {
+    progress_.update(done, total, now);
+  };
+  out.list_progress = [this](std::size_t done, std::size_t total, TimePoint now) {
+    progress_.update_list(done, total, now);
+  };
+  return out;
 }
 
 int Shell::run(const std::vector<std::string>& words) { return show(*console_, perform(words)); }
@@ -221,36 +227,6 @@ Result<void> Shell::prepare_nodes(Run& run) {
   return {};
 }
 
-Result<session::Session*> Shell::open(const Settings& settings) {
-  if (settings.bus.empty()) return fail(no_bus());
-  if (session_ == nullptr || session_->url() != settings.bus || trace_ != settings.trace) {
-    let_go();
-    session_.reset();
-    session::BusOptions bus_options;
-    bus_options.drive_folders = options_.drive_folders;
-    bus_options.trace = settings.trace;
-    bus_options.clock = options_.clock;
-    auto bus = session::open_bus(settings.bus, bus_options);
-    if (!bus) return tl::unexpected<Error>(bus.error());
-    trace_ = settings.trace;
-    session_ = std::make_unique<session::Session>(std::move(*bus), settings.bus, session::Options{});
-    session_->options().cancelled = options_.cancelled;
-    session_->options().protect = protect_from_signals;
-    session_->options().progress = [this](std::size_t done, std::optional<std::size_t> total, TimePoint now) {
-      progress_.update(done, total, now);
-    };
-    session_->options().list_progress = [this](std::size_t done, std::size_t total, TimePoint now) {
-      progress_.update_list(done, total, now);
-    };
-    // Boot-ups of drives that are simulated in this process are no news.
-    if (const auto heard = session_->listen(); !heard) return tl::unexpected<Error>(heard.error());
-    (void)session_->take_events();
-  }
-  session_->options().timeout = settings.timeout;
-  session_->options().retries = settings.retries;
-  return session_.get();
-}
-
 Result<const drive::Profile*> Shell::profile(const std::string& family) {
   const auto known = profiles_.find(family);
   if (known != profiles_.end()) return known->second.get();
@@ -263,10 +239,11 @@ Result<const drive::Profile*> Shell::profile(const std::string& family) {
 
 std::vector<std::string> Shell::take_notices(const drive::Profile* profile, bool chinese) {
   std::vector<std::string> out;
-  if (session_ == nullptr) return out;
-  for (const auto report : session_->take_reports())
-    out.push_back(session_->url() + ": " + std::string(can::text(report)));
-  for (const auto& event : session_->take_events())
+  auto* session = bus_.session();
+  if (session == nullptr) return out;
+  for (const auto report : session->take_reports())
+    out.push_back(session->url() + ": " + std::string(can::text(report)));
+  for (const auto& event : session->take_events())
     out.push_back(commands::notice_text(event, profile, chinese));
   return out;
 }
@@ -283,7 +260,7 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
       if (text != texts.end()) error.message += " — " + text->second;
     }
   // A lost interface does not come back by itself: the next line opens it again.
-  if (!errors.empty() && errors.front().code == Errc::bus) close_bus();
+  if (!errors.empty() && errors.front().code == Errc::bus) bus_.lose();
   return {.command = std::string(run.command->path),
           .settings = std::move(run.settings),
           .uses_bus = includes(run.command->needs, Needs::bus) || run.context.session != nullptr,
@@ -296,18 +273,6 @@ int Shell::report_error(const Error& error, bool json, std::string_view command)
   Settings settings;
   settings.json = json;
   return show(*console_, failed(error, std::move(settings), command));
-}
-
-void Shell::let_go() {
-  if (!session_) return;
-  for (const auto& [node, done] : session::de_energise(*session_)) {
-    if (done)
-      console_->err(
-          fmt::format("notice: node {} was left energised; it is stopped and disabled now\n", node));
-    else
-      console_->err(fmt::format("error: NODE {} MAY STILL BE ENERGISED: TAKE THE POWER AWAY: {}\n", node,
-                                done.error().message));
-  }
 }
 
 }  // namespace servoctl::cli

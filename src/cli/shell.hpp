@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/bus_holder.hpp"
 #include "cli/console.hpp"
 #include "cli/outcome.hpp"
 #include "cli/parse.hpp"
@@ -33,8 +34,9 @@ class Shell {
     std::function<bool()> cancelled;
   };
 
-  Shell(Console& console, Options options)
-      : console_(&console), options_(std::move(options)), progress_(console) {}
+  Shell(Console& console, Options options);
+  Shell(const Shell&) = delete;
+  Shell& operator=(const Shell&) = delete;
 
   /// Runs one command line; the answer is the exit code.
   int run(const std::vector<std::string>& words);
@@ -51,15 +53,17 @@ class Shell {
 
   Settings& defaults() { return options_.defaults; }
   /// The bus as it is open now; null when none is.
-  session::Session* session() { return session_.get(); }
-  void close_bus() { session_.reset(); }
+  session::Session* session() { return bus_.session(); }
+  /// As BusHolder::lose().
+  void lose_bus() { bus_.lose(); }
   /// Stops and disables the drives that were left energised, and says so: for a prompt that ends, and a file
   /// that stops in the middle. A single `enable` is left as it is.
-  void let_go();
+  void let_go() { bus_.let_go(); }
 
   /// The family's data, loaded once. Errors as load_profile().
   Result<const drive::Profile*> profile(const std::string& family);
-  Result<session::Session*> open(const Settings& settings);
+  /// As BusHolder::open().
+  Result<session::Session*> open(const Settings& settings) { return bus_.open(settings); }
   const std::vector<std::filesystem::path>& drive_folders() const { return options_.drive_folders; }
 
   /// Lines about what nodes told since the last call.
@@ -72,6 +76,7 @@ class Shell {
     commands::Context context;
   };
 
+  session::Options session_options();
   Result<report::Value> execute(Run& run, const commands::Arguments& arguments);
   Result<void> prepare(Run& run);
   Result<void> prepare_profile(Run& run);
@@ -83,9 +88,8 @@ class Shell {
 
   Console* console_;
   Options options_;
-  std::unique_ptr<session::Session> session_;
-  std::filesystem::path trace_;
   Progress progress_;
+  BusHolder bus_;
   std::map<std::string, std::unique_ptr<drive::Profile>> profiles_;
 };
 

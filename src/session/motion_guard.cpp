@@ -263,6 +263,7 @@ MotionEnd MotionGuard::end() {
   put_node_back();
   disarm();
   verify();
+  if (!result_.verified) session_->energised().insert(node_);
   end_ = result_;
   if (session_->options().protect) session_->options().protect(false);
   return *end_;

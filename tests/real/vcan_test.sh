@@ -116,6 +116,19 @@ if [ "${VCAN_GUEST:-}" = uml ]; then
   check "the interface is back, and so is the drive" 624 "$("$servoctl" read 0x6041 -n 1 --bus can0 --json | jq '.result[0].value')"
   controller() { "$servoctl" test comm -n 1 --bus can0 --count 20 --json | jq -r '.result[0].criteria[] | select(.id == "controller") | .verdict + " " + .figure'; }
   check "test comm finds a healthy controller" "passed error-active" "$(controller)"
+  # A batch file that loses the bus says what it left energised, and disables it when the bus is back.
+  printf '%s\n' 'on-error continue' 'use 1' 'enable -y' 'wait 3s' 'bus local:idle' 'nmt watch --for 2s' >"$work/lost.batch"
+  SERVOCTL_DRIVES=$(dirname "$0")/../../eds "$servoctl" run "$work/lost.batch" --bus can0 -d gsd600 >"$work/lost" 2>&1 &
+  client=$!
+  sleep 1.5
+  ip link set can0 down
+  sleep 0.5
+  ip link set can0 up
+  wait $client
+  check "exit code of a batch file that lost the bus" 3 $?
+  contains "it warns at once" "error: NODE 1 MAY STILL BE ENERGISED: TAKE THE POWER AWAY: can0 was lost" "$(cat "$work/lost")"
+  contains "it disables the drive when the bus is back" "notice: node 1 was left energised; it is stopped and disabled now" "$(cat "$work/lost")"
+  check "the drive has no power" false "$("$servoctl" status -n 1 --bus can0 --json | jq '.result[0].energised')"
   printf 'sp140000\r' >/dev/can0.inject
   sleep 0.3
   check "and one that is error-passive" "failed error-passive" "$(controller)"

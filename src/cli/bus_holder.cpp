@@ -1,0 +1,91 @@
+#include "cli/bus_holder.hpp"
+
+#include <fmt/format.h>
+#include <utility>
+
+#include "base/text.hpp"
+#include "can/socketcan.hpp"
+#include "session/power.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+Error no_bus() {
+  Error error;
+  error.code = Errc::usage;
+  error.message = "which bus?";
+  const auto interfaces = can::can_interfaces();
+  error.hint = interfaces.empty() ? "this machine has no CAN interface now; try `--bus sim:FAMILY@1` "
+                                    "(`drives` lists families), or local:NAME"
+                                  : fmt::format("add --bus {} or set SERVOCTL_BUS", one_of(interfaces));
+  return error;
+}
+
+}  // namespace
+
+Result<session::Session*> BusHolder::open(const Settings& settings) {
+  if (settings.bus.empty()) return fail(no_bus());
+  if (session_ == nullptr || session_->url() != settings.bus || bus_options_.trace != settings.trace) {
+    if (session_) stop_and_disable();
+    drop();
+    bus_options_.trace = settings.trace;
+    if (auto done = connect(settings.bus); !done) return tl::unexpected<Error>(done.error());
+  }
+  session_->options().timeout = settings.timeout;
+  session_->options().retries = settings.retries;
+  return session_.get();
+}
+
+Result<void> BusHolder::connect(const std::string& url) {
+  auto bus = session::open_bus(url, bus_options_);
+  if (!bus) return tl::unexpected<Error>(bus.error());
+  auto session = std::make_unique<session::Session>(std::move(*bus), url, options_);
+  // Boot-ups of drives that are simulated in this process are no news.
+  if (auto heard = session->listen(); !heard) return heard;
+  (void)session->take_events();
+  if (const auto left = left_energised_.extract(url)) session->energised() = left.mapped();
+  session_ = std::move(session);
+  return {};
+}
+
+/// Closes the bus; what is still energised stays known.
+void BusHolder::drop() {
+  if (session_ && !session_->energised().empty()) left_energised_[session_->url()] = session_->energised();
+  session_.reset();
+}
+
+void BusHolder::lose() {
+  if (!session_) return;
+  for (const auto node : session_->energised()) warn(node, session_->url() + " was lost");
+  drop();
+}
+
+void BusHolder::let_go() {
+  const auto left = left_energised_;
+  if (session_) stop_and_disable();
+  if (!left.empty()) drop();
+  for (const auto& [url, nodes] : left) {
+    if (const auto back = connect(url); !back) {
+      for (const auto node : nodes) warn(node, back.error().message);
+      continue;
+    }
+    stop_and_disable();
+    drop();
+  }
+}
+
+void BusHolder::stop_and_disable() {
+  for (const auto& [node, done] : session::de_energise(*session_)) {
+    if (done)
+      console_->err(
+          fmt::format("notice: node {} was left energised; it is stopped and disabled now\n", node));
+    else
+      warn(node, done.error().message);
+  }
+}
+
+void BusHolder::warn(unsigned node, std::string_view why) {
+  console_->err(fmt::format("error: NODE {} MAY STILL BE ENERGISED: TAKE THE POWER AWAY: {}\n", node, why));
+}
+
+}  // namespace servoctl::cli

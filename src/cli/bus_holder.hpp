@@ -1,0 +1,49 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+
+#include "cli/console.hpp"
+#include "cli/settings.hpp"
+#include "session/open_bus.hpp"
+#include "session/session.hpp"
+
+namespace servoctl::cli {
+
+/// The bus of a front end: opened when a line needs it and kept for the next one. It knows the drives that
+/// were left energised, over a bus that was lost too, and lets none of them go without a word.
+class BusHolder {
+ public:
+  /// `session_options` hold for every bus that is opened, `bus_options.trace` is that of the settings.
+  BusHolder(Console& console, session::BusOptions bus_options, session::Options session_options)
+      : console_(&console), bus_options_(std::move(bus_options)), options_(std::move(session_options)) {}
+
+  /// The session on the bus of the settings; another bus that is open is let go first. Errors as open_bus(),
+  /// Errc::usage when the settings name no bus.
+  Result<session::Session*> open(const Settings& settings);
+  /// The bus as it is open now; null when none is.
+  session::Session* session() { return session_.get(); }
+
+  /// The interface is gone. What was energised over it is told now, and is still known when the same bus is
+  /// opened again.
+  void lose();
+  /// Stops and disables the drives that were left energised, and says so; a lost bus is opened again for it.
+  void let_go();
+
+ private:
+  Result<void> connect(const std::string& url);
+  void stop_and_disable();
+  void drop();
+  void warn(unsigned node, std::string_view why);
+
+  Console* console_;
+  session::BusOptions bus_options_;
+  session::Options options_;
+  std::unique_ptr<session::Session> session_;
+  std::map<std::string, std::set<std::uint8_t>> left_energised_;  ///< By the URL of a bus that is not open.
+};
+
+}  // namespace servoctl::cli
