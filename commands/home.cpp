@@ -8,7 +8,9 @@ constexpr Parameter kParameters[] = {
     {.name = "--speed", .help = "speed to the switch (6099h:01)", .kind = Kind::value},
     {.name = "--search", .help = "speed to the index pulse (6099h:02)", .kind = Kind::value},
     {.name = "--offset", .help = "position of the home point (607Ch)", .kind = Kind::value},
-    {.name = "--within", .help = "longest time it may take (default 60s)", .kind = Kind::duration},
+    {.name = "--within",
+     .help = "longest time it may take (by --window and speed, else 60s)",
+     .kind = Kind::duration},
     kSpeedLimitOption,
     kMaxTorqueOption,
     kMaxFollowingErrorOption,
@@ -27,7 +29,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   home.offset = arguments.text("--offset");
   const auto longest = time_option(arguments, "--within");
   if (!longest) return tl::unexpected<Error>(longest.error());
-  home.longest = longest->value_or(home.longest);
+  home.longest = *longest;
   MotionRun motion;
   motion.plan = [&](session::Motion& m) { return session::plan_home(m, home); };
   motion.run = [&](session::Motion& m, const session::MotionPlan& plan) {

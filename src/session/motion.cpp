@@ -13,6 +13,10 @@ namespace {
 /// A motor at rest shows some noise: this part of the commanded speed, and 3 rpm where it is told in rpm.
 constexpr double kNoisePart = 0.02;
 constexpr double kNoiseRpm = 3;
+/// A motor is run away that turns so much faster than it was told to, and more than its noise.
+constexpr double kOverspeed = 1.5;
+constexpr double kNoiseOfOverspeed = 5;
+constexpr double kDegreesASecond = 6;  ///< Of 1 rpm.
 /// What conversions of units may add to a number.
 constexpr double kRounding = 1 + 1e-6;
 
@@ -58,7 +62,9 @@ Result<void> Motion::read_limits() {
     if (!value) return tl::unexpected<Error>(value.error());
     *row.out = std::abs(value->value);
   }
-  return {};
+  if (options_.acceleration.empty()) return {};
+  const auto ramp = units_->parse(objects::kProfileAcceleration, options_.acceleration);
+  return ramp ? Result<void>{} : tl::unexpected<Error>(ramp.error());
 }
 
 /// A speed the drive holds, when it is told in the unit of the target velocity.
@@ -119,6 +125,16 @@ bool Motion::stands_still(const MotionSample& sample) const {
   return !speed || std::abs(*speed) <= standstill_;
 }
 
+bool Motion::supervise_speed(double limit) {
+  if (units_->unit(objects::kVelocityActual) != units_->unit(objects::kTargetVelocity)) return false;
+  monitor_->limits().speed = limit;
+  return true;
+}
+
+void Motion::supervise_overspeed(double speed) {
+  (void)supervise_speed(std::abs(speed) * kOverspeed + standstill_ * kNoiseOfOverspeed);
+}
+
 std::vector<MotionSetting> Motion::ramps(double speed, std::initializer_list<ObjectAddress> objects) const {
   std::vector<MotionSetting> out;
   for (const auto object : objects) {
@@ -136,21 +152,32 @@ std::vector<MotionSetting> Motion::ramps(double speed, std::initializer_list<Obj
   return out;
 }
 
-std::optional<Duration> Motion::duration(double way, double speed) const {
+std::optional<double> Motion::rate() const {
   const auto of_way = units_->unit(objects::kPositionActual);
   const auto of_speed = units_->unit(objects::kTargetVelocity);
-  const double degrees_a_second = of_speed == "rpm" && of_way == "deg" ? 6 : 1;
-  const bool fits = degrees_a_second != 1 || of_speed == of_way + "/s";
-  if (!fits || speed == 0) return std::nullopt;
-  const double seconds = std::abs(way / (speed * degrees_a_second)) + 2 * kRampSeconds;
+  if (of_speed == "rpm" && of_way == "deg") return kDegreesASecond;
+  return of_speed == of_way + "/s" ? std::optional(1.) : std::nullopt;
+}
+
+std::optional<Duration> Motion::duration(double way, double speed) const {
+  const auto one = rate();
+  if (!one || speed == 0) return std::nullopt;
+  const double seconds = std::abs(way / (speed * *one)) + 2 * kRampSeconds;
   return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(seconds));
+}
+
+Result<void> Motion::look_again() {
+  // Answers to other masters that came meanwhile must not be taken for answers to what is asked now.
+  if (const auto heard = session_->listen(); !heard) return heard;
+  const auto state = power_.state();
+  if (!state) return tl::unexpected<Error>(state.error());
+  if (drive::is_energised(*state)) return fail(enabled_by_others(node_, *state));
+  return {};
 }
 
 Result<void> Motion::begin(std::int8_t mode, const std::vector<MotionSetting>& settings,
                            std::optional<ObjectAddress> kept_target) {
-  if (!options_.acceleration.empty())
-    if (const auto data = units_->parse(objects::kProfileAcceleration, options_.acceleration); !data)
-      return tl::unexpected<Error>(data.error());
+  if (const auto ready = look_again(); !ready) return ready;
   guard_ = std::make_unique<MotionGuard>(*session_, *units_, node_);
   guard_->set_standstill(standstill_);
   if (const auto done = guard_->spare_flash(); !done) return done;
@@ -183,6 +210,7 @@ MotionReport Motion::finish(Result<void> outcome) {
   MotionReport out;
   out.outcome = std::move(outcome);
   out.watchdog = watchdog_;
+  out.begun = guard_ != nullptr;
   if (guard_) out.end = guard_->end();
   out.samples = monitor_->samples();
   out.series = monitor_->series();

@@ -30,6 +30,7 @@ struct MotionOptions {
 /// What came of a motion.
 struct MotionReport {
   Result<void> outcome;
+  bool begun = false;  ///< The drive was touched; else there is no end to tell.
   MotionEnd end;
   WatchdogPlan watchdog;
   std::vector<MotionSample> samples;
@@ -57,7 +58,9 @@ class Motion {
   Result<void> prepare();
   Result<std::vector<PreflightItem>> look(bool chinese);
 
-  /// Arms the watchdog, sets the mode, makes the targets harmless, writes the settings, and enables.
+  /// Looks once more, because a person may have taken time to answer: Errc::refused when somebody else has
+  /// enabled the drive meanwhile. Then arms the watchdog, sets the mode, makes the targets harmless, writes
+  /// the settings, and enables.
   Result<void> begin(std::int8_t mode, const std::vector<MotionSetting>& settings,
                      std::optional<ObjectAddress> kept_target = {});
   /// Writes an object that is put back in the end.
@@ -73,17 +76,24 @@ class Motion {
   Result<double> speed_cap() const { return speed_cap_; }
   /// Errc::refused when the speed is above speed_cap().
   Result<void> check_speed(double speed) const;
-  /// 6083h and 6084h (or 609Ah) for this speed, as far as the family has them.
+  /// Stops the motion above this speed, in the unit of 60FFh. False where the drive tells its speed in
+  /// another unit: then nothing is supervised.
+  bool supervise_speed(double limit);
+  /// The same for a motion at this speed: half as fast again, and the noise of a motor, are no reason.
+  void supervise_overspeed(double speed);
+  /// 6083h and 6084h for this speed, as far as the family has them.
   std::vector<MotionSetting> ramps(double speed, std::initializer_list<ObjectAddress> objects) const;
+  /// What one of speed (60FFh) goes in a second, in the unit of 6064h; empty when their units do not fit.
+  std::optional<double> rate() const;
   /// Time that the way takes at the speed with its ramps; empty when their units do not fit.
   std::optional<Duration> duration(double way, double speed) const;
-  /// The way in units of 6064h between which and nothing there is no difference at this speed.
+  /// What a motor that turns at this speed still shows at rest is found from it.
   void set_standstill(double speed);
   /// Below this the motor stands still, in the unit of 606Ch.
   bool stands_still(const MotionSample& sample) const;
 
   const MotionUnits& units() const { return *units_; }
-  const MotionMonitor& monitor() const { return *monitor_; }
+  MotionMonitor& monitor() { return *monitor_; }
   MotionLimits& limits() { return monitor_->limits(); }
   const drive::MotionRules& rules() const { return profile_->rules.motion; }
   std::uint8_t node() const { return node_; }
@@ -94,6 +104,7 @@ class Motion {
   }
 
  private:
+  Result<void> look_again();
   Result<void> read_limits();
   Result<double> find_speed_cap();
   std::optional<double> read_speed(ObjectAddress object);

@@ -7,6 +7,7 @@
 
 #include "drive/standard_objects.hpp"
 #include "session/deaf.hpp"
+#include "session/hurry.hpp"
 #include "session/operation_mode.hpp"
 
 namespace servoctl::session {
@@ -32,8 +33,15 @@ constexpr double kSlower = 0.9;
 constexpr Duration kNmtPause = std::chrono::milliseconds(20);
 constexpr Duration kPause = std::chrono::milliseconds(10);
 constexpr int kTries = 3;
+/// Longest wait for one answer while it is stopped: a drive that is lost is left to its own watchdog soon.
+constexpr Duration kPatience = std::chrono::milliseconds(200);
 
 bool is_lost(const Error& error) { return error.code == Errc::timeout || error.code == Errc::bus; }
+
+bool is_without_power(DriveState state) {
+  return !drive::is_energised(state) && state != DriveState::switched_on &&
+         state != DriveState::ready_to_switch_on;
+}
 
 }  // namespace
 
@@ -134,6 +142,12 @@ void MotionGuard::put_node_back() {
 }
 
 Result<void> MotionGuard::enable() {
+  const auto state = power_.state();
+  if (!state) return tl::unexpected<Error>(state.error());
+  if (drive::is_energised(*state)) {
+    powered_ = true;
+    return fail(enabled_by_others(node_, *state));
+  }
   energised_ = true;
   return power_.reach(DriveState::operation_enabled);
 }
@@ -186,29 +200,30 @@ void MotionGuard::stop() {
 }
 
 /// By "switched on", so that the drive can set its brake; at once where it does not follow.
-void MotionGuard::take_power_away() {
+bool MotionGuard::take_power_away() {
   if (!lost_ && result_.stopped && power_.state() == DriveState::operation_enabled)
     (void)power_.reach(DriveState::switched_on);
   for (int i = 0; i < kTries; ++i) {
     const auto state = power_.state();
-    if (state && !drive::is_energised(*state) && *state != DriveState::switched_on &&
-        *state != DriveState::ready_to_switch_on)
-      return;
+    if (state && is_without_power(*state)) return true;
     const auto written = power_.command(kDisableVoltage);
-    if (written && power_.wait_for(DriveState::switch_on_disabled).value_or(false)) return;
-    if (!written && written.error().code == Errc::bus) return;
+    if (written && power_.wait_for(DriveState::switch_on_disabled).value_or(false)) return true;
+    if (!written && written.error().code == Errc::bus) return false;
   }
+  const auto state = power_.state();
+  return state && !drive::is_energised(*state);
 }
 
 void MotionGuard::note(const std::string& what, const Error& error) {
-  result_.notes.push_back(fmt::format("{}: {}", what, error.message));
+  result_.left.push_back(fmt::format("{}: {}", what, error.message));
 }
 
 void MotionGuard::put_back() {
   for (auto changed = changed_.rbegin(); changed != changed_.rend(); ++changed) {
-    if (lost_) {
-      result_.notes.push_back(fmt::format("object {} was not put back to {}", to_string(changed->object),
-                                          to_hex(changed->before)));
+    // Its old targets and an old watchdog are nothing for a drive that still has its power.
+    if (lost_ || powered_) {
+      result_.left.push_back(fmt::format("object {} was not put back to {}", to_string(changed->object),
+                                         to_hex(changed->before)));
       continue;
     }
     const auto meaning = units_->meaning(changed->object);
@@ -254,11 +269,15 @@ MotionEnd MotionGuard::end() {
   if (end_) return *end_;
   const Deaf deaf(*session_);
   if (energised_) {
+    const Hurry hurry(*session_, kPatience, 1);
     stop();
-    take_power_away();
+    // A drive that cannot be reached is left to its own watchdog.
+    if (lost_) disarm();
+    powered_ = !take_power_away();
+    // Some lose it when they leave Operational.
+    if (powered_) put_node_back();
+    if (powered_) powered_ = drive::is_energised(power_.state().value_or(DriveState::operation_enabled));
   }
-  // A drive that cannot be reached is left to its own watchdog.
-  if (lost_) disarm();
   put_back();
   put_node_back();
   disarm();

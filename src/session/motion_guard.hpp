@@ -17,7 +17,8 @@ struct MotionEnd {
   std::uint16_t statusword = 0;
   bool stopped = false;            ///< It stood still before its power was taken away.
   bool quick_stop = false;         ///< It needed a quick stop for that.
-  std::vector<std::string> notes;  ///< What could not be put back, and why.
+  std::vector<std::string> left;   ///< What could not be put back, and why.
+  std::vector<std::string> notes;  ///< What was left otherwise than before for a reason.
 };
 
 /// Holds a drive while it is energised: whatever way the owner is left by, the drive is stopped, its power is
@@ -44,7 +45,8 @@ class MotionGuard {
   Result<void> spare_flash();
   /// Starts the node (NMT) where the family is energised in Operational only.
   Result<void> start_node();
-  /// "Operation enabled", by the shortest legal way.
+  /// "Operation enabled", by the shortest legal way. Errc::refused when somebody else has enabled it: two
+  /// masters would command it.
   Result<void> enable();
 
   /// The speed below which the motor counts as standing still, in the unit of 606Ch.
@@ -64,7 +66,8 @@ class MotionGuard {
 
   void stop();
   Result<bool> wait_for_standstill(Duration patience);
-  void take_power_away();
+  /// Whether it is known to have no power now.
+  bool take_power_away();
   void put_back();
   void disarm();
   void put_node_back();
@@ -81,6 +84,7 @@ class MotionGuard {
   std::optional<canopen::NmtState> nmt_before_;
   bool energised_ = false;  ///< It was commanded up, so it may be.
   bool lost_ = false;       ///< The drive or the bus does not answer any more.
+  bool powered_ = false;    ///< Its power could not be taken away.
   std::optional<double> standstill_;
   std::optional<MotionEnd> end_;
   MotionEnd result_;

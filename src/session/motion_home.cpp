@@ -12,11 +12,18 @@ namespace {
 /// Methods that take the present position for home (CiA 402-2): they may be done before anybody looks.
 constexpr std::array<std::int64_t, 2> kAtOnce{35, 37};
 constexpr Duration kStart = std::chrono::seconds(1);
+constexpr double kNearDegrees = 1;
+constexpr double kNearCounts = 100;
+/// To one end of the window, from there to the other one.
+constexpr double kWindows = 3;
+/// The index pulse comes once in a turn; the switch may have to be left first.
+constexpr double kTurns = 2;
+constexpr double kDegrees = 360;
+constexpr Duration kSettling = std::chrono::seconds(5);
 
 class Homing {
  public:
-  Homing(Motion& motion, const Home& home, const MotionPlan& plan)
-      : motion_(&motion), home_(&home), plan_(&plan) {}
+  Homing(Motion& motion, const MotionPlan& plan) : motion_(&motion), plan_(&plan) {}
 
   Result<void> run() {
     const auto before = motion_->watch([](const MotionSample&) -> Result<bool> { return true; }, {});
@@ -28,13 +35,13 @@ class Homing {
     started_at_ = motion_->session().now();
     for (const auto word : motion_->rules().start_homing)
       if (const auto written = motion_->command(word); !written) return written;
-    const auto ended = motion_->watch([this](const MotionSample& s) { return look(s); }, home_->longest);
+    const auto ended = motion_->watch([this](const MotionSample& s) { return look(s); }, plan_->longest);
     if (!ended) return tl::unexpected<Error>(ended.error());
     if (*ended) return {};
     return fail(
         motion_->error(Errc::negative,
                        fmt::format("found no home in {} s; it is stopped now",
-                                   std::chrono::duration<double>(home_->longest).count()),
+                                   std::chrono::duration<double>(plan_->longest).count()),
                        "does the switch or the index pulse come at all? `--within` gives it more time"));
   }
 
@@ -56,16 +63,31 @@ class Homing {
     begun_ = begun_ || !done;
     if (done && begun_) return motion_->stands_still(sample);
     if (begun_ || sample.time - started_at_ < kStart) return false;
-    const bool at_once =
-        std::find(kAtOnce.begin(), kAtOnce.end(), static_cast<std::int64_t>(plan_->value)) != kAtOnce.end();
-    if (at_once && motion_->stands_still(sample)) return true;
+    if (takes_present_position() && motion_->stands_still(sample) && is_at_offset(sample)) return true;
     return fail(motion_->error(Errc::negative,
                                "does not begin to look for home: what it says is from an earlier run",
                                "is this method one the drive knows (6098h)?"));
   }
 
+  bool takes_present_position() const {
+    return std::find(kAtOnce.begin(), kAtOnce.end(), static_cast<std::int64_t>(plan_->value)) !=
+           kAtOnce.end();
+  }
+
+  /// Where it stands is home now, so its position is the offset; its sign differs from drive to drive.
+  bool is_at_offset(const MotionSample& sample) {
+    const auto& units = motion_->units();
+    const auto position = sample[Channel::position];
+    if (!position || !units.has(objects::kHomeOffset) ||
+        units.unit(objects::kHomeOffset) != units.unit(objects::kPositionActual))
+      return true;
+    const auto answer = motion_->session().upload(motion_->node(), objects::kHomeOffset);
+    const auto offset = answer ? units.physical(objects::kHomeOffset, *answer) : std::nullopt;
+    const double near = units.unit(objects::kPositionActual) == "deg" ? kNearDegrees : kNearCounts;
+    return !offset || std::abs(std::abs(*position) - std::abs(offset->value)) <= near;
+  }
+
   Motion* motion_;
-  const Home* home_;
   const MotionPlan* plan_;
   bool begun_ = false;
   bool stale_error_ = false;
@@ -110,6 +132,31 @@ Result<void> check_method(Motion& motion, MotionPlan& plan) {
   return {};
 }
 
+/// One of the two speeds, which must be known and allowed.
+Result<Physical> speed_of(Motion& motion, ObjectAddress object, const MotionPlan& plan) {
+  const auto data = value_of(motion, object, plan);
+  if (!data) return tl::unexpected<Error>(data.error());
+  const auto speed = motion.units().physical(object, *data);
+  if (!speed || speed->unit != motion.units().unit(objects::kTargetVelocity))
+    return fail(motion.error(
+        Errc::refused,
+        fmt::format("its homing speed ({}) cannot be compared with its speed limit", to_string(object)),
+        "add --turn COUNTS, if the drive does not tell its encoder"));
+  if (const auto allowed = motion.check_speed(speed->value); !allowed)
+    return tl::unexpected<Error>(allowed.error());
+  return *speed;
+}
+
+/// From the way that --window leaves it and its speeds; a way that is not known has a time of its own.
+Duration longest_homing(Motion& motion, double fast, double slow) {
+  const auto window = motion.limits().travel;
+  const bool in_degrees = motion.units().unit(objects::kPositionActual) == "deg";
+  if (!window || !in_degrees) return kLongestHoming;
+  const auto there = motion.duration(*window * kWindows, fast);
+  const auto index = motion.duration(kDegrees * kTurns, slow);
+  return there && index ? *there + *index + kSettling : kLongestHoming;
+}
+
 }  // namespace
 
 Result<MotionPlan> plan_home(Motion& motion, const Home& home) {
@@ -124,21 +171,27 @@ Result<MotionPlan> plan_home(Motion& motion, const Home& home) {
     if (const auto added = add(motion, object, *text, plan); !added)
       return tl::unexpected<Error>(added.error());
   if (const auto known = check_method(motion, plan); !known) return tl::unexpected<Error>(known.error());
-  const auto fast = value_of(motion, objects::kHomingSpeedSwitch, plan);
+  const auto fast = speed_of(motion, objects::kHomingSpeedSwitch, plan);
   if (!fast) return tl::unexpected<Error>(fast.error());
-  const auto speed = motion.units().physical(objects::kHomingSpeedSwitch, *fast).value_or(Physical{});
-  if (const auto allowed = motion.check_speed(speed.value); !allowed)
-    return tl::unexpected<Error>(allowed.error());
-  plan.speed = speed.value;
-  plan.unit = speed.unit;
-  plan.summary += fmt::format(" at {:g} {}", speed.value, speed.unit);
-  motion.set_standstill(speed.value);
+  auto slow = *fast;
+  if (motion.units().has(objects::kHomingSpeedZero)) {
+    const auto told = speed_of(motion, objects::kHomingSpeedZero, plan);
+    if (!told) return tl::unexpected<Error>(told.error());
+    slow = *told;
+  }
+  plan.speed = std::max(fast->value, slow.value);
+  plan.unit = fast->unit;
+  plan.longest = home.longest.value_or(longest_homing(motion, fast->value, slow.value));
+  plan.summary += fmt::format(" at {:g} and {:g} {}", fast->value, slow.value, fast->unit);
+  motion.set_standstill(plan.speed);
+  motion.supervise_overspeed(plan.speed);
+  if (const auto rate = motion.rate()) motion.monitor().expect_new_zero(*rate);
   return plan;
 }
 
-MotionReport run_home(Motion& motion, const Home& home, const MotionPlan& plan) {
+MotionReport run_home(Motion& motion, const Home&, const MotionPlan& plan) {
   auto begun = motion.begin(plan.mode, plan.settings);
-  return motion.finish(begun ? Homing(motion, home, plan).run() : begun);
+  return motion.finish(begun ? Homing(motion, plan).run() : begun);
 }
 
 }  // namespace servoctl::session

@@ -158,6 +158,7 @@ Result<MotionPlan> plan_jog(Motion& motion, const Jog& jog) {
   }
   plan.summary = fmt::format("turn at {:g} {} {}", speed.value, speed.unit, until_text(jog));
   motion.set_standstill(speed.value);
+  motion.supervise_overspeed(speed.value);
   return plan;
 }
 

@@ -27,12 +27,14 @@ struct Move {
 
 /// Finding the home position.
 struct Home {
-  std::string method;  ///< Of 6098h; empty: the drive's present one.
-  std::string fast;    ///< Of 6099h:01; empty: the drive's present one.
-  std::string slow;    ///< Of 6099h:02; empty: the drive's present one.
-  std::string offset;  ///< Of 607Ch; empty: the drive's present one.
-  Duration longest = std::chrono::seconds(60);
+  std::string method;               ///< Of 6098h; empty: the drive's present one.
+  std::string fast;                 ///< Of 6099h:01; empty: the drive's present one.
+  std::string slow;                 ///< Of 6099h:02; empty: the drive's present one.
+  std::string offset;               ///< Of 607Ch; empty: the drive's present one.
+  std::optional<Duration> longest;  ///< Empty: by the way it may take, else kLongestHoming.
 };
+/// Time for homing where nothing tells how far it may go.
+inline constexpr Duration kLongestHoming = std::chrono::seconds(60);
 
 /// Pushing with a torque; MotionOptions::speed_limit must be set.
 struct Torque {
@@ -47,9 +49,11 @@ struct MotionPlan {
   std::optional<ObjectAddress> kept_target;  ///< Limits the speed here, so it is not set to zero.
   Bytes command;                             ///< Speed, position or torque as it is written.
   double value = 0;                          ///< The same as a number; the method in homing.
+  std::optional<double> from;                ///< Where a move begins, in the unit of 6064h.
   std::string unit;
   double speed = 0;     ///< In the unit of 60FFh; 0 where it is not known.
   double way = 0;       ///< In the unit of 6064h.
+  Duration longest{};   ///< Of homing.
   std::string summary;  ///< `turn at 60 rpm for 2 s`
   std::vector<std::string> notes;
 };

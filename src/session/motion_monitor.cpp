@@ -18,6 +18,9 @@ constexpr std::array kEvery{Channel::position, Channel::velocity, Channel::torqu
 /// Longest wait for one answer of a drive that moves: meanwhile nothing is supervised.
 constexpr Duration kPatience = std::chrono::milliseconds(200);
 
+/// Between two looks a motor may go so much farther than their speeds say.
+constexpr double kUnevenness = 2;
+
 tl::unexpected<Error> stopped_by(std::uint8_t node, const std::string& what, std::string hint) {
   return fail(drive_error(Errc::negative, node, what, std::move(hint)));
 }
@@ -64,10 +67,23 @@ Result<MotionSample> MotionMonitor::sample() {
   }
   channels_ = std::move(known);
   if (!begin_) begin_ = out[Channel::position];
+  if (rate_ && !samples_.empty()) follow_zero(out);
   samples_.push_back(out);
   for (const auto& done : {check_events(), check_state(out), check_limits(out)})
     if (!done) return tl::unexpected<Error>(done.error());
   return out;
+}
+
+void MotionMonitor::follow_zero(const MotionSample& sample) {
+  const auto& last = samples_.back();
+  const auto here = sample[Channel::position];
+  const auto there = last[Channel::position];
+  const auto speed = sample[Channel::velocity];
+  if (!here || !there || !speed) return;
+  const double seconds = std::chrono::duration<double>(sample.time - last.time).count();
+  const double fastest = std::max(std::abs(*speed), std::abs(last[Channel::velocity].value_or(0)));
+  const double longest = fastest * *rate_ * seconds * kUnevenness + *rate_;
+  if (std::abs(*here - *there) > longest) begin_ = *begin_ + *here - *there;
 }
 
 Result<void> MotionMonitor::wait_for_next() {

@@ -50,6 +50,10 @@ class MotionMonitor {
   /// Lets the rest of the period pass.
   Result<void> wait_for_next();
 
+  /// The position may jump because the drive gives it a new zero: what one of speed goes in a second, in the
+  /// unit of the position, tells a jump from a way. Jumps are no travel.
+  void expect_new_zero(double rate) { rate_ = rate; }
+
   const std::vector<MotionSample>& samples() const { return samples_; }
   /// What the node told meanwhile.
   const std::vector<canopen::NodeEvent>& events() const { return events_; }
@@ -57,6 +61,7 @@ class MotionMonitor {
   std::vector<Series> series() const;
 
  private:
+  void follow_zero(const MotionSample& sample);
   Result<void> check_events();
   Result<void> check_state(const MotionSample& sample) const;
   Result<void> check_limits(const MotionSample& sample) const;
@@ -68,7 +73,8 @@ class MotionMonitor {
   std::vector<Channel> channels_;  ///< Those the drive has.
   std::vector<MotionSample> samples_;
   std::vector<canopen::NodeEvent> events_;
-  std::optional<double> begin_;  ///< Position of the first sample.
+  std::optional<double> begin_;  ///< Position of the first sample, seen from the present zero.
+  std::optional<double> rate_;   ///< Where the zero may change.
 };
 
 }  // namespace servoctl::session

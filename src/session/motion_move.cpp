@@ -17,12 +17,15 @@ constexpr std::uint16_t kFollowingErrorBit = 1U << 13U;
 constexpr Duration kHandshake = std::chrono::seconds(1);
 constexpr Duration kSettling = std::chrono::seconds(2);
 constexpr Duration kUnknownDuration = std::chrono::seconds(60);
-/// Nearer than this part of the way counts as there, unless 6067h says otherwise.
-constexpr double kPartOfWay = 0.01;
-/// A motor that holds a position trembles a little.
-constexpr double kLeastDegrees = 0.5;
-constexpr double kLeastCounts = 10;
+/// Nearer than this counts as there, unless 6067h says otherwise: a motor that holds a position trembles a
+/// little.
+constexpr double kNearDegrees = 0.5;
+constexpr double kNearCounts = 10;
+/// A motor that has not moved is not there, however short the way.
+constexpr double kMostOfWay = 0.5;
 constexpr double kDefaultPart = 0.2;
+
+double near(const MotionPlan& plan) { return plan.unit == "deg" ? kNearDegrees : kNearCounts; }
 
 class Moving {
  public:
@@ -48,13 +51,13 @@ class Moving {
 
  private:
   Result<void> read_window() {
-    const double least = plan_->unit == "deg" ? kLeastDegrees : kLeastCounts;
-    window_ = std::max(least, std::abs(plan_->way) * kPartOfWay);
+    window_ = near(*plan_);
     if (!motion_->units().has(objects::kPositionWindow)) return {};
     const auto answer = motion_->session().upload(motion_->node(), objects::kPositionWindow);
     if (!answer && answer.error().code != Errc::sdo_abort) return tl::unexpected<Error>(answer.error());
     const auto told = answer ? motion_->units().physical(objects::kPositionWindow, *answer) : std::nullopt;
     if (told && told->unit == plan_->unit) window_ = std::max(window_, told->value);
+    if (plan_->way != 0) window_ = std::min(window_, std::abs(plan_->way) * kMostOfWay);
     return {};
   }
 
@@ -110,6 +113,7 @@ Result<void> find_target(Motion& motion, const Move& move, MotionPlan& plan) {
   plan.value = asked->value + (move.relative ? here.value : 0);
   plan.unit = asked->unit;
   plan.way = plan.value - here.value;
+  plan.from = here.value;
   const auto data = units.bytes(objects::kTargetPosition, plan.value);
   const auto said = data ? units.physical(objects::kTargetPosition, *data) : std::nullopt;
   // Kept within limits silently it would go elsewhere.
@@ -118,6 +122,19 @@ Result<void> find_target(Motion& motion, const Move& move, MotionPlan& plan) {
                              fmt::format("{:g} {} is beyond what 607Ah can hold", plan.value, plan.unit)));
   plan.command = *data;
   return {};
+}
+
+/// The way was told, and agreed to, from where the motor stood then.
+Result<void> check_start(Motion& motion, const MotionPlan& plan) {
+  if (const auto heard = motion.session().listen(); !heard) return heard;
+  const auto answer = motion.session().upload(motion.node(), objects::kPositionActual);
+  if (!answer) return tl::unexpected<Error>(answer.error());
+  const auto here = motion.units().physical(objects::kPositionActual, *answer).value_or(Physical{});
+  if (!plan.from || std::abs(here.value - *plan.from) <= near(plan)) return {};
+  return fail(motion.error(Errc::refused,
+                           fmt::format("has moved since the way was told: it was at {:g} {} and is at {:g}",
+                                       *plan.from, plan.unit, here.value),
+                           "nothing was moved; say it again"));
 }
 
 }  // namespace
@@ -154,10 +171,12 @@ Result<MotionPlan> plan_move(Motion& motion, const Move& move) {
   plan.summary = fmt::format("go {:g} {} to {:g} {} at {:g} {}", plan.way, plan.unit, plan.value, plan.unit,
                              plan.speed, fast->unit);
   motion.set_standstill(plan.speed);
+  motion.supervise_overspeed(plan.speed);
   return plan;
 }
 
 MotionReport run_move(Motion& motion, const Move&, const MotionPlan& plan) {
+  if (auto still = check_start(motion, plan); !still) return motion.finish(std::move(still));
   auto begun = motion.begin(plan.mode, plan.settings, plan.kept_target);
   return motion.finish(begun ? Moving(motion, plan).run() : begun);
 }

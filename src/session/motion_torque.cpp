@@ -56,7 +56,10 @@ Result<MotionPlan> plan_torque(Motion& motion, const Torque& torque) {
   plan.speed = *cap;
   limit_speed(motion, *cap, plan);
   soften(motion, value.value, plan);
-  motion.limits().speed = *cap * kOvershoot;
+  if (!motion.supervise_speed(*cap * kOvershoot))
+    return fail(motion.error(Errc::refused,
+                             "tells its speed in another unit than its limit: nobody would watch it",
+                             "add --turn COUNTS, if the drive does not tell its encoder"));
   motion.set_standstill(*cap);
   plan.summary =
       fmt::format("push with {:g} {} for {}, no faster than {:g} {}", value.value, value.unit,

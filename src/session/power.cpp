@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <cstdlib>
 
 #include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
@@ -17,6 +18,8 @@ constexpr std::uint16_t kDisableVoltage = 0x0000;
 constexpr Duration kPause = std::chrono::milliseconds(5);
 /// No way between two states has more steps; a drive that changes its state by itself could make it endless.
 constexpr int kMostSteps = 12;
+/// A motor at rest shows some noise: this part of its greatest speed.
+constexpr std::uint64_t kStandstillPart = 50;
 
 }  // namespace
 
@@ -27,6 +30,12 @@ Error drive_error(Errc code, std::uint8_t node, const std::string& what, std::st
   error.hint = std::move(hint);
   error.node = node;
   return error;
+}
+
+Error enabled_by_others(std::uint8_t node, DriveState state) {
+  return drive_error(Errc::refused, node,
+                     fmt::format("somebody else has enabled it: it is in {}", drive::name(state)),
+                     "nothing was moved; `disable` it when no other master commands it");
 }
 
 Result<void> pause(Session& session, Duration time) {
@@ -145,8 +154,25 @@ Result<void> Power::disable() {
   if (const auto off = command(kDisableVoltage); !off) return off;
   const auto reached = state();
   if (!reached) return tl::unexpected<Error>(reached.error());
-  if (is_in_fault(*reached)) return {};
-  return reach(DriveState::switch_on_disabled);
+  if (*reached == DriveState::fault) return {};
+  if (*reached != DriveState::fault_reaction_active) return reach(DriveState::switch_on_disabled);
+  const auto ended = wait_for(DriveState::fault);
+  if (!ended) return tl::unexpected<Error>(ended.error());
+  if (*ended) return {};
+  return fail(drive_error(Errc::negative, node_, "still brakes after a fault, and may have its power",
+                          "`status` shows its state"));
+}
+
+/// By its speed, whatever unit that has; without one by bit 10 (CiA 402-2: a quick stop has ended at
+/// standstill).
+bool Power::has_stopped(std::optional<std::uint64_t>& fastest) {
+  const auto answer = session_->upload(node_, objects::kVelocityActual);
+  if (!answer || answer->size() > 4 || answer->empty()) return (statusword_ & kTargetReached) != 0;
+  const auto bits = 64 - 8 * static_cast<int>(answer->size());
+  const auto speed = static_cast<std::int64_t>(load_le(*answer) << bits) >> bits;
+  const auto size = static_cast<std::uint64_t>(std::abs(speed));
+  fastest = std::max(fastest.value_or(size), size);
+  return size <= *fastest / kStandstillPart;
 }
 
 Result<void> Power::quick_stop() {
@@ -154,10 +180,26 @@ Result<void> Power::quick_stop() {
   const auto before = state();
   if (!before) return tl::unexpected<Error>(before.error());
   if (!drive::is_energised(*before)) return {};
+  std::optional<std::uint64_t> fastest;
+  (void)has_stopped(fastest);
   if (const auto told = command(kQuickStop); !told) return told;
-  const auto ended = wait_for(DriveState::switch_on_disabled);
-  if (!ended) return tl::unexpected<Error>(ended.error());
-  return {};
+  const auto end = session_->now() + kQuickStopPatience;
+  for (;;) {
+    const auto now_in = state();
+    if (!now_in) return tl::unexpected<Error>(now_in.error());
+    if (!drive::is_energised(*now_in)) return {};
+    const bool followed = *now_in == DriveState::quick_stop_active;
+    if (followed && has_stopped(fastest)) return {};
+    if (session_->now() >= end)
+      return fail(drive_error(
+          Errc::negative, node_,
+          followed ? std::string("is in quick stop active and does not tell that it stands still")
+                   : fmt::format("does not follow the quick stop; it is in {} (statusword 0x{:04X})",
+                                 drive::name(*now_in), statusword_),
+          followed ? "look at the motor; `disable` takes its power away"
+                   : "does another master command it? `disable`, or take the power away"));
+    if (const auto paused = pause(*session_, kPause); !paused) return paused;
+  }
 }
 
 std::vector<std::pair<std::uint8_t, Result<void>>> de_energise(Session& session) {

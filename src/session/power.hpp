@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -23,6 +24,8 @@ class Power {
  public:
   /// Longest wait for one transition; manuals name none, and a brake takes some tenths of a second.
   static constexpr Duration kPatience = std::chrono::seconds(1);
+  /// Longest wait for the end of a quick stop; its ramp (6085h) is the machine's.
+  static constexpr Duration kQuickStopPatience = std::chrono::seconds(3);
 
   Power(Session& session, const drive::Profile& profile, std::uint8_t node)
       : session_(&session), profile_(&profile), node_(node) {}
@@ -39,8 +42,9 @@ class Power {
   /// at once where it cannot. A drive in fault has none. Neither this nor quick_stop()
   /// hears Ctrl-C.
   Result<void> disable();
-  /// Stops a drive that is energised as fast as it can, and waits for the end of it. By 605Ah some stay
-  /// energised then.
+  /// Stops a drive that is energised as fast as it can, and waits until it has no power or stands still in
+  /// "quick stop active", where 605Ah lets it stay. Errc::negative when it does not follow, or when
+  /// that it stands still is not seen within kQuickStopPatience.
   Result<void> quick_stop();
   /// Waits until the drive is in this state; false when it is not after kPatience.
   Result<bool> wait_for(drive::DriveState state);
@@ -50,6 +54,7 @@ class Power {
   bool tells(std::uint16_t bit) const;
 
  private:
+  bool has_stopped(std::optional<std::uint64_t>& fastest);
   Result<void> step(drive::DriveState from, const drive::PowerStep& next);
   Error stuck(drive::DriveState from, const drive::PowerStep& next) const;
   bool resumes();
@@ -63,6 +68,9 @@ class Power {
 /// Stops and disables every drive that was left energised through this session. Does not hear Ctrl-C. The
 /// nodes with what came of it.
 std::vector<std::pair<std::uint8_t, Result<void>>> de_energise(Session& session);
+
+/// The drive is energised although servoctl has not done it.
+Error enabled_by_others(std::uint8_t node, drive::DriveState state);
 
 /// An error about one drive.
 Error drive_error(Errc code, std::uint8_t node, const std::string& what, std::string hint = {});

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <deque>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -25,9 +27,20 @@ class MotionBus final : public can::Bus {
     ++sent;
     if (sent > lost_after) return fail(Errc::bus, "vcan0 went down");
     frames.push_back(can::to_string(frame));
+    if (frame.id == 0x77F) last_heartbeat = now();
+    if (swallows && swallows(frames.back())) return {};
     return bus.send(frame);
   }
-  Result<std::optional<can::Frame>> receive(TimePoint deadline) override { return bus.receive(deadline); }
+  Result<std::optional<can::Frame>> receive(TimePoint deadline) override {
+    if (!injected.empty()) {
+      auto first = can::parse_frame(injected.front());
+      injected.pop_front();
+      return first;
+    }
+    auto frame = bus.receive(deadline);
+    if (frame && *frame && alter) alter(**frame);
+    return frame;
+  }
   TimePoint next_event() const override { return bus.next_event(); }
 
   sim::SimBus bus{sim::SimBus::Clock::virtual_time};
@@ -35,6 +48,10 @@ class MotionBus final : public can::Bus {
   std::vector<std::string> frames;
   int sent = 0;
   int lost_after = 1'000'000'000;
+  TimePoint last_heartbeat{};                              ///< Of servoctl as node 127.
+  std::function<bool(const std::string& frame)> swallows;  ///< Whether a frame never reaches the drive.
+  std::deque<std::string> injected;                        ///< Frames that seem to arrive.
+  std::function<void(can::Frame&)> alter;                  ///< What servoctl hears instead.
 };
 
 inline Jog jog_for(std::string speed, Duration length) {
@@ -133,6 +150,21 @@ class MotionBench {
     out.outcome = tl::unexpected<Error>(error);
     return out;
   }
+};
+
+/// Something goes wrong with the bench's drive.
+class MotionTrouble : public testing::Test {
+ protected:
+  void expect_stopped(const MotionReport& done, std::string_view reason) {
+    ASSERT_FALSE(done.outcome);
+    EXPECT_NE(done.outcome.error().message.find(reason), std::string::npos) << done.outcome.error().message;
+    EXPECT_TRUE(done.end.verified);
+    EXPECT_FALSE(bench.energised());
+    EXPECT_EQ(bench.changed(), std::vector<std::string>{});
+  }
+
+  MotionBench bench{"gsd600", 131072};
+  const Jog kJog = jog_for("60rpm", std::chrono::seconds(10));
 };
 
 }  // namespace servoctl::session

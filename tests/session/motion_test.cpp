@@ -27,7 +27,7 @@ class MotionOfFamily : public testing::TestWithParam<Family> {
   MotionOfFamily() : bench(GetParam().name, GetParam().turn) {}
 
   void expect_left_alone(const MotionReport& done) {
-    EXPECT_TRUE(done.end.verified);
+    EXPECT_TRUE(done.end.verified || !done.begun);
     EXPECT_EQ(done.end.notes, std::vector<std::string>{});
     EXPECT_EQ(bench.drive().power_state(), DriveState::switch_on_disabled);
     EXPECT_FALSE(bench.drive().is_moving());
@@ -133,7 +133,8 @@ TEST_P(MotionOfFamily, SpeedAboveTheSafeOneIsRefusedBeforeAnythingIsWritten) {
 /// What an earlier master left in the targets must not move the motor when it is enabled.
 TEST_P(MotionOfFamily, EnablingMovesNothingWhateverTheTargetsHeld) {
   MotionUnits units(*bench.session, bench.profile(), 1, bench.options.turn);
-  for (const auto& [object, value] : {std::pair(objects::kTargetVelocity, 60.), std::pair(objects::kTargetPosition, 360.)}) {
+  for (const auto& [object, value] :
+       {std::pair(objects::kTargetVelocity, 60.), std::pair(objects::kTargetPosition, 360.)}) {
     const auto data = units.bytes(object, value);
     ASSERT_TRUE(data);
     ASSERT_TRUE(bench.session->download(1, object, *data));
@@ -163,7 +164,7 @@ TEST_P(MotionOfFamily, CancelledAtAnyPointLeavesNothingBehind) {
     if (!done.outcome) {
       EXPECT_EQ(done.outcome.error().code, Errc::interrupted);
     }
-    EXPECT_TRUE(done.end.verified) << point;
+    EXPECT_TRUE(done.end.verified || !done.begun) << point;
     EXPECT_FALSE(own.energised()) << point;
     EXPECT_EQ(own.changed(), std::vector<std::string>{}) << point;
   }
@@ -177,7 +178,7 @@ TEST_P(MotionOfFamily, CancelledWhileHomingLeavesNothingBehind) {
     int asked = 0;
     own.started = [&] { own.session->options().cancelled = [&] { return ++asked >= point; }; };
     const auto done = own.home(home_by(GetParam().method));
-    EXPECT_TRUE(done.end.verified) << point;
+    EXPECT_TRUE(done.end.verified || !done.begun) << point;
     EXPECT_FALSE(own.energised()) << point;
     EXPECT_EQ(own.changed(), std::vector<std::string>{}) << point;
   }
@@ -212,7 +213,7 @@ TEST_P(MotionOfFamily, AFaultInMidMoveEndsItWithTheReason) {
   ASSERT_FALSE(done.outcome);
   EXPECT_EQ(done.outcome.error().code, Errc::negative);
   EXPECT_NE(done.outcome.error().message.find("0x2310"), std::string::npos) << done.outcome.error().message;
-  EXPECT_TRUE(done.end.verified);
+  EXPECT_TRUE(done.end.verified || !done.begun);
   EXPECT_EQ(done.end.state, DriveState::fault);
   EXPECT_EQ(bench.changed(), std::vector<std::string>{});
 }

@@ -10,20 +10,6 @@ namespace {
 using namespace std::chrono_literals;
 using drive::DriveState;
 
-class MotionTrouble : public testing::Test {
- protected:
-  void expect_stopped(const MotionReport& done, std::string_view reason) {
-    ASSERT_FALSE(done.outcome);
-    EXPECT_NE(done.outcome.error().message.find(reason), std::string::npos) << done.outcome.error().message;
-    EXPECT_TRUE(done.end.verified);
-    EXPECT_FALSE(bench.energised());
-    EXPECT_EQ(bench.changed(), std::vector<std::string>{});
-  }
-
-  MotionBench bench{"gsd600", 131072};
-  const Jog kJog = jog_for("60rpm", 10s);
-};
-
 TEST_F(MotionTrouble, AMotorThatTurnsTheWrongWayIsStoppedAtOnce) {
   bench.drive().axis_faults().reversed = true;
   const auto done = bench.jog(kJog);

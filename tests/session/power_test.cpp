@@ -58,14 +58,27 @@ INSTANTIATE_TEST_SUITE_P(Families, PowerOfFamily,
 class Stubborn : public testing::Test {
  protected:
   Result<void> enable(const std::string& statusword) {
+    return command(statusword, [](Power& power) { return power.reach(DriveState::operation_enabled); });
+  }
+  Result<void> quick_stop(const std::string& statusword) {
+    return command(statusword, [](Power& power) { return power.quick_stop(); });
+  }
+  Result<void> disable(const std::string& statusword) {
+    return command(statusword, [](Power& power) { return power.disable(); });
+  }
+
+ private:
+  static Result<void> command(const std::string& statusword, const std::function<Result<void>(Power&)>& how) {
     auto owned = std::make_unique<ScriptedBus>();
     owned->on_send = [statusword](ScriptedBus& bus, const std::string& sent) {
       if (sent.substr(0, 12) == "601#40416000") bus.arrive("581#4B416000" + statusword + "0000");
+      if (sent.substr(0, 12) == "601#406C6000") bus.arrive("581#436C6000E8030000");
       if (sent.substr(0, 12) == "601#2B406000") bus.arrive("581#6040600000000000");
     };
     Session session(std::move(owned), "test", Options{});
     MotionBench family("gsd600");
-    return Power(session, family.profile(), 1).reach(DriveState::operation_enabled);
+    Power power(session, family.profile(), 1);
+    return how(power);
   }
 };
 
@@ -86,6 +99,19 @@ TEST_F(Stubborn, AStatuswordThatFitsNoStateIsNotCommandedOn) {
   const auto done = enable("0500");
   ASSERT_FALSE(done);
   EXPECT_EQ(done.error().code, Errc::refused);
+}
+
+TEST_F(Stubborn, AQuickStopThatChangesNothingIsNoSuccess) {
+  const auto done = quick_stop("3706");
+  ASSERT_FALSE(done);
+  EXPECT_EQ(done.error().code, Errc::negative);
+  EXPECT_NE(done.error().message.find("does not follow the quick stop"), std::string::npos);
+}
+
+TEST_F(Stubborn, AFaultReactionThatDoesNotEndIsNotDisabled) {
+  const auto done = disable("0F02");
+  ASSERT_FALSE(done);
+  EXPECT_NE(done.error().message.find("still brakes"), std::string::npos) << done.error().message;
 }
 
 TEST(OperationMode, IsRefusedWhenTheDriveItselfDoesNotHaveIt) {

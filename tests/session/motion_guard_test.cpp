@@ -1,0 +1,129 @@
+// What happens to a drive behind the back of a motion, and what of it is put back.
+#include <utility>
+
+#include "motion_support.hpp"
+
+namespace servoctl::session {
+namespace {
+
+using namespace std::chrono_literals;
+using drive::DriveState;
+
+/// A question may stand for minutes before it is answered; whatever happened to the drive meanwhile counts.
+TEST_F(MotionTrouble, AWayThatWasToldFromElsewhereIsNotGone) {
+  bench.started = [&] {
+    bench.started = {};
+    const auto others = bench.jog(jog_turns("60rpm", 2));
+    ASSERT_TRUE(others.outcome) << others.outcome.error().message;
+  };
+  const auto before = bench.session->now();
+  const auto done = bench.move(move_to("90deg", "60rpm", true));
+  ASSERT_FALSE(done.outcome);
+  EXPECT_EQ(done.outcome.error().code, Errc::refused);
+  EXPECT_NE(done.outcome.error().message.find("has moved since"), std::string::npos);
+  EXPECT_FALSE(done.begun);
+  EXPECT_LT(bench.session->now() - before, 5s);
+}
+
+TEST_F(MotionTrouble, ADriveThatSomebodyElseHasEnabledMeanwhileIsNotTouched) {
+  bench.started = [&] {
+    ASSERT_TRUE(Power(*bench.session, bench.profile(), 1).reach(DriveState::operation_enabled));
+    bench.bus->frames.clear();
+  };
+  const auto done = bench.jog(kJog);
+  ASSERT_FALSE(done.outcome);
+  EXPECT_EQ(done.outcome.error().code, Errc::refused);
+  EXPECT_NE(done.outcome.error().message.find("somebody else"), std::string::npos);
+  EXPECT_FALSE(done.begun);
+  EXPECT_TRUE(bench.energised()) << "it belongs to the other master";
+  for (const auto& frame : bench.bus->frames) EXPECT_EQ(frame.substr(0, 6), "601#40") << frame;
+}
+
+/// Answers to another servoctl come with the same CAN-ID.
+TEST_F(MotionTrouble, AnswersToOtherMastersFromBeforeAreNotTakenForItsOwn) {
+  bench.started = [&] { bench.bus->injected = {"581#4B41600037060000"}; };  // Operation enabled.
+  const auto done = bench.jog(jog_for("60rpm", 200ms));
+  EXPECT_TRUE(done.outcome) << done.outcome.error().message;
+}
+
+TEST_F(MotionTrouble, ARunawayInTheRightDirectionIsStopped) {
+  bench.bus->alter = [](can::Frame& frame) {
+    if (can::to_string(frame).substr(0, 12) != "581#436C6000") return;
+    const auto speed = std::span(frame.data).subspan(4, 4);
+    store_le(load_le(speed) * 2, speed);
+  };
+  expect_stopped(bench.jog(kJog), "the speed of");
+}
+
+TEST_F(MotionTrouble, TheWatchdogIsLeftAloneWithADriveThatDoesNotAnswer) {
+  const auto silent = bench.session->now() + 700ms;
+  bench.drive().fall_silent_at(silent);
+  const auto done = bench.jog(kJog);
+  ASSERT_EQ(done.watchdog.kind, WatchdogPlan::Kind::heartbeat);
+  ASSERT_GT(bench.bus->last_heartbeat, silent - 200ms);
+  EXPECT_LT(bench.bus->last_heartbeat - silent, 1s);
+}
+
+/// From "operation enabled" on every controlword is lost, and seems to be taken.
+void lose_controlwords(MotionBus& bus) {
+  bus.swallows = [&bus, up = false](const std::string& frame) mutable {
+    if (frame.substr(0, 12) != "601#2B406000") return false;
+    if (up) bus.injected.emplace_back("581#6040600000000000");
+    return std::exchange(up, up || frame.substr(12, 4) == "0F00");
+  };
+}
+
+TEST_F(MotionTrouble, ADriveThatKeepsItsPowerIsNotGivenItsOldTargetsBack) {
+  MotionBench own("sv2", 131072);  // It has no watchdog.
+  ASSERT_TRUE(own.session->download(1, objects::kTargetVelocity, {0x40, 0x42, 0x0F, 0}));
+  lose_controlwords(*own.bus);
+  const auto done = own.jog(jog_for("60rpm", 300ms));
+  EXPECT_FALSE(done.end.verified);
+  EXPECT_TRUE(own.energised());
+  EXPECT_EQ(own.drive().value(objects::kTargetVelocity), (Bytes{0, 0, 0, 0}));
+  EXPECT_GE(done.end.left.size(), 3U);
+  EXPECT_EQ(own.session->energised().count(1), 1U);
+}
+
+TEST_F(MotionTrouble, ADriveThatKeepsItsPowerIsLeftToItsOwnWatchdog) {
+  lose_controlwords(*bench.bus);
+  const auto done = bench.jog(jog_for("60rpm", 300ms));
+  EXPECT_EQ(done.end.state, DriveState::fault);
+  EXPECT_TRUE(done.end.verified);
+  EXPECT_FALSE(bench.energised());
+  EXPECT_NE(bench.drive().value({0x1016, 1}), bench.before["0x1016:1"]);
+  EXPECT_GE(done.end.left.size(), 3U);
+}
+
+TEST_F(MotionTrouble, AShortMoveIsDoneWhenTheMotorIsThereAndNotBefore) {
+  MotionBench own("dm", 0);
+  const auto done = own.move(move_to("0.4deg", "30rpm", true));
+  ASSERT_TRUE(done.outcome) << done.outcome.error().message;
+  EXPECT_NEAR(*done.samples.back()[Channel::position], 0.4, 0.05);
+}
+
+TEST_F(MotionTrouble, BothHomingSpeedsAreBoundByTheLimit) {
+  auto home = home_by("1");
+  home.slow = "3000rpm";
+  const auto done = bench.home(home);
+  ASSERT_FALSE(done.outcome);
+  EXPECT_EQ(done.outcome.error().code, Errc::refused);
+  EXPECT_NE(done.outcome.error().message.find("3000 rpm is above the limit"), std::string::npos);
+}
+
+TEST_F(MotionTrouble, ANewZeroIsNoWay) {
+  ASSERT_TRUE(bench.move(move_to("3rev", "250rpm")).outcome);
+  bench.options.window = "2.5rev";
+  const auto done = bench.home(home_by("1"));
+  EXPECT_TRUE(done.outcome) << done.outcome.error().message;
+}
+
+TEST_F(MotionTrouble, AnAccelerationThatIsNoneIsToldBeforeAnythingIsTouched) {
+  bench.options.acceleration = "banana";
+  const auto done = bench.jog(kJog);
+  ASSERT_FALSE(done.outcome);
+  EXPECT_FALSE(done.begun);
+}
+
+}  // namespace
+}  // namespace servoctl::session
