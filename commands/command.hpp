@@ -137,11 +137,17 @@ struct Command {
   std::span<const Parameter> parameters;
   Needs needs = Needs::nothing;
   Effect effect = Effect::none;
+  std::string_view reads_without = {};  ///< Without this parameter it only reads, whatever `effect` says.
   Result<report::Value> (*run)(Context&, const Arguments&) = nullptr;
   /// Checks names and values by the dictionary alone (no session in the context), for lines that are to be
   /// run later; null: there is nothing to check.
   Result<void> (*check)(Context&, const Arguments&) = nullptr;
   bool of_front_end = false;  ///< It runs other command lines: the front end does it, `run` is null.
+
+  /// What it does with these arguments.
+  Effect effect_with(const Arguments& arguments) const {
+    return !reads_without.empty() && !arguments.has(reads_without) ? Effect::reads : effect;
+  }
 };
 
 /// All commands in the order of `help`.

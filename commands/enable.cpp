@@ -16,6 +16,8 @@ constexpr Parameter kParameters[] = {kTurnOption};
 
 /// Up to "operation enabled" with harmless targets. On every other way out the drive is de-energised.
 Result<void> energise(Context& context, session::Motion& motion) {
+  // Answers to other masters that came while a person was thinking are not for what is asked now.
+  if (const auto heard = context.session->listen(); !heard) return heard;
   session::MotionGuard guard(*context.session, motion.units(), motion.node());
   if (const auto done = guard.neutral_targets(); !done) return done;
   if (const auto done = guard.start_node(); !done) return done;
@@ -23,23 +25,22 @@ Result<void> energise(Context& context, session::Motion& motion) {
   return guard.release();
 }
 
-Result<session::PreflightItem> enable_one(Context& context, session::Motion& motion) {
+Result<void> enable_one(Context& context, session::Motion& motion) {
   if (const auto ready = motion.prepare(); !ready) return tl::unexpected<Error>(ready.error());
   // It stays energised after servoctl has gone, so nothing can watch servoctl.
   const auto items = session::preflight(*context.session, motion.units(), motion.node(), {}, context.chinese);
   if (!items) return tl::unexpected<Error>(items.error());
   if (context.tell) context.tell(preflight_text(*items));
-  if (context.dry_run) return session::PreflightItem{};
   if (const auto possible = session::check_preflight(*items, motion.node()); !possible)
     return tl::unexpected<Error>(possible.error());
+  if (context.dry_run) return {};
   const auto mode = session::read_mode(*context.session, motion.node());
   if (!mode) return tl::unexpected<Error>(mode.error());
   const auto question = fmt::format(
       "Energise node {} and leave it so, in mode {}? Nothing will watch over it, and the motor may move.",
       motion.node(), session::mode_text(*context.profile, *mode, context.chinese));
   if (const auto answer = context.confirm(question); !answer) return tl::unexpected<Error>(answer.error());
-  if (const auto done = energise(context, motion); !done) return tl::unexpected<Error>(done.error());
-  return session::PreflightItem{};
+  return energise(context, motion);
 }
 
 Result<Value> run(Context& context, const Arguments& arguments) {

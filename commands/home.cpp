@@ -3,7 +3,7 @@
 namespace servoctl::commands {
 namespace {
 
-constexpr Parameter kParameters[] = {
+constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
     {.name = "method", .help = "number or name of 6098h; the drive's own unless said", .kind = Kind::value},
     {.name = "--speed", .help = "speed to the switch (6099h:01)", .kind = Kind::value},
     {.name = "--search", .help = "speed to the index pulse (6099h:02)", .kind = Kind::value},
@@ -11,15 +11,8 @@ constexpr Parameter kParameters[] = {
     {.name = "--within",
      .help = "longest time it may take (by --window and speed, else 60s)",
      .kind = Kind::duration},
-    kSpeedLimitOption,
-    kMaxTorqueOption,
-    kMaxFollowingErrorOption,
-    kWindowOption,
-    kTurnOption,
-    kMasterNodeOption,
     kCsvOption,
-    kPlotOption,
-};
+}));
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   session::Home home;
@@ -30,12 +23,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   const auto longest = time_option(arguments, "--within");
   if (!longest) return tl::unexpected<Error>(longest.error());
   home.longest = *longest;
-  MotionRun motion;
-  motion.plan = [&](session::Motion& m) { return session::plan_home(m, home); };
-  motion.run = [&](session::Motion& m, const session::MotionPlan& plan) {
-    return session::run_home(m, home, plan);
-  };
-  return run_motion(context, arguments, motion);
+  return run_motion(context, arguments, motion_run(home, session::plan_home, session::run_home));
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 namespace servoctl::commands {
 namespace {
 
-constexpr Parameter kParameters[] = {
+constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
     {.name = "speed",
      .help = "60rpm, -1.5rev/s; the sign is the direction",
      .kind = Kind::value,
@@ -16,16 +16,9 @@ constexpr Parameter kParameters[] = {
     {.name = "--until-key",
      .help = "while an arrow key is held; any other key ends (default on a terminal)",
      .kind = Kind::flag},
-    kSpeedLimitOption,
     kAccelerationOption,
-    kMaxTorqueOption,
-    kMaxFollowingErrorOption,
-    kWindowOption,
-    kTurnOption,
-    kMasterNodeOption,
     kCsvOption,
-    kPlotOption,
-};
+}));
 
 /// Turns the repetitions of a held key into "held" and "let go". Keyboards begin to repeat after up to 0.7 s,
 /// and then do it at least ten times a second.

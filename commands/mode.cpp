@@ -117,6 +117,7 @@ const Command kMode{
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::writes,
+    .reads_without = "mode",
     .run = run,
 };
 

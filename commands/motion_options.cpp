@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/duration.hpp"
+#include "base/file.hpp"
 #include "base/number.hpp"
 #include "canopen/cob_id.hpp"
 #include "commands/motion_result.hpp"
@@ -116,6 +117,9 @@ Result<Value> run_motion(Context& context, const Arguments& arguments, const Mot
   if (!node) return tl::unexpected<Error>(node.error());
   auto options = motion_options(context, arguments);
   if (!options) return tl::unexpected<Error>(options.error());
+  const std::string csv(arguments.text("--csv"));
+  if (!csv.empty() && !context.dry_run)
+    if (const auto possible = check_writable(csv); !possible) return tl::unexpected<Error>(possible.error());
   std::function<void(const session::MotionSample&)> display;
   options->on_sample = [&display](const session::MotionSample& sample) { display(sample); };
   session::Motion motion(*context.session, *context.profile, *node, std::move(*options));
@@ -126,19 +130,22 @@ Result<Value> run_motion(Context& context, const Arguments& arguments, const Mot
   const auto items = motion.look(context.chinese);
   if (!items) return tl::unexpected<Error>(items.error());
   for (const auto& note : plan->notes) context.notices.push_back(fmt::format("node {}: {}", *node, note));
-  if (context.dry_run) return planned(context, motion, *plan, *items);
-  if (const auto possible = session::check_preflight(*items, *node); !possible)
-    return tl::unexpected<Error>(possible.error());
-  if (const auto mode = session::check_mode(*context.session, *context.profile, *node, plan->mode); !mode)
-    return tl::unexpected<Error>(mode.error());
+  auto possible = session::check_preflight(*items, *node);
+  if (possible) possible = session::check_mode(*context.session, *context.profile, *node, plan->mode);
+  if (context.dry_run) {
+    if (!possible) context.errors.push_back(possible.error());
+    return planned(context, motion, *plan, *items);
+  }
+  if (!possible) return tl::unexpected<Error>(possible.error());
   if (const auto answer = ask(context, *node, *plan, *items); !answer)
     return tl::unexpected<Error>(answer.error());
   const auto done = run.run(motion, *plan);
-  if (arguments.has("--csv"))
-    if (const auto written = write_csv(std::string(arguments.text("--csv")), done.samples, motion.units());
-        !written)
+  if (!done.begun && !done.outcome) return tl::unexpected<Error>(done.outcome.error());
+  auto result = motion_result(context, *node, *plan, *items, done, arguments.has("--plot"));
+  if (!csv.empty())
+    if (const auto written = write_csv(csv, done.samples, motion.units()); !written)
       context.errors.push_back(written.error());
-  return motion_result(context, *node, *plan, *items, done, arguments.has("--plot"));
+  return result;
 }
 
 }  // namespace servoctl::commands

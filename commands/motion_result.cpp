@@ -51,22 +51,27 @@ report::Plot samples_of(std::vector<Series> series) {
 }
 
 Value end_record(const session::MotionEnd& end) {
-  report::List notes(end.notes.begin(), end.notes.end());
+  report::List left(end.left.begin(), end.left.end());
   return Record{{"verified", end.verified},
                 {"state", drive::name(end.state)},
                 {"statusword", report::Hex{end.statusword, 4}},
                 {"stopped", end.stopped},
                 {"quick_stop", end.quick_stop},
-                {"not_put_back", std::move(notes)}};
+                {"not_put_back", std::move(left)}};
 }
 
 /// A drive that may still be energised is worse than whatever ended the motion.
-Error unverified(std::uint8_t node, const std::string& text, Errc code) {
-  Error error;
-  error.code = code;
-  error.node = node;
-  error.message = fmt::format("node {}: {}", node, text);
-  error.hint = "do not go near the machine before its power is off";
+Error unverified(std::uint8_t node, const session::MotionReport& done) {
+  auto text = end_text(done.end, done.watchdog);
+  if (!done.outcome) text += fmt::format("; the motion ended because {}", done.outcome.error().message);
+  return session::drive_error(done.outcome ? Errc::negative : done.outcome.error().code, node, text,
+                              "do not go near the machine before its power is off");
+}
+
+Error ended(std::uint8_t node, const session::MotionReport& done) {
+  auto error = done.outcome.error();
+  error.message += fmt::format("; the drive is in {}", end_text(done.end, done.watchdog));
+  if (!error.node) error.node = node;
   return error;
 }
 
@@ -88,14 +93,11 @@ Value motion_result(Context& context, std::uint8_t node, const session::MotionPl
                     bool plot) {
   const auto end = end_text(done.end, done.watchdog);
   if (!done.end.verified)
-    context.errors.push_back(
-        unverified(node, end, done.outcome ? Errc::negative : done.outcome.error().code));
-  if (!done.outcome) {
-    auto error = done.outcome.error();
-    if (done.end.verified) error.message += fmt::format("; the drive is in {}", end);
-    if (!error.node) error.node = node;
-    context.errors.push_back(std::move(error));
-  }
+    context.errors.push_back(unverified(node, done));
+  else if (!done.outcome)
+    context.errors.push_back(ended(node, done));
+  for (const auto& left : done.end.left)
+    context.errors.push_back(session::drive_error(Errc::negative, node, left, "write it by hand"));
   for (const auto& note : done.end.notes) context.notices.push_back(fmt::format("node {}: {}", node, note));
   for (const auto& event : done.events)
     context.notices.push_back(notice_text(event, context.profile, context.chinese));
@@ -107,6 +109,7 @@ Value motion_result(Context& context, std::uint8_t node, const session::MotionPl
              {"seconds", std::round(length * 1000) / 1000},
              {"end", end, Show::text, "drive"},
              {"end", end_record(done.end), Show::json},
+             {"by_pdo", done.by_pdo, Show::json},
              {"watchdog", session::to_string(done.watchdog), Show::json},
              {"preflight", preflight_table(items), Show::json},
              {"summary", summary_of(done.series)}};

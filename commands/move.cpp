@@ -3,7 +3,7 @@
 namespace servoctl::commands {
 namespace {
 
-constexpr Parameter kParameters[] = {
+constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
     {.name = "target",
      .help = "90deg, 2rev, or the drive's own counts",
      .kind = Kind::value,
@@ -12,28 +12,16 @@ constexpr Parameter kParameters[] = {
     {.name = "--speed",
      .help = "speed of the move (a fifth of the safe speed unless said)",
      .kind = Kind::value},
-    kSpeedLimitOption,
     kAccelerationOption,
-    kMaxTorqueOption,
-    kMaxFollowingErrorOption,
-    kWindowOption,
-    kTurnOption,
-    kMasterNodeOption,
     kCsvOption,
-    kPlotOption,
-};
+}));
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   session::Move move;
   move.target = arguments.text("target");
   move.relative = arguments.has("--relative");
   move.speed = arguments.text("--speed");
-  MotionRun motion;
-  motion.plan = [&](session::Motion& m) { return session::plan_move(m, move); };
-  motion.run = [&](session::Motion& m, const session::MotionPlan& plan) {
-    return session::run_move(m, move, plan);
-  };
-  return run_motion(context, arguments, motion);
+  return run_motion(context, arguments, motion_run(move, session::plan_move, session::run_move));
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace {
 
 using report::TestResult;
 
-constexpr Parameter kParameters[] = {
+constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
     {.name = "speed", .help = "for the test jog: 60rpm", .kind = Kind::value, .required = true},
     {.name = "--expect", .help = "inputs for the test io; without, it is left out", .kind = Kind::text},
     {.name = "--for", .help = "how long in each direction (default 2s)", .kind = Kind::duration},
@@ -20,16 +20,9 @@ constexpr Parameter kParameters[] = {
     {.name = "--no-home", .help = "leave the test home out", .kind = Kind::flag},
     {.name = "--repeat", .help = "homings (default 5)", .kind = Kind::number},
     {.name = "--spread", .help = "greatest spread of home (default 1)", .kind = Kind::number},
-    kSpeedLimitOption,
     kAccelerationOption,
-    kMaxTorqueOption,
-    kMaxFollowingErrorOption,
-    kWindowOption,
-    kTurnOption,
-    kMasterNodeOption,
-    kPlotOption,
     kJunitOption,
-};
+}));
 
 /// All tests of one drive, in the order in which each rests on the one before.
 class AllTests {

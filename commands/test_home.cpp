@@ -5,23 +5,15 @@
 namespace servoctl::commands {
 namespace {
 
-constexpr Parameter kParameters[] = {
+constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
     {.name = "method", .help = "number of 6098h; the drive's present one unless said", .kind = Kind::value},
     {.name = "--repeat", .help = "how often (default 5)", .kind = Kind::number},
     {.name = "--spread",
      .help = "greatest spread that passes, in the unit of the position (default 1)",
      .kind = Kind::number},
-    kSpeedLimitOption,
-    kAccelerationOption,
-    kMaxTorqueOption,
-    kMaxFollowingErrorOption,
-    kWindowOption,
-    kTurnOption,
-    kMasterNodeOption,
     kCsvOption,
-    kPlotOption,
     kJunitOption,
-};
+}));
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   const auto test = parse_home_test(arguments, arguments.text("method"));

@@ -8,7 +8,7 @@
 namespace servoctl::commands {
 namespace {
 
-constexpr Parameter kParameters[] = {
+constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
     {.name = "speed",
      .help = "60rpm; the sign is the first direction",
      .kind = Kind::value,
@@ -16,17 +16,10 @@ constexpr Parameter kParameters[] = {
     {.name = "--for", .help = "how long in each direction (default 2s)", .kind = Kind::duration},
     {.name = "--tolerance", .help = "how far the speed may be off, in % (default 10)", .kind = Kind::number},
     {.name = "--stop-within", .help = "longest time to standstill (default 1s)", .kind = Kind::duration},
-    kSpeedLimitOption,
     kAccelerationOption,
-    kMaxTorqueOption,
-    kMaxFollowingErrorOption,
-    kWindowOption,
-    kTurnOption,
-    kMasterNodeOption,
     kCsvOption,
-    kPlotOption,
     kJunitOption,
-};
+}));
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   const auto test = parse_jog_test(arguments, arguments.text("speed"));

@@ -3,18 +3,11 @@
 namespace servoctl::commands {
 namespace {
 
-constexpr Parameter kParameters[] = {
+constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
     {.name = "torque", .help = "5%, 0.2Nm; the sign is the direction", .kind = Kind::value, .required = true},
     {.name = "--for", .help = "how long", .kind = Kind::duration, .required = true},
-    kSpeedLimitOption,
-    kMaxTorqueOption,
-    kMaxFollowingErrorOption,
-    kWindowOption,
-    kTurnOption,
-    kMasterNodeOption,
     kCsvOption,
-    kPlotOption,
-};
+}));
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   if (!arguments.has("--limit"))
@@ -26,12 +19,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   if (!length) return tl::unexpected<Error>(length.error());
   if (!*length) return fail(Errc::usage, "how long?", "add --for 1s");
   torque.length = **length;
-  MotionRun motion;
-  motion.plan = [&](session::Motion& m) { return session::plan_torque(m, torque); };
-  motion.run = [&](session::Motion& m, const session::MotionPlan& plan) {
-    return session::run_torque(m, torque, plan);
-  };
-  return run_motion(context, arguments, motion);
+  return run_motion(context, arguments, motion_run(torque, session::plan_torque, session::run_torque));
 }
 
 }  // namespace

@@ -18,6 +18,8 @@ struct Close {
 };
 using FilePtr = std::unique_ptr<std::FILE, Close>;
 
+constexpr std::string_view kOtherFolder = "choose a folder that exists and that you may write to";
+
 std::string why(int error) { return std::generic_category().message(error); }
 
 }  // namespace
@@ -39,12 +41,27 @@ Result<std::string> read_file(const std::filesystem::path& path, std::uintmax_t 
   return content;
 }
 
+Result<void> check_writable(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored))
+    return fail(Errc::file, fmt::format("cannot write {}: it is a folder", path.string()),
+                "name a file in it");
+  std::string temporary = path.string() + ".XXXXXX";
+  const int fd = ::mkostemp(temporary.data(), O_CLOEXEC);
+  if (fd < 0)
+    return fail(Errc::file, fmt::format("cannot write {}: {}", path.string(), why(errno)),
+                std::string(kOtherFolder));
+  ::close(fd);
+  ::unlink(temporary.c_str());
+  return {};
+}
+
 Result<void> write_file_atomically(const std::filesystem::path& path, std::string_view content) {
   std::string temporary = path.string() + ".XXXXXX";
   const int fd = ::mkostemp(temporary.data(), O_CLOEXEC);
   if (fd < 0)
     return fail(Errc::file, fmt::format("cannot write {}: {}", path.string(), why(errno)),
-                "choose a folder that exists and that you may write to");
+                std::string(kOtherFolder));
   int error = 0;
   while (!content.empty() && error == 0) {
     const auto wrote = ::write(fd, content.data(), content.size());

@@ -19,6 +19,7 @@ enum class PdoDirection : std::uint8_t { receive, transmit };
 /// Bits of the COB-ID entry, sub-index 1 of the communication record (CiA 301, tables 67 and 72).
 inline constexpr std::uint32_t kPdoInvalid = 0x8000'0000;
 inline constexpr std::uint32_t kPdoNoRtr = 0x4000'0000;
+inline constexpr std::uint32_t kPdoExtended = 0x2000'0000;  ///< A 29-bit CAN-ID.
 inline constexpr std::uint32_t kPdoCobIdMask = 0x1FFF'FFFF;
 
 /// One entry of a mapping (CiA 301, figure 73): an object, and how many of its bits. Indexes 0001h to 0007h

@@ -35,14 +35,14 @@ class Check {
     const auto settings = apply_options(settings_, parsed->arguments);
     if (!settings) return tl::unexpected<Error>(settings.error());
     commands::Context context;
-    if (const auto ready = prepare(*parsed->command, *settings, context); !ready) return ready;
+    if (const auto ready = prepare(*parsed, *settings, context); !ready) return ready;
     if (parsed->command->check == nullptr) return {};
     return parsed->command->check(context, parsed->arguments);
   }
 
-  Result<void> prepare(const commands::Command& command, const Settings& settings,
-                       commands::Context& context) {
-    if (const auto allowed = check_allowed(command, settings); !allowed) return allowed;
+  Result<void> prepare(const ParsedLine& line, const Settings& settings, commands::Context& context) {
+    const auto& command = *line.command;
+    if (const auto allowed = check_allowed(command, line.arguments, settings); !allowed) return allowed;
     if (includes(command.needs, Needs::node) && settings.nodes.empty()) return fail(no_node(command));
     if (!settings.nodes.empty()) {
       auto nodes = parse_nodes(settings.nodes);

@@ -34,12 +34,13 @@ bool wants_json(const std::vector<std::string>& words) {
 
 }  // namespace
 
-Result<void> check_allowed(const commands::Command& command, const Settings& settings) {
+Result<void> check_allowed(const commands::Command& command, const commands::Arguments& arguments,
+                           const Settings& settings) {
   if (command.of_front_end)
     return fail(Errc::usage, fmt::format("'{}' cannot be a line of a batch file", command.path),
                 "`for` repeats lines; a script runs several files");
   // A command that asks for more than reading is refused as a whole, before anything is opened.
-  if (settings.read_only && command.effect >= Effect::writes && !settings.dry_run)
+  if (settings.read_only && command.effect_with(arguments) >= Effect::writes && !settings.dry_run)
     return fail(Errc::refused, fmt::format("'{}' changes a drive, and --read-only forbids it", command.path),
                 "leave --read-only out when you mean it");
   return {};
@@ -103,7 +104,7 @@ Outcome Shell::help(const std::vector<std::string>& words, Settings settings) {
 }
 
 Result<Value> Shell::execute(Run& run, const commands::Arguments& arguments) {
-  if (const auto ready = prepare(run); !ready) return tl::unexpected<Error>(ready.error());
+  if (const auto ready = prepare(run, arguments); !ready) return tl::unexpected<Error>(ready.error());
   auto& context = run.context;
   context.chinese = run.settings.chinese;
   context.dry_run = run.settings.dry_run;
@@ -144,9 +145,9 @@ Result<Value> Shell::execute(Run& run, const commands::Arguments& arguments) {
   return run.command->run(context, arguments);
 }
 
-Result<void> Shell::prepare(Run& run) {
+Result<void> Shell::prepare(Run& run, const commands::Arguments& arguments) {
   const auto& command = *run.command;
-  if (const auto allowed = check_allowed(command, run.settings); !allowed) return allowed;
+  if (const auto allowed = check_allowed(command, arguments, run.settings); !allowed) return allowed;
   if (!run.settings.drive.empty() || includes(command.needs, Needs::dictionary))
     if (const auto ready = prepare_profile(run); !ready) return ready;
   if (!includes(command.needs, Needs::bus)) return name_nodes(run);

@@ -19,7 +19,8 @@
 namespace servoctl::cli {
 
 /// Whether the command may run at all: --read-only refuses what changes a drive, and a line is no batch file.
-Result<void> check_allowed(const commands::Command& command, const Settings& settings);
+Result<void> check_allowed(const commands::Command& command, const commands::Arguments& arguments,
+                           const Settings& settings);
 /// The command was given no node.
 Error no_node(const commands::Command& command);
 
@@ -78,7 +79,7 @@ class Shell {
 
   session::Options session_options();
   Result<report::Value> execute(Run& run, const commands::Arguments& arguments);
-  Result<void> prepare(Run& run);
+  Result<void> prepare(Run& run, const commands::Arguments& arguments);
   Result<void> prepare_profile(Run& run);
   Result<void> prepare_nodes(Run& run);
   static Result<void> name_nodes(Run& run);

@@ -177,6 +177,7 @@ Result<void> Motion::look_again() {
 
 Result<void> Motion::begin(std::int8_t mode, const std::vector<MotionSetting>& settings,
                            std::optional<ObjectAddress> kept_target) {
+  monitor_->find_tpdos();
   if (const auto ready = look_again(); !ready) return ready;
   guard_ = std::make_unique<MotionGuard>(*session_, *units_, node_);
   guard_->set_standstill(standstill_);
@@ -188,7 +189,21 @@ Result<void> Motion::begin(std::int8_t mode, const std::vector<MotionSetting>& s
     if (const auto done = guard_->change(object, data); !done) return done;
   if (const auto started = guard_->start_node(); !started) return started;
   (void)session_->take_events();  // What was told before is no news of this motion.
-  return guard_->enable();
+  auto enabled = guard_->enable();
+  monitor_->on_written();
+  return enabled;
+}
+
+Result<void> Motion::write(ObjectAddress object, const Bytes& data) {
+  auto done = guard_->change(object, data);
+  monitor_->on_written();
+  return done;
+}
+
+Result<void> Motion::command(std::uint16_t controlword) {
+  auto done = power_.command(controlword);
+  monitor_->on_written();
+  return done;
 }
 
 Result<bool> Motion::watch(const std::function<Result<bool>(const MotionSample&)>& done, Duration longest) {
@@ -215,6 +230,7 @@ MotionReport Motion::finish(Result<void> outcome) {
   out.samples = monitor_->samples();
   out.series = monitor_->series();
   out.events = monitor_->events();
+  out.by_pdo = monitor_->by_pdo();
   return out;
 }
 

@@ -36,6 +36,7 @@ struct MotionReport {
   std::vector<MotionSample> samples;
   std::vector<Series> series;
   std::vector<canopen::NodeEvent> events;
+  std::size_t by_pdo = 0;  ///< How many values of the samples TPDOs have brought.
 };
 
 /// An object and what is to be written to it.
@@ -64,8 +65,8 @@ class Motion {
   Result<void> begin(std::int8_t mode, const std::vector<MotionSetting>& settings,
                      std::optional<ObjectAddress> kept_target = {});
   /// Writes an object that is put back in the end.
-  Result<void> write(ObjectAddress object, const Bytes& data) { return guard_->change(object, data); }
-  Result<void> command(std::uint16_t controlword) { return power_.command(controlword); }
+  Result<void> write(ObjectAddress object, const Bytes& data);
+  Result<void> command(std::uint16_t controlword);
   /// Samples until `done` says so; false when the time is over first. An error when the motion has to end.
   Result<bool> watch(const std::function<Result<bool>(const MotionSample&)>& done, Duration longest);
   /// Stops the drive, takes its power away, puts everything back.

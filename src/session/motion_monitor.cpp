@@ -6,6 +6,7 @@
 
 #include "drive/standard_objects.hpp"
 #include "session/hurry.hpp"
+#include "session/pdo_setup.hpp"
 #include "session/power.hpp"
 
 namespace servoctl::session {
@@ -45,13 +46,38 @@ MotionMonitor::MotionMonitor(Session& session, const MotionUnits& units, std::ui
     if (units.has(object_of(channel))) channels_.push_back(channel);
 }
 
+void MotionMonitor::find_tpdos() {
+  if (tpdos_) return;
+  const auto pdos = read_pdos(*session_, &units_->profile(), node_);
+  std::vector<ObjectAddress> objects{objects::kStatusword};
+  for (const auto channel : channels_) objects.push_back(object_of(channel));
+  tpdos_ = std::make_unique<TpdoValues>(*session_, pdos ? std::span(*pdos) : std::span<const canopen::Pdo>(),
+                                        objects);
+}
+
+std::vector<Result<Bytes>> MotionMonitor::look(std::span<const ObjectAddress> objects) {
+  const auto since = std::max(told_at_, session_->now() - kPeriod);
+  std::vector<Result<Bytes>> out;
+  std::vector<SdoRequest> requests;
+  for (const auto object : objects) {
+    auto brought = tpdos_ ? tpdos_->take(object, since) : std::nullopt;
+    if (brought)
+      ++by_pdo_;
+    else
+      requests.push_back({.node = node_, .object = object, .size = object == objects::kStatusword ? 2U : 0U});
+    out.emplace_back(brought ? std::move(*brought) : Bytes{});
+  }
+  const Hurry hurry(*session_, kPatience, 1);
+  const auto answers = session_->transfer(requests);
+  for (std::size_t i = 0, asked = 0; i < objects.size() && asked < requests.size(); ++i)
+    if (requests[asked].object == objects[i]) out[i] = answers[asked++];
+  return out;
+}
+
 Result<MotionSample> MotionMonitor::sample() {
-  std::vector<SdoRequest> requests{{.node = node_, .object = objects::kStatusword, .size = 2}};
-  for (const auto channel : channels_) requests.push_back({.node = node_, .object = object_of(channel)});
-  const auto answers = [&] {
-    const Hurry hurry(*session_, kPatience, 1);
-    return session_->transfer(requests);
-  }();
+  std::vector<ObjectAddress> wanted{objects::kStatusword};
+  for (const auto channel : channels_) wanted.push_back(object_of(channel));
+  const auto answers = look(wanted);
   if (!answers[0]) return tl::unexpected<Error>(answers[0].error());
   MotionSample out;
   out.time = session_->now();

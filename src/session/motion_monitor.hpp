@@ -1,12 +1,15 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "base/series.hpp"
 #include "session/motion_units.hpp"
+#include "session/tpdo_values.hpp"
 
 namespace servoctl::session {
 
@@ -44,8 +47,17 @@ class MotionMonitor {
   MotionMonitor(Session& session, const MotionUnits& units, std::uint8_t node);
 
   MotionLimits& limits() { return limits_; }
-  /// Reads one sample; then the drive must be "operation enabled", within its limits, and silent about
-  /// errors. Errc::timeout when it does not answer, Errc::negative with the reason to stop otherwise.
+  /// From now on what TPDOs bring is not read by SDO. Reads the drive's mapping; where it does not tell it,
+  /// everything is read.
+  void find_tpdos();
+  /// The drive was told something: what it said before is no answer to it.
+  void on_written() { told_at_ = session_->now(); }
+  /// How many values TPDOs have brought.
+  std::size_t by_pdo() const { return by_pdo_; }
+
+  /// Takes one sample, of values that TPDOs brought in the last period, and reads the others; then the drive
+  /// must be "operation enabled", within its limits, and silent about errors. Errc::timeout when it does not
+  /// answer, Errc::negative with the reason to stop otherwise.
   Result<MotionSample> sample();
   /// Lets the rest of the period pass.
   Result<void> wait_for_next();
@@ -62,6 +74,7 @@ class MotionMonitor {
 
  private:
   void follow_zero(const MotionSample& sample);
+  std::vector<Result<Bytes>> look(std::span<const ObjectAddress> objects);
   Result<void> check_events();
   Result<void> check_state(const MotionSample& sample) const;
   Result<void> check_limits(const MotionSample& sample) const;
@@ -71,6 +84,9 @@ class MotionMonitor {
   std::uint8_t node_;
   MotionLimits limits_;
   std::vector<Channel> channels_;  ///< Those the drive has.
+  std::unique_ptr<TpdoValues> tpdos_;
+  TimePoint told_at_{};
+  std::size_t by_pdo_ = 0;
   std::vector<MotionSample> samples_;
   std::vector<canopen::NodeEvent> events_;
   std::optional<double> begin_;  ///< Position of the first sample, seen from the present zero.

@@ -52,6 +52,7 @@ Result<std::optional<can::Frame>> Session::receive(TimePoint deadline) {
   if (*frame) guard_.on_frame(**frame, received_at_);
   watch_.on_time(received_at_);
   guard_.on_time(received_at_);
+  if (*frame && options_.on_frame) options_.on_frame(**frame, received_at_);
   if (const auto report = *frame ? can::parse_report(**frame) : std::nullopt)
     if (const auto alive = on_report(*report); !alive) return tl::unexpected<Error>(alive.error());
   return frame;

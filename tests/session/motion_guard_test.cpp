@@ -1,4 +1,5 @@
 // What happens to a drive behind the back of a motion, and what of it is put back.
+#include <algorithm>
 #include <utility>
 
 #include "motion_support.hpp"
@@ -93,6 +94,49 @@ TEST_F(MotionTrouble, ADriveThatKeepsItsPowerIsLeftToItsOwnWatchdog) {
   EXPECT_FALSE(bench.energised());
   EXPECT_NE(bench.drive().value({0x1016, 1}), bench.before["0x1016:1"]);
   EXPECT_GE(done.end.left.size(), 3U);
+}
+
+/// A TPDO that carries statusword and position every 5 ms.
+void map_tpdo(MotionBench& bench) {
+  const auto write = [&](ObjectAddress object, std::uint64_t value, std::size_t size) {
+    ASSERT_TRUE(bench.session->download(1, object, store_le(value, size))) << to_string(object);
+  };
+  write({0x1800, 1}, 0xC000'0181, 4);
+  write({0x1A00, 0}, 0, 1);
+  write({0x1A00, 1}, 0x6041'0010, 4);
+  write({0x1A00, 2}, 0x6064'0020, 4);
+  write({0x1A00, 0}, 2, 1);
+  write({0x1800, 2}, 255, 1);
+  write({0x1800, 3}, 0, 2);
+  write({0x1800, 5}, 5, 2);
+  write({0x1800, 1}, 0x4000'0181, 4);
+  ASSERT_TRUE(bench.session->send(canopen::nmt_frame(canopen::NmtCommand::start, 1)));
+}
+
+TEST_F(MotionTrouble, WhatATpdoBringsIsNotReadBySdo) {
+  map_tpdo(bench);
+  const auto done = bench.jog(jog_turns("60rpm", 2));
+  ASSERT_TRUE(done.outcome) << done.outcome.error().message;
+  EXPECT_NEAR(*done.samples.back()[Channel::position], 720, 30);
+  EXPECT_GT(done.by_pdo, 2 * done.samples.size() * 9 / 10);
+  const auto& frames = bench.bus->frames;
+  const auto reads = [&](std::string_view object) {
+    return std::count_if(frames.begin(), frames.end(),
+                         [&](const auto& f) { return f.substr(0, 12) == object; });
+  };
+  EXPECT_LT(reads("601#40646000"), 10);
+  EXPECT_GT(reads("601#406C6000"), 50) << "the velocity is in no TPDO";
+}
+
+/// A drive that has gone to another mapping, or whose TPDOs come too seldom, is read as before.
+TEST_F(MotionTrouble, ATpdoThatIsOldOrOfAnotherLengthIsNotBelieved) {
+  map_tpdo(bench);
+  bench.bus->alter = [](can::Frame& frame) {
+    if (frame.id == 0x181) frame.size = 8;
+  };
+  const auto done = bench.jog(jog_for("60rpm", 500ms));
+  ASSERT_TRUE(done.outcome) << done.outcome.error().message;
+  EXPECT_EQ(done.by_pdo, 0U);
 }
 
 TEST_F(MotionTrouble, AShortMoveIsDoneWhenTheMotorIsThereAndNotBefore) {

@@ -1,0 +1,44 @@
+#include "session/tpdo_values.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace servoctl::session {
+
+TpdoValues::TpdoValues(Session& session, std::span<const canopen::Pdo> pdos,
+                       std::span<const ObjectAddress> objects)
+    : session_(&session) {
+  for (const auto object : objects) values_[object];
+  for (const auto& pdo : pdos) {
+    const bool carries = std::any_of(pdo.entries.begin(), pdo.entries.end(), [&](const auto& entry) {
+      return entry.bits % 8 == 0 && values_.count(entry.object) != 0;
+    });
+    if (pdo.direction == canopen::PdoDirection::transmit && pdo.is_valid() && carries) pdos_.push_back(pdo);
+  }
+  if (!pdos_.empty())
+    session.options().on_frame = [this](const can::Frame& frame, TimePoint time) { on_frame(frame, time); };
+}
+
+std::optional<Bytes> TpdoValues::take(ObjectAddress object, TimePoint since) {
+  const auto known = values_.find(object);
+  if (known == values_.end() || !known->second || known->second->time < since) return std::nullopt;
+  return std::exchange(known->second, std::nullopt)->bytes;
+}
+
+void TpdoValues::on_frame(const can::Frame& frame, TimePoint time) {
+  if (frame.remote || frame.error) return;
+  for (const auto& pdo : pdos_) {
+    const bool extended = (pdo.cob_id & canopen::kPdoExtended) != 0;
+    if (frame.id != (pdo.cob_id & canopen::kPdoCobIdMask) || frame.extended != extended) continue;
+    // Another length is another mapping than the one that was read.
+    if (frame.size != (pdo.bits() + 7) / 8) continue;
+    auto parts = canopen::unpack_pdo(pdo.entries, frame.payload());
+    for (std::size_t i = 0; parts && i < parts->size(); ++i) {
+      const auto place = values_.find(pdo.entries[i].object);
+      if (place != values_.end() && pdo.entries[i].bits % 8 == 0)
+        place->second = Value{std::move((*parts)[i]), time};
+    }
+  }
+}
+
+}  // namespace servoctl::session
