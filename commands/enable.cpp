@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "commands/left_energised.hpp"
 #include "commands/motion_options.hpp"
 #include "commands/motion_result.hpp"
 #include "commands/records.hpp"
@@ -61,10 +62,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
                           : context.dry_run ? "would be enabled"
                                             : "ENERGISED, and stays so",
                           done ? Value() : error_record(done.error())});
-    if (enabled)
-      context.notices.push_back(fmt::format(
-          "node {} IS ENERGISED and nothing watches over it; `disable -n {}` takes the power away", node,
-          node));
+    if (enabled) context.notices.push_back(energised_notice(node));
     if (!done) break;
   }
   return Value(std::move(table));

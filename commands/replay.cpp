@@ -1,15 +1,13 @@
 #include <fmt/format.h>
-#include <algorithm>
-#include <map>
-#include <set>
+#include <functional>
 
 #include "base/number.hpp"
-#include "canopen/cob_id.hpp"
-#include "canopen/nmt.hpp"
+#include "canopen/sdo_abort.hpp"
 #include "commands/command.hpp"
 #include "commands/frame_decoder.hpp"
-#include "commands/recording.hpp"
-#include "drive/standard_objects.hpp"
+#include "commands/left_energised.hpp"
+#include "commands/replay_plan.hpp"
+#include "commands/replay_run.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -32,64 +30,16 @@ constexpr Parameter kParameters[] = {
      .kind = Kind::flag},
 };
 
-/// What is to be sent, and what may come of it.
-struct Plan {
-  std::vector<can::LogFrame> frames;
-  std::map<std::string_view, std::size_t> services;
-  std::size_t dangerous = 0;     ///< NMT start, RPDOs, writes of the controlword.
-  std::set<std::uint8_t> nodes;  ///< That these are sent to.
-};
-
-/// Whether a drive takes the frame for a command that can move its motor.
-bool may_move(const can::Frame& frame, const DecodedFrame& decoded, const PdoView* pdo) {
-  if (decoded.service == "nmt")
-    return !frame.remote && frame.data[0] == static_cast<std::uint8_t>(canopen::NmtCommand::start);
-  if (decoded.service == "pdo" && !frame.remote)
-    return pdo != nullptr ? pdo->pdo.direction == canopen::PdoDirection::receive : (frame.id & 0x80U) == 0;
-  const bool request =
-      frame.id > canopen::kSdoRequest && frame.id <= canopen::kSdoRequest + canopen::kLastNode;
-  return decoded.service == "sdo" && request &&
-         std::any_of(decoded.objects.begin(), decoded.objects.end(),
-                     [](ObjectAddress object) { return object == objects::kControlword; });
-}
-
-/// Whether only a master sends it (CiA 301, 7.3.5).
-bool is_of_master(const can::Frame& frame, const DecodedFrame& decoded, const PdoView* pdo) {
-  if (decoded.service == "nmt" || decoded.service == "sync" || decoded.service == "time" ||
-      decoded.service == "guarding")
-    return true;
-  if (decoded.service == "sdo") return frame.id > canopen::kSdoRequest;
-  return decoded.service == "pdo" && may_move(frame, decoded, pdo);
-}
-
-/// Chooses the frames; reports of the controller and 29-bit identifiers are none that CANopen sends.
-Strays choose(Context& context, const Arguments& arguments, std::string_view text, Plan& plan) {
-  FrameDecoder decoder({context.profile, false, false});
-  const auto only = arguments.all("--only");
-  const bool master = arguments.has("--master");
-  return for_each_frame(text, [&](const can::LogFrame& line) {
-    const auto& frame = line.frame;
-    if (frame.error || frame.extended) return true;
-    const auto& decoded = decoder.decode(frame);
-    const auto* pdo = decoded.service == "pdo" ? decoder.pdos().find(frame.id) : nullptr;
-    if (!only.empty() && std::find(only.begin(), only.end(), decoded.service) == only.end()) return true;
-    if (master && !is_of_master(frame, decoded, pdo)) return true;
-    ++plan.services[decoded.service];
-    const bool moves = may_move(frame, decoded, pdo);
-    plan.dangerous += moves;
-    if (moves && decoded.node) plan.nodes.insert(*decoded.node);
-    plan.frames.push_back(line);
-    return true;
-  });
-}
-
-std::string question(const Plan& plan, std::string_view file, std::string_view bus) {
-  std::string kinds;
+std::string question(const ReplayPlan& plan, std::string_view file, std::string_view bus) {
+  std::string services;
   for (const auto& [service, count] : plan.services)
-    kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", count, service);
-  auto out = fmt::format("Send the {} frames of {} on {} again ({})?", plan.frames.size(), file, bus, kinds);
-  if (plan.dangerous > 0)
-    out += fmt::format(" {} of them can move a motor: NMT start, RPDO or controlword.", plan.dangerous);
+    services += fmt::format("{}{} {}", services.empty() ? "" : ", ", count, service);
+  auto out =
+      fmt::format("Send the {} frames of {} on {} again ({})?", plan.frames.size(), file, bus, services);
+  if (!plan.moving.empty())
+    out += fmt::format(" {} of them can move a motor: {}.", plan.dangerous(), kinds_text(plan.moving));
+  if (!plan.lasting.empty())
+    out += fmt::format(" Some last or restart a drive: {}.", kinds_text(plan.lasting));
   return out;
 }
 
@@ -102,22 +52,120 @@ Result<double> speed_of(const Arguments& arguments) {
   return *speed;
 }
 
-/// Sends the frames with the time between them that the recording has, divided by `speed`; a time that goes
-/// back counts as none. The answer is how many were sent.
-Result<std::size_t> send_all(session::Session& session, std::span<const can::LogFrame> frames, double speed) {
-  std::size_t sent = 0;
-  auto due = session.now();
-  while (sent < frames.size()) {
-    const auto waited = session.wait([] { return false; }, due);
-    if (!waited && waited.error().code == Errc::interrupted) return sent;
-    if (!waited) return tl::unexpected<Error>(waited.error());
-    if (const auto done = session.send(frames[sent].frame); !done) return tl::unexpected<Error>(done.error());
-    ++sent;
-    if (sent == frames.size()) break;
-    const auto gap = std::max(frames[sent].time - frames[sent - 1].time, Duration::zero());
-    due += std::chrono::duration_cast<Duration>(gap / speed);
+report::Table kinds_table(const FrameKinds& kinds) {
+  report::Table out;
+  out.columns = {{"what"}, {"frames"}};
+  for (const auto& [kind, count] : kinds) out.rows.push_back({kind, count});
+  return out;
+}
+
+/// While it lives a second Ctrl-C does not end the process: what may be energised is stopped first.
+class Protection {
+ public:
+  Protection(session::Session& session, bool needed) : protect_(session.options().protect) {
+    if (!needed) protect_ = {};
+    if (protect_) protect_(true);
   }
-  return sent;
+  Protection(const Protection&) = delete;
+  Protection& operator=(const Protection&) = delete;
+  ~Protection() {
+    if (protect_) protect_(false);
+  }
+
+ private:
+  std::function<void(bool)> protect_;
+};
+
+std::string failure_text(const Context& context, const ReplayFailure& failure) {
+  const auto label = drive::target_at(context.profile, failure.object).label();
+  return fmt::format("{} {}{} of node {} {}", failure.write ? "write of" : "read of",
+                     to_string(failure.object), label.empty() ? "" : " " + label, failure.node,
+                     failure.abort_code
+                         ? fmt::format("refused: {} (abort 0x{:08X})",
+                                       canopen::sdo_abort_text(*failure.abort_code), *failure.abort_code)
+                         : std::string("not answered"));
+}
+
+/// What became of the SDO requests; exit code 1 where one was in vain.
+void tell_failures(Context& context, const ReplayRun& run) {
+  if (run.answered_by_recording() > 0)
+    context.notices.push_back(fmt::format(
+        "SDO requests answered by the recording alone, by no drive: {}; --master leaves such answers out",
+        run.answered_by_recording()));
+  const auto& failures = run.failures();
+  if (failures.empty()) return;
+  Error error;
+  error.code = Errc::negative;
+  error.node = failures.front().node;
+  error.object = failures.front().object;
+  error.message = failure_text(context, failures.front());
+  if (failures.size() > 1)
+    error.message = fmt::format("{} SDO requests were refused or not answered; the first: {}",
+                                failures.size(), error.message);
+  error.hint = "the drives are not as the recording left them; the table names all of them";
+  context.errors.push_back(std::move(error));
+}
+
+report::Table failures_table(const Context& context, const std::vector<ReplayFailure>& failures) {
+  report::Table out;
+  out.columns = {{"node"},
+                 {"object", "", report::Show::text},
+                 {"index", "", report::Show::json},
+                 {"sub", "", report::Show::json},
+                 {"name"},
+                 {"request"},
+                 {"abort"},
+                 {"answer"}};
+  for (const auto& failure : failures) {
+    const auto& abort = failure.abort_code;
+    out.rows.push_back({failure.node, to_string(failure.object), failure.object.index, failure.object.sub,
+                        report::text_or_null(drive::target_at(context.profile, failure.object).label()),
+                        failure.write ? "write" : "read",
+                        abort ? Value(fmt::format("0x{:08X}", *abort)) : Value(),
+                        abort ? canopen::sdo_abort_text(*abort) : "none"});
+  }
+  return out;
+}
+
+/// Drives that are moved and are not there cannot be stopped, and do not move either.
+void remember_energised(Context& context, const ReplayPlan& plan, const ReplayDrives& drives) {
+  for (const auto node : plan.nodes) {
+    if (drives.present.count(node) > 0)
+      context.session->energised().insert(node);
+    else
+      context.notices.push_back(
+          fmt::format("node {} does not answer: whether the replay energises it cannot be told", node));
+  }
+}
+
+Result<void> send(Context& context, const ReplayPlan& plan, const ReplayDrives& drives, double speed,
+                  report::Record& answer) {
+  auto& session = *context.session;
+  const Protection protection(session, !plan.moving.empty());
+  remember_energised(context, plan, drives);
+  ReplayRun replay(session);
+  const auto done = replay.run(plan.frames, speed);
+  if (!done) {
+    stop_left_energised(context);
+    auto error = done.error();
+    error.message =
+        fmt::format("{}; {} of {} frames were sent", error.message, replay.sent(), plan.frames.size());
+    return fail(std::move(error));
+  }
+  answer.push_back({"sent", replay.sent()});
+  tell_left_energised(context);
+  tell_failures(context, replay);
+  if (!replay.failures().empty()) answer.push_back({"failures", failures_table(context, replay.failures())});
+  return {};
+}
+
+void tell_plan(Context& context, const ReplayPlan& plan, std::string_view file) {
+  for (auto& notice : notices(file, plan.strays)) context.notices.push_back(std::move(notice));
+  std::string dropped;
+  for (const auto id : plan.dropped) dropped += fmt::format("{}0x{:03X}", dropped.empty() ? "" : ", ", id);
+  if (!dropped.empty())
+    context.notices.push_back(
+        fmt::format("left out as TPDOs by their CAN-ID, which no drive and no family confirms: {}", dropped));
 }
 
 Result<Value> run(Context& context, const Arguments& arguments) {
@@ -126,27 +174,30 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   if (!speed) return tl::unexpected<Error>(speed.error());
   const auto text = read_recording(file);
   if (!text) return tl::unexpected<Error>(text.error());
-  Plan plan;
-  const auto strays = choose(context, arguments, *text, plan);
-  for (auto& notice : notices(file, strays)) context.notices.push_back(std::move(notice));
-  if (plan.frames.empty()) return no_frames(file);
-  report::Table services;
-  services.columns = {{"service"}, {"frames"}};
-  for (const auto& [service, count] : plan.services) services.rows.push_back({service, count});
+  const auto drives = find_drives(context, *text);
+  if (!drives) return tl::unexpected<Error>(drives.error());
+  const auto plan = plan_replay(context, arguments, *text, *drives);
+  tell_plan(context, plan, file);
+  if (plan.seen == 0) return no_frames(file);
+  if (plan.frames.empty())
+    return fail(Errc::negative, fmt::format("none of the {} frames of {} is sent", plan.seen, file),
+                "--only and --master leave them out");
   report::Record answer{{"frames", plan.frames.size()},
-                        {"can_move", plan.dangerous, report::Show::everywhere, "can move a motor"}};
+                        {"can_move", plan.dangerous(), report::Show::everywhere, "can move a motor"}};
   if (!context.dry_run) {
     if (const auto sure = context.confirm(question(plan, file, context.session->url())); !sure)
       return tl::unexpected<Error>(sure.error());
-    context.session->energised().insert(plan.nodes.begin(), plan.nodes.end());
-    const auto sent = send_all(*context.session, plan.frames, *speed);
-    if (!sent) return tl::unexpected<Error>(sent.error());
-    answer.push_back({"sent", *sent});
-    if (*sent < plan.frames.size())
-      context.notices.push_back(
-          fmt::format("interrupted: {} frames were not sent", plan.frames.size() - *sent));
+    if (const auto done = send(context, plan, *drives, *speed, answer); !done)
+      return tl::unexpected<Error>(done.error());
   }
+  report::Table services;
+  services.columns = {{"service"}, {"frames"}};
+  for (const auto& [service, count] : plan.services) services.rows.push_back({service, count});
   answer.push_back({"services", std::move(services)});
+  if (!plan.moving.empty())
+    answer.push_back({"moving", kinds_table(plan.moving), report::Show::everywhere, "can move a motor"});
+  if (!plan.lasting.empty())
+    answer.push_back({"lasting", kinds_table(plan.lasting), report::Show::everywhere, "last or restart"});
   return Value(std::move(answer));
 }
 
@@ -158,15 +209,14 @@ const Command kReplay{
     .summary = "Send the frames of a recording again; asks first",
     .details =
         "Keeps the times between the frames, unless --speed says otherwise. It sends what drives and masters "
-        "sent "
-        "alike: "
-        "where the drives are there themselves, --master leaves their part out, and --only chooses services. "
-        "It "
-        "asks, "
-        "and says how many of the frames can move a motor (NMT start, RPDOs, writes of the controlword); "
-        "--dry-run "
-        "only "
-        "counts. To have commands answered by a recording instead, use --bus replay:FILE.",
+        "sent alike: where the drives are there themselves, --master leaves their part out, and --only "
+        "chooses services. Before, it asks the drives of the recording for their PDOs; then it asks you, and "
+        "says how many of the frames can move a motor (NMT start, SYNC, RPDOs, writes of objects from 2000h "
+        "on) and which store, restart or re-address a drive; --dry-run only counts. After Ctrl-C and after "
+        "an "
+        "error the drives are stopped and disabled; one that the whole replay leaves energised is named. "
+        "Exit code 1 when a drive refused an SDO request or did not answer it. To have commands answered by "
+        "a recording instead, use --bus replay:FILE.",
     .parameters = kParameters,
     .needs = Needs::bus,
     .effect = Effect::moves,

@@ -50,9 +50,9 @@ Result<std::optional<can::Frame>> Session::receive(TimePoint deadline) {
   received_at_ = *frame ? std::max(received_at_, bus_->arrived()) : now();
   if (*frame) watch_.on_frame(**frame, received_at_);
   if (*frame) guard_.on_frame(**frame, received_at_);
+  if (*frame && options_.heard) options_.heard(**frame, received_at_);
   watch_.on_time(received_at_);
   guard_.on_time(received_at_);
-  if (*frame && options_.on_frame) options_.on_frame(**frame, received_at_);
   if (const auto report = *frame ? can::parse_report(**frame) : std::nullopt)
     if (const auto alive = on_report(*report); !alive) return tl::unexpected<Error>(alive.error());
   return frame;

@@ -35,8 +35,8 @@ struct Options {
   Duration timeout = std::chrono::milliseconds(500);  ///< Longest wait for one SDO answer.
   std::uint32_t retries = 1;        ///< Further tries of a read that was not answered; never of a write.
   std::function<bool()> cancelled;  ///< Asked in every wait; may be empty.
-  /// Told every frame that was received; may be empty.
-  std::function<void(const can::Frame& frame, TimePoint time)> on_frame;
+  /// Told every frame that is received, in every wait; may be empty. See Hearing.
+  std::function<void(const can::Frame& frame, TimePoint time)> heard;
   /// Told true before a drive is energised and false when it is at rest again: until then a signal must not
   /// end the process at once. May be empty.
   std::function<void(bool energised)> protect;

@@ -7,7 +7,7 @@ namespace servoctl::session {
 
 TpdoValues::TpdoValues(Session& session, std::span<const canopen::Pdo> pdos,
                        std::span<const ObjectAddress> objects)
-    : session_(&session) {
+    : hearing_(session, [this](const can::Frame& frame, TimePoint time) { on_frame(frame, time); }) {
   for (const auto object : objects) values_[object];
   for (const auto& pdo : pdos) {
     const bool carries = std::any_of(pdo.entries.begin(), pdo.entries.end(), [&](const auto& entry) {
@@ -15,8 +15,6 @@ TpdoValues::TpdoValues(Session& session, std::span<const canopen::Pdo> pdos,
     });
     if (pdo.direction == canopen::PdoDirection::transmit && pdo.is_valid() && carries) pdos_.push_back(pdo);
   }
-  if (!pdos_.empty())
-    session.options().on_frame = [this](const can::Frame& frame, TimePoint time) { on_frame(frame, time); };
 }
 
 std::optional<Bytes> TpdoValues::take(ObjectAddress object, TimePoint since) {

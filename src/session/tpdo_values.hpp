@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "canopen/pdo.hpp"
-#include "session/session.hpp"
+#include "session/hearing.hpp"
 
 namespace servoctl::session {
 
@@ -16,9 +16,6 @@ class TpdoValues {
  public:
   /// A PDO that carries none of the objects, is not valid, or carries only a part of an object is left out.
   TpdoValues(Session& session, std::span<const canopen::Pdo> pdos, std::span<const ObjectAddress> objects);
-  TpdoValues(const TpdoValues&) = delete;
-  TpdoValues& operator=(const TpdoValues&) = delete;
-  ~TpdoValues() { session_->options().on_frame = {}; }
 
   /// The value that came since `since`, each one once; empty when none has.
   std::optional<Bytes> take(ObjectAddress object, TimePoint since);
@@ -30,9 +27,9 @@ class TpdoValues {
   };
   void on_frame(const can::Frame& frame, TimePoint time);
 
-  Session* session_;
   std::vector<canopen::Pdo> pdos_;
   std::map<ObjectAddress, std::optional<Value>> values_;
+  Hearing hearing_;
 };
 
 }  // namespace servoctl::session

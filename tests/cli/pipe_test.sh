@@ -51,6 +51,22 @@ check "Ctrl-C ends a batch file with 130" 130 $?
 check "no line is run after it" 0 "$(grep -c 0x6061 "$batch.out")"
 rm -f "$batch" "$batch.out"
 
+# A replay that is ended in the middle leaves no drive energised.
+log=$(mktemp)
+printf '%s\n' '(0.0) can0 601#2B40600006000000' '(0.1) can0 601#2B40600007000000' '(0.2) can0 601#2B4060000F000000' \
+  '(60.0) can0 080#' >"$log"
+for signal in INT TERM; do
+  rm -f "$log.trace"
+  "$servoctl" replay "$log" --yes --trace "$log.trace" >/dev/null 2>"$log.errors" &
+  replay=$!
+  for _ in $(seq 100); do grep -q '601#2B4060000F' "$log.trace" 2>/dev/null && break; sleep 0.05; done
+  kill -$signal $replay
+  wait $replay
+  check "SIG$signal ends a replay with 130" 130 $?
+  check "the drive is stopped and disabled after SIG$signal" 1 "$(grep -c 'stopped and disabled' "$log.errors")"
+done
+rm -f "$log" "$log.trace" "$log.errors"
+
 # Objects of any size go through files.
 lab=$(cd "$(dirname "$0")" && pwd)/data/drives
 work=$(mktemp -d)

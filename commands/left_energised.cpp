@@ -1,0 +1,42 @@
+#include "commands/left_energised.hpp"
+
+#include <fmt/format.h>
+#include <set>
+
+#include "session/power.hpp"
+
+namespace servoctl::commands {
+
+std::string energised_notice(std::uint8_t node) {
+  return fmt::format("node {} IS ENERGISED and nothing watches over it; `disable -n {}` takes the power away",
+                     node, node);
+}
+
+void tell_left_energised(Context& context) {
+  const drive::Profile plain;
+  for (const auto node : std::set(context.session->energised())) {
+    session::Power power(*context.session, plain, node);
+    const auto state = power.state();
+    if (state && drive::is_energised(*state))
+      context.notices.push_back(energised_notice(node));
+    else if (!state && state.error().code != Errc::sdo_abort)
+      context.notices.push_back(
+          fmt::format("node {} MAY BE ENERGISED: it does not tell ({})", node, state.error().message));
+  }
+}
+
+void stop_left_energised(Context& context) {
+  for (const auto& [node, done] : session::de_energise(*context.session)) {
+    if (done) {
+      context.notices.push_back(
+          fmt::format("node {} was left energised; it is stopped and disabled now", node));
+      continue;
+    }
+    auto error = done.error();
+    error.message =
+        fmt::format("NODE {} MAY STILL BE ENERGISED: TAKE THE POWER AWAY: {}", node, error.message);
+    context.errors.push_back(std::move(error));
+  }
+}
+
+}  // namespace servoctl::commands

@@ -1,0 +1,140 @@
+// `replay`: what it leaves behind, and what it says of what it sends.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "drive/naming.hpp"
+#include "tested_drive.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using namespace std::chrono_literals;
+using drive::DriveState;
+
+constexpr std::string_view kEnable =
+    "(0.000000) can0 000#0101\n"
+    "(0.010000) can0 601#2B40600006000000\n"
+    "(0.030000) can0 601#2B40600007000000\n"
+    "(0.050000) can0 601#2B4060000F000000\n";
+
+class Replay : public TestedDrive {
+ protected:
+  Result<report::Value> replay(std::string_view log, Words words = {}) {
+    const auto path = testing::TempDir() + "replay_test.log";
+    std::ofstream(path) << log;
+    words.emplace_back("file", path);
+    return run("replay", words);
+  }
+  bool is_noticed(std::string_view text) const {
+    for (const auto& notice : context.notices)
+      if (notice.find(text) != std::string::npos) return true;
+    return false;
+  }
+  std::string question(std::string_view log) {
+    questions.clear();
+    context.session->options().cancelled = {};
+    EXPECT_TRUE(replay(log));
+    return questions.empty() ? "" : questions.front();
+  }
+};
+
+class ReplayEveryFamily : public Replay, public testing::WithParamInterface<const char*> {};
+
+TEST_P(ReplayEveryFamily, CtrlCStopsAndDisablesTheDrive) {
+  build(std::string(GetParam()) + "@1", GetParam());
+  std::vector<bool> protection;
+  session->options().protect = [&](bool on) { protection.push_back(on); };
+  const auto begin = sim_bus.now();
+  bool was_enabled = false;
+  session->options().cancelled = [&] {
+    was_enabled = was_enabled || drive().power_state() == DriveState::operation_enabled;
+    return sim_bus.now() > begin + 3s;
+  };
+  const auto result = replay(std::string(kEnable) + "(9.000000) can0 080#\n");
+  ASSERT_FALSE(result);
+  EXPECT_EQ(result.error().code, Errc::interrupted);
+  EXPECT_TRUE(was_enabled);
+  EXPECT_FALSE(drive::is_energised(drive().power_state()));
+  EXPECT_TRUE(is_noticed("stopped and disabled")) << "the user is told";
+  ASSERT_FALSE(protection.empty());
+  EXPECT_TRUE(protection.front()) << "a second Ctrl-C does not end the process";
+  EXPECT_FALSE(protection.back());
+}
+
+TEST_P(ReplayEveryFamily, SaysThatADriveIsLeftEnergised) {
+  build(std::string(GetParam()) + "@1", GetParam());
+  ASSERT_TRUE(replay(kEnable));
+  EXPECT_EQ(drive().power_state(), DriveState::operation_enabled);
+  EXPECT_TRUE(is_noticed("node 1 IS ENERGISED"));
+  EXPECT_EQ(session->energised().count(1), 1U) << "a prompt that ends disables it";
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, ReplayEveryFamily, testing::Values("gsd600", "dm", "sv2", "da200", "ts"));
+
+TEST_F(Replay, ALostBusDoesNotHideWhatIsLeftEnergised) {
+  build("gsd600@1", "gsd600");
+  const auto begin = sim_bus.now();
+  session->options().cancelled = [&] { return sim_bus.now() > begin + 1s; };
+  bus->on_receive = [&](can::Frame&) {
+    if (sim_bus.now() > begin + 500ms) drive().misbehaviour().silent = true;
+  };
+  ASSERT_FALSE(replay(std::string(kEnable) + "(9.000000) can0 080#\n"));
+  ASSERT_FALSE(context.errors.empty() && drive::is_energised(drive().power_state()));
+}
+
+TEST_F(Replay, CountsWhateverCanMoveAMotor) {
+  build("gsd600@1", "gsd600");
+  EXPECT_NE(question("(0.0) can0 080#\n").find("1 SYNC"), std::string::npos);
+  EXPECT_NE(question("(0.0) can0 601#23FF600000000000\n").find("1 write of"), std::string::npos);
+  EXPECT_NE(question("(0.0) can0 601#2F60600001000000\n").find("1 write of"), std::string::npos);
+  EXPECT_NE(question("(0.0) can0 201#0600\n").find("1 RPDO"), std::string::npos);
+  EXPECT_EQ(question("(0.0) can0 601#4040600000000000\n").find("can move"), std::string::npos)
+      << "reading moves nothing";
+  EXPECT_EQ(question("(0.0) can0 601#2B17100000000000\n").find("can move"), std::string::npos);
+}
+
+TEST_F(Replay, WithoutAFamilyEveryVendorObjectCanMove) {
+  build("gsd600@1", "gsd600");
+  const auto* family = std::exchange(context.profile, nullptr);
+  EXPECT_NE(question("(0.0) can0 601#2B00200000000000\n").find("can move"), std::string::npos);
+  context.profile = family;
+}
+
+TEST_F(Replay, NamesWhatLastsAndWhatRestarts) {
+  build("gsd600@1", "gsd600");
+  EXPECT_NE(question("(0.0) can0 000#8101\n").find("1 NMT reset"), std::string::npos);
+  EXPECT_NE(question("(0.0) can0 601#2310100173617665\n").find("1 store by"), std::string::npos);
+  EXPECT_NE(question("(0.0) can0 7E5#1102000000000000\n").find("1 LSS command"), std::string::npos);
+  const auto node_id = drive::resolve(context.profile, context.profile->rules.nmt.node_id);
+  ASSERT_TRUE(node_id);
+  const auto address = node_id->address;
+  EXPECT_NE(question(fmt::format("(0.0) can0 601#2B{:02X}{:02X}{:02X}02000000\n", address.index & 0xFFU,
+                                 address.index >> 8U, address.sub))
+                .find("Some last or restart a drive: 1 write of"),
+            std::string::npos);
+}
+
+TEST_F(Replay, AnSdoThatIsRefusedOrNotAnsweredFails) {
+  build("gsd600@1", "gsd600");
+  ASSERT_TRUE(replay("(0.0) can0 601#2BFF200001000000\n(0.1) can0 601#4041600000000000\n"));
+  ASSERT_TRUE(failed());
+  EXPECT_EQ(context.errors.front().object, (ObjectAddress{0x20FF, 0}));
+  EXPECT_NE(context.errors.front().message.find("0x06020000"), std::string::npos);
+  drive().misbehaviour().silent = true;
+  ASSERT_TRUE(replay("(0.0) can0 601#4041600000000000\n"));
+  EXPECT_TRUE(failed());
+  EXPECT_NE(context.errors.front().message.find("not answered"), std::string::npos);
+}
+
+TEST_F(Replay, AnswersOfTheRecordingAreNoAnswersOfADrive) {
+  build("gsd600@1", "gsd600");
+  drive().misbehaviour().silent = true;
+  ASSERT_TRUE(replay("(0.0) can0 601#4041600000000000\n(0.001) can0 581#4B41600033020000\n"));
+  EXPECT_TRUE(context.errors.empty());
+  EXPECT_TRUE(is_noticed("by the recording alone, by no drive: 1"));
+}
+
+}  // namespace
+}  // namespace servoctl::commands
