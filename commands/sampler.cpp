@@ -7,6 +7,9 @@
 
 #include "base/csv.hpp"
 #include "base/number.hpp"
+#include "canopen/cob_id.hpp"
+#include "canopen/sdo_frame.hpp"
+#include "commands/records.hpp"
 #include "session/measure.hpp"
 
 namespace servoctl::commands {
@@ -49,6 +52,14 @@ std::optional<Quantity> quantity(const Channel& channel, ByteSpan bytes) {
   return Quantity{drive::scaled(meaning, *value), meaning.unit};
 }
 
+Error no_number(const Channel& channel, const std::string& why) {
+  Error error;
+  error.code = Errc::usage;
+  error.message = fmt::format("{} is no number that could be drawn: {}", channel.name, why);
+  error.hint = "`read` and `watch` show it";
+  return located(std::move(error), channel.node, channel.target.address);
+}
+
 Value rounded(double number) { return parse_real(fmt::format("{:.9g}", number)).value_or(number); }
 
 }  // namespace
@@ -64,6 +75,7 @@ Result<Sampler> Sampler::make(Context& context, std::span<const std::string> nam
       out.channels_.push_back({node, *target, std::move(label), context.nodes.size() > 1});
     }
   out.brought_.resize(out.channels_.size());
+  out.answered_.resize(out.channels_.size());
   add_bridges(context, out.channels_);
   out.find_pdos();
   return out;
@@ -84,46 +96,77 @@ void Sampler::find_pdos() {
   }
 }
 
-bool Sampler::on_frame(const can::Frame& frame, TimePoint time) {
-  if (frame.extended || frame.remote || frame.error) return false;
-  bool found = false;
+std::vector<Sample> Sampler::on_frame(const can::Frame& frame, TimePoint time) {
+  std::vector<Sample> out;
+  if (frame.extended || frame.remote || frame.error) return out;
+  const auto data = frame.payload();
+  if (frame.id > canopen::kSdoAnswer && frame.id <= canopen::kSdoAnswer + canopen::kLastNode &&
+      data.size() >= 4)
+    for (std::size_t i = 0; i < channels_.size(); ++i)
+      if (channels_[i].node + canopen::kSdoAnswer == frame.id &&
+          channels_[i].target.address == canopen::sdo_object(frame))
+        answered_[i] = time;
   for (const auto& source : sources_) {
-    const auto data = frame.payload();
     if (source.can_id != frame.id || data.size() * 8 < source.bits) continue;
     const canopen::PdoEntry skipped{{0x0001, 0}, static_cast<std::uint8_t>(source.field.first_bit)};
     const canopen::PdoEntry entries[] = {skipped, source.field.entry};
-    brought_[source.channel] = canopen::unpack_pdo(entries, data)->back();
-    found = true;
+    out.push_back({source.channel, time, canopen::unpack_pdo(entries, data)->back(), true});
+    brought_[source.channel] = out.back();
   }
-  if (found) brought_at_ = time;
-  return found;
+  return out;
 }
 
-bool Sampler::is_carried() const {
-  for (std::size_t c = 0; c < channels_.size(); ++c)
-    if (std::none_of(sources_.begin(), sources_.end(), [&](const Source& s) { return s.channel == c; }))
-      return false;
-  return true;
+bool Sampler::is_carried(std::size_t channel) const {
+  return std::any_of(sources_.begin(), sources_.end(), [&](const Source& s) { return s.channel == channel; });
 }
 
-bool Sampler::is_complete() const {
-  return std::all_of(brought_.begin(), brought_.end(), [](const auto& value) { return value.has_value(); });
+std::vector<Sample> Sampler::read(std::span<const std::size_t> wanted) {
+  auto& session = *context_->session;
+  std::vector<session::SdoRequest> requests;
+  const auto begin = session.now();
+  for (const auto i : wanted) {
+    requests.push_back({.node = channels_[i].node, .object = channels_[i].target.address});
+    answered_[i] = begin;
+  }
+  auto answers = session.transfer(requests);
+  std::vector<Sample> out;
+  for (std::size_t k = 0; k < wanted.size(); ++k)
+    out.push_back({wanted[k], answers[k] ? answered_[wanted[k]] : session.now(), std::move(answers[k])});
+  return out;
 }
 
 std::vector<Sample> Sampler::take() {
   std::vector<Sample> out(channels_.size());
-  std::vector<session::SdoRequest> requests;
-  std::vector<std::size_t> owners;
-  for (std::size_t i = 0; i < channels_.size(); ++i) {
-    if (brought_[i]) {
-      out[i] = {*std::exchange(brought_[i], std::nullopt), true};
-      continue;
-    }
-    requests.push_back({.node = channels_[i].node, .object = channels_[i].target.address});
-    owners.push_back(i);
+  std::vector<std::size_t> missing;
+  for (std::size_t i = 0; i < channels_.size(); ++i)
+    if (brought_[i])
+      out[i] = *std::exchange(brought_[i], std::nullopt);
+    else
+      missing.push_back(i);
+  for (auto& sample : read(missing)) out[sample.channel] = std::move(sample);
+  return out;
+}
+
+Result<void> check_number(const Channel& channel) {
+  const auto meaning = drive::meaning(channel.target, channel.node);
+  if (!meaning.type_known || od::is_integer(meaning.type) || od::is_real(meaning.type)) return {};
+  return fail(no_number(channel, fmt::format("it is of type {}", od::name(meaning.type))));
+}
+
+Result<void> check_number(const Channel& channel, ByteSpan bytes) {
+  if (quantity(channel, bytes)) return {};
+  return fail(no_number(channel, "it holds something else"));
+}
+
+std::vector<Error> failures_of(std::span<const Sample> last) {
+  std::vector<Error> out;
+  for (const auto& sample : last) {
+    if (sample.bytes) continue;
+    const auto& error = sample.bytes.error();
+    const bool told =
+        std::any_of(out.begin(), out.end(), [&](const Error& e) { return e.node == error.node; });
+    if (!told) out.push_back(error);
   }
-  auto answers = context_->session->transfer(requests);
-  for (std::size_t k = 0; k < answers.size(); ++k) out[owners[k]].bytes = std::move(answers[k]);
   return out;
 }
 

@@ -22,6 +22,8 @@ struct Channel {
 
 /// A value of a channel.
 struct Sample {
+  std::size_t channel = 0;
+  TimePoint time{};  ///< When the frame that brought it arrived; of a failed read, when that was over.
   Result<Bytes> bytes = Bytes{};
   bool by_pdo = false;  ///< A TPDO brought it.
 };
@@ -33,18 +35,17 @@ class Sampler {
   /// mapping; one that does not tell it is read by SDO alone.
   static Result<Sampler> make(Context& context, std::span<const std::string> names);
 
-  /// A frame that was received: it may carry some of the objects. True when it did.
-  bool on_frame(const can::Frame& frame, TimePoint time);
+  /// Every frame that is received, in every wait (see session::Hearing). The values it brings, when it is a
+  /// TPDO with some of the objects.
+  std::vector<Sample> on_frame(const can::Frame& frame, TimePoint time);
+  /// Reads these channels, all nodes at the same time; in the order of `wanted`.
+  std::vector<Sample> read(std::span<const std::size_t> wanted);
   /// A value of each channel: the last one a TPDO brought since the call before, else read now.
   std::vector<Sample> take();
 
   std::span<const Channel> channels() const { return channels_; }
-  /// Whether some TPDO carries every channel.
-  bool is_carried() const;
-  /// When a TPDO last brought something.
-  TimePoint brought_at() const { return brought_at_; }
-  /// Whether TPDOs have brought every channel since the last take().
-  bool is_complete() const;
+  /// Whether some TPDO carries the channel.
+  bool is_carried(std::size_t channel) const;
 
  private:
   explicit Sampler(Context& context) : context_(&context) {}
@@ -61,15 +62,24 @@ class Sampler {
   Context* context_;
   std::vector<Channel> channels_;
   std::vector<Source> sources_;
-  std::vector<std::optional<Bytes>> brought_;
-  TimePoint brought_at_{};
+  std::vector<std::optional<Sample>> brought_;
+  std::vector<TimePoint> answered_;  ///< When the SDO answer of each channel last came.
 };
+
+/// Errc::usage for a channel whose object is known to be no number.
+Result<void> check_number(const Channel& channel);
+/// The same of what was read, where the dictionary does not tell.
+Result<void> check_number(const Channel& channel, ByteSpan bytes);
+
+/// The reads that fail still: of each node the first error, for `context.errors`.
+std::vector<Error> failures_of(std::span<const Sample> last);
 
 /// What was sampled of one channel: a Series with its statistics.
 class ChannelRecord {
  public:
   explicit ChannelRecord(const Channel& channel) : channel_(&channel) {}
 
+  /// `seconds` is the time of the sample, counted from where the record begins.
   void add(double seconds, const Sample& sample);
 
   const Channel& channel() const { return *channel_; }

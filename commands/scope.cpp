@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "commands/sampler.hpp"
 #include "commands/scope_mapping.hpp"
 #include "report/svg.hpp"
+#include "session/hearing.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -33,64 +35,88 @@ constexpr Parameter kParameters[] = {
     {.name = "--plot", .help = "draw them here", .kind = Kind::flag},
 };
 
-/// So long after TPDOs have brought all objects nothing is read by SDO: the next ones are on their way.
+/// So long after a TPDO has brought an object it is not read by SDO: the next one is on its way.
 constexpr Duration kPdoPatience = std::chrono::milliseconds(100);
 
-/// Samples as fast as the bus and the drives allow: with every TPDO that completes a set of values, else by
-/// SDO, one read after the other.
+/// Samples as fast as the bus and the drives allow: takes every value a TPDO brings, and reads by SDO, one
+/// after the other, what none brings. Each value has the time of its own frame.
 class Scope {
  public:
   Scope(Context& context, Sampler& sampler) : session_(context.session), sampler_(&sampler) {
     for (const auto& channel : sampler.channels()) records_.emplace_back(channel);
+    last_.resize(records_.size());
   }
 
   Result<void> run(Duration length) {
     begin_ = session_->now();
-    auto next = begin_;
+    const auto end = begin_ + length;
+    due_.assign(records_.size(), begin_);
+    const session::Hearing hearing(*session_, [&](const can::Frame& frame, TimePoint time) {
+      for (const auto& sample : sampler_->on_frame(frame, time))
+        if (time < end) add(sample, time + kPdoPatience);
+    });
     Listener listener;
-    listener.on_frame = [&](const can::Frame& frame, TimePoint time) {
-      if (!sampler_->on_frame(frame, time) || !sampler_->is_complete()) return;
-      (void)add(time);
-      next = time + kPdoPatience;
-    };
-    listener.next = [&] { return next; };
-    listener.on_time = [&](TimePoint now) {
-      const bool wait = first_ && sampler_->is_carried();
-      const auto added = add(now);
-      // After the first look the TPDOs get their chance, where there are any.
-      next = wait ? begin_ + kPdoPatience : session_->now();
-      return added;
-    };
-    const auto ended = listen(*session_, length, listener);
+    listener.next = [&] { return *std::min_element(due_.begin(), due_.end()); };
+    listener.on_time = [&](TimePoint now) { return look(now); };
+    auto ended = listen(*session_, length, listener);
     seconds_ = std::chrono::duration<double>(session_->now() - begin_).count();
-    if (!ended && ended.error().code == Errc::interrupted) return {};
+    interrupted_ = session_->options().cancelled && session_->options().cancelled();
+    if (!ended && ended.error().code == Errc::interrupted) ended = {};
+    if (ended) ended = check_sampled();
     return ended;
   }
 
   std::span<const ChannelRecord> records() const { return records_; }
+  /// The last sample of each channel.
+  std::span<const Sample> last() const { return last_; }
   double seconds() const { return seconds_; }
 
  private:
-  /// A drive that does not give the objects at the first look ends it; later on a gap stays.
-  Result<void> add(TimePoint time) {
-    const auto samples = sampler_->take();
-    const auto seconds = std::chrono::duration<double>(time - begin_).count();
+  void add(const Sample& sample, TimePoint next) {
+    records_[sample.channel].add(std::chrono::duration<double>(sample.time - begin_).count(), sample);
+    last_[sample.channel] = sample;
+    due_[sample.channel] = next;
+  }
+
+  /// A drive that does not give the objects at the first look ends it, and so does one that gives something
+  /// else than numbers; later on a gap stays.
+  Result<void> look(TimePoint now) {
+    std::vector<std::size_t> wanted;
+    for (std::size_t i = 0; i < due_.size(); ++i)
+      if (due_[i] <= now) wanted.push_back(i);
     const bool first = std::exchange(first_, false);
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      const bool failed = !samples[i].bytes.has_value();
-      if (failed && (first || samples[i].bytes.error().code == Errc::interrupted))
-        return tl::unexpected<Error>(samples[i].bytes.error());
-      records_[i].add(seconds, samples[i]);
+    for (const auto& sample : sampler_->read(wanted)) {
+      const auto i = sample.channel;
+      const bool failed = !sample.bytes.has_value();
+      if (failed && (first || sample.bytes.error().code == Errc::interrupted))
+        return tl::unexpected<Error>(sample.bytes.error());
+      if (first)
+        if (const auto number = check_number(sampler_->channels()[i], *sample.bytes); !number) return number;
+      // A TPDO came meanwhile.
+      if (due_[i] > now) continue;
+      // After the first look the TPDOs get their chance, where there are any.
+      const bool wait = first && sampler_->is_carried(i);
+      add(sample, wait ? session_->now() + kPdoPatience : session_->now());
     }
     return {};
+  }
+
+  Result<void> check_sampled() const {
+    const bool any = std::any_of(records_.begin(), records_.end(),
+                                 [](const ChannelRecord& r) { return r.statistics().count() > 0; });
+    if (any || interrupted_) return {};
+    return fail(Errc::negative, "nothing was sampled in this time", "a longer --for gives the drive time");
   }
 
   session::Session* session_;
   Sampler* sampler_;
   std::vector<ChannelRecord> records_;
+  std::vector<Sample> last_;
+  std::vector<TimePoint> due_;  ///< When each channel is to be read by SDO.
   TimePoint begin_{};
   double seconds_ = 0;
   bool first_ = true;
+  bool interrupted_ = false;
 };
 
 /// With --map: spare TPDOs carry the objects until the answer is destroyed. A node where that cannot be is
@@ -103,6 +129,12 @@ Result<std::vector<std::unique_ptr<ScopeMapping>>> map_objects(Context& context,
   if (context.read_only || context.dry_run)
     return fail(Errc::refused, "--map changes a TPDO of the drive, and that is forbidden",
                 "without --map the objects are read by SDO");
+  std::string nodes;
+  for (const auto node : context.nodes) nodes += fmt::format("{}{}", nodes.empty() ? "" : ", ", node);
+  if (const auto sure = context.confirm(fmt::format(
+          "Put the objects into a spare TPDO of node {} while sampling, and put it back after?", nodes));
+      !sure)
+    return tl::unexpected<Error>(sure.error());
   for (const auto node : context.nodes) {
     out.push_back(std::make_unique<ScopeMapping>(context, node));
     const auto mapped = out.back()->begin(arguments.all("object"), period->value_or(kDefaultPeriod));
@@ -115,7 +147,18 @@ Result<std::vector<std::unique_ptr<ScopeMapping>>> map_objects(Context& context,
   return out;
 }
 
+/// What the dictionary says is refused before anything is sent.
+Result<void> check_names(const Context& context, std::span<const std::string> names) {
+  for (const auto& name : names) {
+    const auto target = drive::resolve(context.profile, name);
+    if (!target) return tl::unexpected<Error>(target.error());
+    if (const auto number = check_number({context.nodes.front(), *target, name}); !number) return number;
+  }
+  return {};
+}
+
 Result<void> write_files(const Arguments& arguments, std::span<const Series> series) {
+  if (series.empty()) return {};
   if (arguments.has("--csv"))
     if (const auto done = write_file_atomically(std::string(arguments.text("--csv")), series_csv(series));
         !done)
@@ -128,6 +171,8 @@ Result<void> write_files(const Arguments& arguments, std::span<const Series> ser
 Result<Value> run(Context& context, const Arguments& arguments) {
   const auto length = duration_option(arguments, "--for");
   if (!length) return tl::unexpected<Error>(length.error());
+  if (const auto numbers = check_names(context, arguments.all("object")); !numbers)
+    return tl::unexpected<Error>(numbers.error());
   const auto mapping = map_objects(context, arguments);
   if (!mapping) return tl::unexpected<Error>(mapping.error());
   auto sampler = Sampler::make(context, arguments.all("object"));
@@ -140,10 +185,11 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   const auto written = write_files(arguments, series);
   if (!recorded) return tl::unexpected<Error>(recorded.error());
   if (!written) return tl::unexpected<Error>(written.error());
+  for (auto& error : failures_of(scope.last())) context.errors.push_back(std::move(error));
   report::Record out{{"seconds", std::round(scope.seconds() * 1000) / 1000},
                      {"objects", sampling_table(scope.records())}};
   for (const auto* option : {"--csv", "--svg"})
-    if (arguments.has(option)) out.push_back({option + 2, arguments.text(option)});
+    if (arguments.has(option) && !series.empty()) out.push_back({option + 2, arguments.text(option)});
   out.push_back({"plot", report::Plot{series},
                  arguments.has("--plot") ? report::Show::everywhere : report::Show::json});
   return Value(std::move(out));
@@ -158,11 +204,10 @@ const Command kScope{
     .details =
         "Takes every TPDO that carries the objects; without one it reads them by SDO, one read after the "
         "other. --map puts them into a TPDO that is not in use, sent every millisecond (--every), and puts "
-        "it "
-        "back at the end: samples are denser then and their times exact. The samples go into a file (--csv, "
-        "--svg) or are drawn (--plot); with --json they are in the result. Without --map nothing in the "
-        "drive "
-        "is changed.",
+        "it back at the end: samples are denser then. It asks before; without --map nothing in the drive is "
+        "changed. Each value has the time at which its own frame arrived. The samples go into a file (--csv, "
+        "where a cell is empty without a value at that time; --svg) or are drawn (--plot); with --json they "
+        "are in the result. A drive that does not answer at the end makes the exit code.",
     .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::reads,

@@ -57,14 +57,28 @@ Result<Pdo> ScopeMapping::choose(std::span<const std::string> objects, Duration 
   return tl::unexpected<Error>(fits.error());
 }
 
+Result<void> ScopeMapping::check_still(const std::vector<session::PlannedWrite>& plan) const {
+  const bool generic = context_->profile->is_generic();
+  if (!generic && !session::needs_pre_operational(context_->profile, plan)) return {};
+  return session::check_not_energised(*context_->session, node_);
+}
+
 Result<void> ScopeMapping::check_state(const std::vector<session::PlannedWrite>& plan) const {
   const auto state = session::ask_nmt_state(*context_->session, node_);
   if (!state) return tl::unexpected<Error>(state.error());
   if (*state != canopen::NmtState::operational)
     return fail(Errc::negative, "it is not known to be operational, and sends TPDOs only then",
                 fmt::format("`nmt start -n {}`", node_));
-  if (!session::needs_pre_operational(context_->profile, plan)) return {};
-  return session::check_not_energised(*context_->session, node_);
+  return check_still(plan);
+}
+
+Result<void> ScopeMapping::change(const session::Values& present, const session::Values& wanted,
+                                  const session::RestoreOptions& options) {
+  auto outcome = session::change_pdos(*context_->session, context_->profile, node_, present, wanted, options);
+  for (auto& notice : outcome.notices) context_->notices.push_back(std::move(notice));
+  if (!outcome.failure) return {};
+  changed_ = !outcome.rolled_back;
+  return tl::unexpected<Error>(*outcome.failure);
 }
 
 Result<void> ScopeMapping::begin(std::span<const std::string> objects, Duration period) {
@@ -73,37 +87,43 @@ Result<void> ScopeMapping::begin(std::span<const std::string> objects, Duration 
   auto read = std::move(session::read_pdo_values(*context_->session, context_->profile, nodes).front());
   if (!read) return tl::unexpected<Error>(read.error());
   before_ = std::move(*read);
-  const auto done = [&]() -> Result<void> {
-    const auto wanted = choose(objects, period, session::pdos_of(before_));
-    if (!wanted) return tl::unexpected<Error>(wanted.error());
-    mapped_ = session::values_of(*wanted, before_);
-    if (const auto full = session::complete(*context_->session, node_, before_, mapped_); !full) return full;
-    const auto plan = session::plan_writes(context_->profile, before_, mapped_);
-    if (const auto able = check_state(plan); !able) return able;
-    const auto outcome =
-        session::change_pdos(*context_->session, context_->profile, node_, before_, mapped_, {});
-    if (outcome.failure) return tl::unexpected<Error>(*outcome.failure);
-    return {};
-  }();
-  if (!done) before_.clear();
+  const auto wanted = choose(objects, period, session::pdos_of(before_));
+  if (!wanted) return tl::unexpected<Error>(wanted.error());
+  pdo_ = *wanted;
+  auto present = before_;
+  const auto mapped = session::values_of(*wanted, present);
+  if (const auto full = session::complete(*context_->session, node_, present, mapped); !full) return full;
+  const auto plan = session::plan_writes(context_->profile, present, mapped);
+  if (const auto able = check_state(plan); !able) return able;
+  changed_ = true;
+  const auto done = change(present, mapped, {});
+  if (!done) end();
   return done;
 }
 
-void ScopeMapping::end() {
-  const auto before = std::exchange(before_, {});
-  if (before.empty()) return;
-  const session::Deaf deaf(*context_->session);
-  auto present = before;
+/// As it is now: on many drives count 0 has cleared the entries, on others it has not.
+Result<void> ScopeMapping::put_back() {
   session::Values wanted;
-  for (const auto& [object, data] : mapped_) {
-    present[object] = data;
-    wanted.emplace(object, before.at(object));
-  }
-  const auto outcome = session::change_pdos(*context_->session, context_->profile, node_, present, wanted,
-                                            {.roll_back = false});
-  if (!outcome.failure) return;
-  auto error = *outcome.failure;
-  error.message = "the TPDO could not be put back as it was: " + error.message;
+  for (const auto& [object, data] : before_)
+    if (object.index == pdo_.communication_index() || object.index == pdo_.mapping_index())
+      wanted.emplace(object, data);
+  session::Values present;
+  if (const auto read = session::complete(*context_->session, node_, present, wanted); !read) return read;
+  const auto plan = session::plan_writes(context_->profile, present, wanted);
+  if (const auto able = check_still(plan); !able) return able;
+  return change(present, wanted, {.roll_back = false});
+}
+
+void ScopeMapping::end() {
+  if (!std::exchange(changed_, false)) return;
+  const session::Deaf deaf(*context_->session);
+  const auto done = put_back();
+  changed_ = false;
+  if (done) return;
+  auto error = done.error();
+  error.node = node_;
+  error.message = fmt::format("node {}: {} could not be put back as it was: {}", node_,
+                              canopen::name(pdo_.direction, pdo_.number), error.message);
   error.hint = fmt::format("`pdo show -n {}` shows it; a restart of the drive brings its stored one", node_);
   context_->errors.push_back(std::move(error));
 }

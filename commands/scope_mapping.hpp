@@ -6,7 +6,7 @@
 
 #include "canopen/pdo.hpp"
 #include "commands/command.hpp"
-#include "session/write_plan.hpp"
+#include "session/restore.hpp"
 
 namespace servoctl::commands {
 
@@ -20,7 +20,8 @@ class ScopeMapping {
 
   /// Maps them, sent every `period`. Errc::negative or Errc::refused, with the reason, where that is not
   /// possible: no spare TPDO with an event timer, a node that is not Operational, objects that cannot be
-  /// mapped, a family that leaves Operational for it while the drive is energised. Then nothing has changed.
+  /// mapped, an energised drive whose family leaves Operational for it or is not known. Then nothing has
+  /// changed, or `context.errors` says what could not be put back.
   Result<void> begin(std::span<const std::string> objects, Duration period);
   /// Puts the TPDO back as it was; what goes wrong is in `context.errors`. Ctrl-C waits for it.
   void end();
@@ -29,11 +30,18 @@ class ScopeMapping {
   Result<canopen::Pdo> choose(std::span<const std::string> objects, Duration period,
                               const std::vector<canopen::Pdo>& pdos) const;
   Result<void> check_state(const std::vector<session::PlannedWrite>& plan) const;
+  /// Errc::refused while the drive is energised, unless its family is known to take these writes then: one
+  /// that refuses them may answer with a fault, and leaving Operational stops it.
+  Result<void> check_still(const std::vector<session::PlannedWrite>& plan) const;
+  Result<void> change(const session::Values& present, const session::Values& wanted,
+                      const session::RestoreOptions& options);
+  Result<void> put_back();
 
   Context* context_;
   std::uint8_t node_;
-  session::Values before_;  ///< Empty while nothing is mapped.
-  session::Values mapped_;
+  session::Values before_;  ///< All PDOs of the node.
+  canopen::Pdo pdo_;        ///< The one that is used.
+  bool changed_ = false;    ///< It may not be as it was.
 };
 
 }  // namespace servoctl::commands

@@ -6,6 +6,7 @@
 #include "commands/records.hpp"
 #include "commands/sample_writer.hpp"
 #include "commands/sampler.hpp"
+#include "session/hearing.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -51,6 +52,7 @@ class Watching {
   }
 
   Value result(bool plot) {
+    for (auto& error : failures_of(before_)) context_->errors.push_back(std::move(error));
     report::Record out{{"objects", sampling_table(records_)}};
     if (plot) out.push_back({"plot", report::Plot{series_of(records_)}, report::Show::text});
     if (context_->keeps_samples) out.push_back({"samples", writer_.take_kept()});
@@ -131,8 +133,9 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   Watching watching(context, *sampler, arguments.has("--changes"));
   const auto begin = session.now();
   auto next = begin;
+  const session::Hearing hearing(
+      session, [&](const can::Frame& frame, TimePoint time) { (void)sampler->on_frame(frame, time); });
   Listener listener;
-  listener.on_frame = [&](const can::Frame& frame, TimePoint time) { sampler->on_frame(frame, time); };
   listener.next = [&] { return next; };
   listener.on_time = [&](TimePoint now) -> Result<void> {
     const auto looked = watching.look(now - begin);
@@ -158,7 +161,8 @@ const Command kWatch{
         "the rest is read by SDO. At the end it tells for each object how many values there were, the least, "
         "the "
         "mean "
-        "and the greatest; --plot draws them. `-o jsonl` gives one document a look.",
+        "and the greatest; --plot draws them. `-o jsonl` gives one document a look. A drive that does not "
+        "answer at the end makes the exit code.",
     .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::reads,

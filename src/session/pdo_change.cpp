@@ -118,6 +118,8 @@ class Change {
     if (!place) return std::nullopt;
     auto next = way;
     if (!way.pre_operational) {
+      // A drive that can move is not stopped on a guess; one that does not tell may be.
+      if (!check_not_energised(*session_, node_)) return std::nullopt;
       next.pre_operational = true;
       note(*outcome.failure, "pre-operational");
       return next;

@@ -193,6 +193,24 @@ TEST(PdoChange, OfAnUnknownDriveIsTriedAgainPreOperational) {
   }
 }
 
+TEST(PdoChange, OfAnUnknownDriveThatIsEnergisedIsNotStoppedForIt) {
+  PdoWorld world(PdoWorld::profile_of("dm"), 1);
+  world.client_profile = nullptr;
+  auto quiet = world.session({});
+  for (const std::uint16_t word : {0x06, 0x07, 0x0F}) {
+    ASSERT_TRUE(quiet.download(1, {0x6040, 0}, store_le(word, 2)));
+    (void)quiet.wait([] { return false; }, quiet.now() + std::chrono::milliseconds(200));
+  }
+  auto pdo = world.pdo("TPDO2");
+  pdo.entries = {entry(0x60640020)};
+  const auto outcome = world.change({pdo}, {.refused = 1});
+  ASSERT_TRUE(outcome.failure);
+  EXPECT_TRUE(outcome.rolled_back);
+  for (const auto& frame : world.sent) EXPECT_FALSE(frame.starts_with("000#")) << frame;
+  EXPECT_EQ(world.drive().nmt_state(), NmtState::operational);
+  EXPECT_EQ(world.drive().power_state(), drive::DriveState::operation_enabled);
+}
+
 TEST(PdoChange, OfAnUnknownDriveThatKeepsItsCobIdIsTriedAgainWithout) {
   auto profile = PdoWorld::profile_of("ts");
   profile.dictionary.find({0x1801, 1})->access = od::Access::ro;
