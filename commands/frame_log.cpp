@@ -14,6 +14,8 @@ using report::Value;
 
 /// Columns of the frame itself in a line: `601#4041600000000000`.
 constexpr std::size_t kFrameWidth = 21;
+/// Columns of the seconds before the point.
+constexpr std::size_t kSecondsWidth = 4;
 
 double seconds(Duration time) { return std::chrono::duration<double>(time).count(); }
 
@@ -58,9 +60,14 @@ FrameLog::FrameLog(Context& context, FrameFilter filter, bool raw)
 void FrameLog::begin_line(Duration time) {
   const auto since = (time - begin_.value_or(time)).count();
   line_.clear();
-  append_number(since / 1'000'000, 4, ' ', line_);
+  // Logs that were put together may go back behind their first line.
+  const auto size = since < 0 ? -since : since;
+  if (since < 0)
+    line_ += pad_left(fmt::format("-{}", size / 1'000'000), kSecondsWidth);
+  else
+    append_number(size / 1'000'000, kSecondsWidth, ' ', line_);
   line_ += '.';
-  append_number(since % 1'000'000, 6, '0', line_);
+  append_number(size % 1'000'000, 6, '0', line_);
   line_ += ' ';
 }
 
