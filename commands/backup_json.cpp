@@ -1,5 +1,6 @@
 #include "commands/backup_formats.hpp"
 #include "commands/field_reader.hpp"
+#include "commands/identity.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -31,19 +32,6 @@ class Checksum {
   std::uint64_t hash_ = 0xCBF2'9CE4'8422'2325U;
 };
 
-Value number_or_null(const std::optional<std::uint32_t>& number) { return number ? Value(*number) : Value(); }
-
-Record identity_record(const session::Identity& i) {
-  return {{"device_type", number_or_null(i.device_type)},
-          {"vendor_id", number_or_null(i.vendor_id)},
-          {"product_code", number_or_null(i.product_code)},
-          {"revision", number_or_null(i.revision)},
-          {"serial", number_or_null(i.serial)},
-          {"device_name", report::text_or_null(i.device_name)},
-          {"hardware_version", report::text_or_null(i.hardware_version)},
-          {"software_version", report::text_or_null(i.software_version)}};
-}
-
 Record entry_record(const drive::Profile* profile, const Backup& backup, const Backup::Entry& entry) {
   Record out{{"id", report::text_or_null(entry.id)},
              {"index", entry.object.index},
@@ -63,29 +51,11 @@ Record entry_record(const drive::Profile* profile, const Backup& backup, const B
   return out;
 }
 
-std::optional<std::uint32_t> narrow(std::optional<std::uint64_t> number) {
-  return number ? std::optional(static_cast<std::uint32_t>(*number)) : std::nullopt;
-}
-
 session::Identity read_identity(const Value& record, std::uint8_t node, FieldReader& header) {
-  session::Identity out;
-  out.node = node;
   const auto* inside = report::find(record, "identity");
-  if (inside == nullptr) {
-    header.refuse("identity");
-    return out;
-  }
-  FieldReader fields(*inside, "identity");
-  out.device_type = narrow(fields.number("device_type"));
-  out.vendor_id = narrow(fields.number("vendor_id"));
-  out.product_code = narrow(fields.number("product_code"));
-  out.revision = narrow(fields.number("revision"));
-  out.serial = narrow(fields.number("serial"));
-  out.device_name = fields.text("device_name");
-  out.hardware_version = fields.text("hardware_version");
-  out.software_version = fields.text("software_version");
-  if (fields.error()) header.refuse("identity");
-  return out;
+  const auto out = inside == nullptr ? std::nullopt : identity_of(*inside, node);
+  if (!out) header.refuse("identity");
+  return out.value_or(session::Identity{});
 }
 
 Result<Backup::Entry> read_entry(const Value& record, std::uint32_t line, std::string_view file) {

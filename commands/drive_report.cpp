@@ -141,6 +141,7 @@ class Collection {
   Result<void> add_tests(std::uint8_t node, DriveReport& drive) {
     auto comm = test_communication(*context_, node, {});
     if (!comm) return tl::unexpected<Error>(comm.error());
+    comm->origin = origin_of(*context_, node);
     drive.tests.push_back(std::move(*comm));
     for (const auto& result : *earlier_)
       if (result.node == node) drive.tests.push_back(result);
@@ -173,6 +174,9 @@ report::Page::Section test_section(const Context& context, const TestResult& tes
   std::erase_if(record, [](const report::Field& field) {
     return field.key == "test" || field.key == "node" || field.key == "verdict";
   });
+  const Value origin(test.origin);
+  if (const auto* time = report::find(origin, "time"))
+    record.insert(record.begin(), {"time", *time, Show::text, say(context, "made at", "测试时间")});
   return {fmt::format("{}: {}", test.test,
                       passed(test) ? say(context, "passed", "通过") : say(context, "FAILED", "未通过")),
           4,

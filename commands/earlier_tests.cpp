@@ -7,6 +7,7 @@
 #include "base/file.hpp"
 #include "base/text.hpp"
 #include "canopen/cob_id.hpp"
+#include "commands/identity.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -58,6 +59,8 @@ std::optional<TestResult> test_of(const Value& value) {
       *number > canopen::kLastNode || list == nullptr)
     return std::nullopt;
   out.node = static_cast<std::uint8_t>(*number);
+  for (const auto* key : {"time", "family", "identity"})
+    if (const auto* told = find(value, key)) out.origin.push_back({key, *told});
   for (const auto& one : *list) {
     auto criterion = criterion_of(one);
     if (!criterion) return std::nullopt;
@@ -88,6 +91,33 @@ Result<void> add_tests(const Value& document, std::string_view file, std::vector
   return {};
 }
 
+/// What says that the test was made of another drive than this one; empty when nothing does, nothing when it
+/// does not tell.
+std::optional<std::string> otherness(const Context& context, const TestResult& test,
+                                     const session::Identity& drive) {
+  const Value origin(test.origin);
+  const auto family = text(find(origin, "family"));
+  if (!family.empty() && family != context.profile->family) return fmt::format("it was of {}", family);
+  const auto* record = find(origin, "identity");
+  const auto identity = record == nullptr ? std::nullopt : identity_of(*record, test.node);
+  if (!identity || record->is_null()) return std::nullopt;
+  auto out = other_kind(*identity, drive);
+  if (out.empty() && identity->serial && drive.serial && identity->serial != drive.serial)
+    out = "its serial number (1018h:04)";
+  return out.empty() ? out : out + " differs";
+}
+
+Error other_drive(const TestResult& test, const std::string& what) {
+  Error error;
+  error.code = Errc::refused;
+  error.node = test.node;
+  const auto time = text(find(Value(test.origin), "time"));
+  error.message = fmt::format("node {}: the test {}{} was made of another drive: {}", test.node, test.test,
+                              time.empty() ? "" : " of " + time, what);
+  error.hint = "leave this --tests out, or test the drive that is there now";
+  return error;
+}
+
 }  // namespace
 
 Result<std::vector<TestResult>> read_tests(const std::filesystem::path& file) {
@@ -109,6 +139,27 @@ Result<std::vector<TestResult>> read_tests(const std::filesystem::path& file) {
   }
   if (out.empty()) return no_tests(file.string());
   return out;
+}
+
+Result<void> check_tested(Context& context, const std::vector<TestResult>& tests) {
+  std::vector<std::uint8_t> nodes;
+  for (const auto node : context.nodes)
+    if (std::any_of(tests.begin(), tests.end(), [&](const TestResult& test) { return test.node == node; }))
+      nodes.push_back(node);
+  if (nodes.empty()) return {};
+  const auto found = session::scan(*context.session, nodes);
+  if (!found) return tl::unexpected<Error>(found.error());
+  for (const auto& drive : *found)
+    for (const auto& test : tests) {
+      if (test.node != drive.node) continue;
+      const auto what = otherness(context, test, drive);
+      if (!what)
+        context.notices.push_back(fmt::format("node {}: the test {} does not tell of which drive it was made",
+                                              test.node, test.test));
+      else if (!what->empty())
+        return fail(other_drive(test, *what));
+    }
+  return {};
 }
 
 }  // namespace servoctl::commands

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "base/result.hpp"
+#include "commands/command.hpp"
 #include "report/verdict.hpp"
 
 namespace servoctl::commands {
@@ -11,5 +11,10 @@ namespace servoctl::commands {
 /// The results in a file that `test … --json` wrote: one document, or several, one a line. Errc::file when it
 /// holds something else.
 Result<std::vector<report::TestResult>> read_tests(const std::filesystem::path& file);
+
+/// Holds tests of nodes of the context against the drives that are there now. Errc::refused where one was
+/// made of another drive or family; a notice where it does not tell. A node that does not answer is left out.
+/// Errc::bus or interrupted.
+Result<void> check_tested(Context& context, const std::vector<report::TestResult>& tests);
 
 }  // namespace servoctl::commands

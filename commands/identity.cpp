@@ -1,6 +1,9 @@
 #include "commands/identity.hpp"
 
 #include <optional>
+#include <utility>
+
+#include "commands/field_reader.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -15,6 +18,12 @@ Value guess_records(std::span<const session::Guess> guesses) {
   for (const auto& guess : guesses)
     out.emplace_back(report::Record{{"family", guess.family}, {"certain", guess.certain}});
   return out;
+}
+
+Value number_or_null(const std::optional<std::uint32_t>& number) { return number ? Value(*number) : Value(); }
+
+std::optional<std::uint32_t> narrow(std::optional<std::uint64_t> number) {
+  return number ? std::optional(static_cast<std::uint32_t>(*number)) : std::nullopt;
 }
 
 }  // namespace
@@ -55,6 +64,40 @@ report::Table identity_table(std::span<const session::Identity> nodes,
                           report::text_or_null(guess_text(guesses)), guess_records(guesses)});
   }
   return table;
+}
+
+report::Record identity_record(const session::Identity& i) {
+  return {{"device_type", number_or_null(i.device_type)},
+          {"vendor_id", number_or_null(i.vendor_id)},
+          {"product_code", number_or_null(i.product_code)},
+          {"revision", number_or_null(i.revision)},
+          {"serial", number_or_null(i.serial)},
+          {"device_name", report::text_or_null(i.device_name)},
+          {"hardware_version", report::text_or_null(i.hardware_version)},
+          {"software_version", report::text_or_null(i.software_version)}};
+}
+
+std::optional<session::Identity> identity_of(const Value& record, std::uint8_t node) {
+  session::Identity out;
+  out.node = node;
+  FieldReader fields(record, "identity");
+  out.device_type = narrow(fields.number("device_type"));
+  out.vendor_id = narrow(fields.number("vendor_id"));
+  out.product_code = narrow(fields.number("product_code"));
+  out.revision = narrow(fields.number("revision"));
+  out.serial = narrow(fields.number("serial"));
+  out.device_name = fields.text("device_name");
+  out.hardware_version = fields.text("hardware_version");
+  out.software_version = fields.text("software_version");
+  return fields.error() ? std::nullopt : std::optional(std::move(out));
+}
+
+std::string other_kind(const session::Identity& one, const session::Identity& other) {
+  const auto differ = [](const auto& a, const auto& b) { return a && b && *a != *b; };
+  if (differ(one.device_type, other.device_type)) return "its device type (1000h)";
+  if (differ(one.vendor_id, other.vendor_id)) return "its vendor (1018h:01)";
+  if (differ(one.product_code, other.product_code)) return "its product code (1018h:02)";
+  return {};
 }
 
 }  // namespace servoctl::commands

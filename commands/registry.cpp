@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "commands/output_form.hpp"
+
 namespace servoctl::commands {
 
 extern const Command kScan;
@@ -73,7 +75,6 @@ extern const Command kCompletion;
 namespace {
 
 constexpr std::string_view kLanguages[] = {"en", "zh"};
-constexpr std::string_view kFormats[] = {"text", "json", "jsonl"};
 
 constexpr Parameter kGlobal[] = {
     {.name = "--bus",
@@ -96,7 +97,7 @@ constexpr Parameter kGlobal[] = {
     {.name = "--output",
      .help = "text, json, or jsonl for one document a sample",
      .kind = Kind::choice,
-     .choices = kFormats,
+     .choices = kOutputForms,
      .short_name = "-o"},
     {.name = "--lang",
      .help = "language of names: en or zh (default $SERVOCTL_LANG)",

@@ -4,6 +4,7 @@
 #include "base/text.hpp"
 #include "commands/drive_report.hpp"
 #include "commands/earlier_tests.hpp"
+#include "commands/output_form.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -11,7 +12,11 @@ namespace {
 using report::Value;
 
 constexpr Parameter kParameters[] = {
-    {.name = "file", .help = "FILE.html, or FILE.json for programs", .kind = Kind::file, .required = true},
+    {.name = "file", .help = "FILE.html, or FILE.json for programs", .kind = Kind::file},
+    {.name = "--output",
+     .help = "the file as well; or the form of the answer: text, json, jsonl",
+     .kind = Kind::file,
+     .short_name = "-o"},
     {.name = "--title", .help = "what stands above it: the machine, the axis", .kind = Kind::text},
     {.name = "--tests",
      .help = "results of earlier tests (test … --json >FILE); may be repeated",
@@ -29,8 +34,22 @@ Result<Form> form_of(const std::filesystem::path& file) {
               "it ends in .html for people or in .json for programs");
 }
 
+/// `report FILE` and `report -o FILE` are the same.
+Result<std::filesystem::path> file_of(const Arguments& arguments) {
+  const auto output = arguments.text("--output");
+  const bool named = arguments.has("--output") && !is_output_form(output);
+  if (named && arguments.has("file"))
+    return fail(Errc::usage,
+                fmt::format("'{}' and '{}': one file at a time", arguments.text("file"), output));
+  if (!named && !arguments.has("file"))
+    return fail(Errc::usage, "which file?", "`report FILE.html` for people, `report FILE.json` for programs");
+  return std::filesystem::path(named ? output : arguments.text("file"));
+}
+
 Result<Value> run(Context& context, const Arguments& arguments) {
-  const std::filesystem::path file(arguments.text("file"));
+  const auto named = file_of(arguments);
+  if (!named) return tl::unexpected<Error>(named.error());
+  const auto& file = *named;
   const auto form = form_of(file);
   if (!form) return tl::unexpected<Error>(form.error());
   std::vector<report::TestResult> earlier;
@@ -43,6 +62,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
     if (std::find(context.nodes.begin(), context.nodes.end(), result.node) == context.nodes.end())
       context.notices.push_back(fmt::format(
           "the test {} of node {} is not in the report: -n does not name it", result.test, result.node));
+  if (const auto same = check_tested(context, earlier); !same) return tl::unexpected<Error>(same.error());
   const auto made = make_report(context, std::string(arguments.text("--title")), earlier);
   if (!made) return tl::unexpected<Error>(made.error());
   const auto text = *form == Form::html ? report_page(context, *made) : report_json(context, *made);
@@ -63,7 +83,8 @@ const Command kReport{
     .details =
         "Identity and firmware, state, faults and their history, settings that differ from the factory's, "
         "PDOs, who else is on the bus, and a test of the communication; with --tests also the results and "
-        "plots of tests made before. The page needs no network and prints on A4; --lang zh makes it Chinese. "
+        "plots of tests made before, refused where they are of another drive. The page needs no network and "
+        "prints on A4; --lang zh makes it Chinese. "
         "Moves nothing and changes nothing. The file is written whole or not at all; exit code 1 when a test "
         "in it failed.",
     .parameters = kParameters,

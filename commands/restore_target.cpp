@@ -5,24 +5,12 @@
 
 #include "commands/change.hpp"
 #include "commands/comparison.hpp"
+#include "commands/identity.hpp"
 #include "drive/cia402.hpp"
 #include "drive/drive_settings.hpp"
 #include "drive/standard_objects.hpp"
 
 namespace servoctl::commands {
-namespace {
-
-/// What of the identity speaks against the backup being this drive's, or one of its kind.
-std::string misfit(const session::Identity& file, const session::Identity& drive) {
-  const auto other = [](const auto& a, const auto& b) { return a && b && *a != *b; };
-  if (other(file.device_type, drive.device_type)) return "its device type (1000h)";
-  if (other(file.vendor_id, drive.vendor_id)) return "its vendor (1018h:01)";
-  if (other(file.product_code, drive.product_code)) return "its product code (1018h:02)";
-  return {};
-}
-
-}  // namespace
-
 Result<void> RestoreTarget::prepare() {
   for (const auto step :
        {&RestoreTarget::check_identity, &RestoreTarget::choose_values, &RestoreTarget::read_present})
@@ -44,7 +32,7 @@ Result<void> RestoreTarget::check_identity() {
     return fail(Errc::timeout, fmt::format("node {} does not answer", node_), "`scan` shows who does");
   identity_ = found->front();
   const auto& drive = identity_;
-  if (const auto what = misfit(backup_->identity, drive); !what.empty() && !force)
+  if (const auto what = other_kind(backup_->identity, drive); !what.empty() && !force)
     return fail(Errc::refused,
                 fmt::format("node {} is another drive than that of {}: {} differs", node_, title_, what),
                 "--force restores what fits all the same");

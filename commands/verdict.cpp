@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "base/calendar.hpp"
 #include "base/file.hpp"
 #include "base/number.hpp"
+#include "commands/identity.hpp"
 #include "report/line.hpp"
 
 namespace servoctl::commands {
@@ -77,17 +79,27 @@ report::Record verdict_record(const Context& context, const TestResult& result, 
       {"node", result.node},
       {"verdict", verdict_text(context, passed(result) ? Verdict::passed : Verdict::failed), Show::text},
       {"passed", passed(result), Show::json},
-      {"seconds", result.seconds, Show::json},
-      {"criteria", criteria_table(context, result)}};
+      {"seconds", result.seconds, Show::json}};
+  for (const auto& field : result.origin) out.push_back({field.key, field.value, Show::json});
+  out.push_back({"criteria", criteria_table(context, result)});
   for (const auto& figure : result.figures) out.push_back(figure);
   if (!result.samples.series.empty()) out.push_back({"samples", result.samples, plot});
   return out;
 }
 
-Value verdicts(Context& context, const Arguments& arguments, const std::vector<TestResult>& results) {
+report::Record origin_of(const Context& context, std::uint8_t node) {
+  const auto found = session::scan(*context.session, std::span(&node, 1));
+  const bool known = found && !found->empty();
+  return {{"time", utc_now_text()},
+          {"family", context.profile != nullptr ? Value(context.profile->family) : Value()},
+          {"identity", known ? Value(identity_record(found->front())) : Value()}};
+}
+
+Value verdicts(Context& context, const Arguments& arguments, std::vector<TestResult> results) {
   const auto samples = arguments.has("--plot") ? Show::everywhere : Show::json;
   report::List out;
-  for (const auto& result : results) {
+  for (auto& result : results) {
+    result.origin = origin_of(context, result.node);
     if (!passed(result)) context.errors.push_back(failure(result));
     out.emplace_back(verdict_record(context, result, samples));
   }

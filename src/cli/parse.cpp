@@ -51,7 +51,8 @@ class Parser {
     app_.set_help_flag();
     app_.allow_extras();
     for (const auto& parameter : command.parameters) bind(parameter);
-    for (const auto& parameter : commands::global_options()) bind(parameter);
+    for (const auto& parameter : commands::global_options())
+      if (!has_own(parameter)) bind(parameter);
   }
 
   Result<commands::Arguments> parse(std::vector<std::string> words) {
@@ -73,6 +74,12 @@ class Parser {
     CLI::Option* option;
     std::vector<std::string>* values;
   };
+
+  /// A command's own option goes before the one every command has.
+  bool has_own(const Parameter& global) const {
+    return std::any_of(command_->parameters.begin(), command_->parameters.end(),
+                       [&](const Parameter& parameter) { return parameter.name == global.name; });
+  }
 
   void bind(const Parameter& parameter) {
     const auto names = parameter.short_name.empty()

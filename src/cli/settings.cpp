@@ -8,6 +8,7 @@
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "canopen/cob_id.hpp"
+#include "commands/output_form.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -55,9 +56,10 @@ Result<Settings> apply_options(Settings base, const commands::Arguments& argumen
                   fmt::format("--retries: '{}' is no number of 0 to 100", arguments.text("--retries")));
     base.retries = static_cast<std::uint32_t>(*retries);
   }
-  if (arguments.has("--output")) {
-    base.json = arguments.text("--output") != "text";
-    base.samples = arguments.text("--output") == "jsonl";
+  // Where a command writes a file, its own --output may name that.
+  if (const auto form = arguments.text("--output"); commands::is_output_form(form)) {
+    base.json = form != "text";
+    base.samples = form == "jsonl";
   }
   if (arguments.has("--json")) base.json = true;
   if (arguments.has("--lang")) base.chinese = arguments.text("--lang") == "zh";

@@ -26,7 +26,7 @@ bool wants_json(const std::vector<std::string>& words) {
         words[i] == "-ojson")
       return true;
     if ((words[i] == "-o" || words[i] == "--output") && i + 1 < words.size() &&
-        words[i + 1].starts_with("json"))
+        (words[i + 1] == "json" || words[i + 1] == "jsonl"))
       return true;
   }
   return false;

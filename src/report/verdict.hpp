@@ -42,6 +42,7 @@ std::string in_words(const Criterion& criterion);
 struct TestResult {
   std::string test;  ///< `comm`
   std::uint8_t node = 0;
+  Record origin = {};  ///< When it was made, of which drive; empty: not known.
   double seconds = 0;  ///< How long it took.
   std::vector<Criterion> criteria;
   Record figures = {};  ///< What was measured beside the criteria.
