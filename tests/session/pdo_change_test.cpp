@@ -197,7 +197,7 @@ TEST(PdoChange, OfAnUnknownDriveThatIsEnergisedIsNotStoppedForIt) {
   PdoWorld world(PdoWorld::profile_of("dm"), 1);
   world.client_profile = nullptr;
   auto quiet = world.session({});
-  for (const std::uint16_t word : {0x06, 0x07, 0x0F}) {
+  for (const unsigned word : {0x06U, 0x07U, 0x0FU}) {
     ASSERT_TRUE(quiet.download(1, {0x6040, 0}, store_le(word, 2)));
     (void)quiet.wait([] { return false; }, quiet.now() + std::chrono::milliseconds(200));
   }
