@@ -146,7 +146,8 @@ Result<void> send(Context& context, const ReplayPlan& plan, const ReplayDrives& 
   ReplayRun replay(session);
   const auto done = replay.run(plan.frames, speed);
   if (!done) {
-    stop_left_energised(context);
+    // Over a lost bus nothing can be stopped: the front end says so, and tries when it is back.
+    if (done.error().code != Errc::bus) stop_left_energised(context);
     auto error = done.error();
     error.message =
         fmt::format("{}; {} of {} frames were sent", error.message, replay.sent(), plan.frames.size());

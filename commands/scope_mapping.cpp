@@ -101,12 +101,30 @@ Result<void> ScopeMapping::begin(std::span<const std::string> objects, Duration 
   return done;
 }
 
-/// As it is now: on many drives count 0 has cleared the entries, on others it has not.
-Result<void> ScopeMapping::put_back() {
-  session::Values wanted;
+session::Values ScopeMapping::values_before() const {
+  session::Values out;
   for (const auto& [object, data] : before_)
     if (object.index == pdo_.communication_index() || object.index == pdo_.mapping_index())
-      wanted.emplace(object, data);
+      out.emplace(object, data);
+  return out;
+}
+
+/// What does not hold the value from before, or does not tell.
+std::string ScopeMapping::astray() const {
+  std::vector<session::SdoRequest> questions;
+  const auto wanted = values_before();
+  for (const auto& value : wanted) questions.push_back({.node = node_, .object = value.first});
+  const auto answers = context_->session->transfer(questions);
+  std::string out;
+  for (std::size_t i = 0; i < answers.size(); ++i)
+    if (const auto object = questions[i].object; !answers[i] || *answers[i] != wanted.at(object))
+      out += (out.empty() ? "" : ", ") + to_string(object);
+  return out;
+}
+
+/// As it is now: on many drives count 0 has cleared the entries, on others it has not.
+Result<void> ScopeMapping::put_back() {
+  const auto wanted = values_before();
   session::Values present;
   if (const auto read = session::complete(*context_->session, node_, present, wanted); !read) return read;
   const auto plan = session::plan_writes(context_->profile, present, wanted);
@@ -122,8 +140,9 @@ void ScopeMapping::end() {
   if (done) return;
   auto error = done.error();
   error.node = node_;
-  error.message = fmt::format("node {}: {} could not be put back as it was: {}", node_,
-                              canopen::name(pdo_.direction, pdo_.number), error.message);
+  error.message =
+      fmt::format("node {}: {} could not be put back as it was: {}; not as before, or not known: {}", node_,
+                  canopen::name(pdo_.direction, pdo_.number), error.message, astray());
   error.hint = fmt::format("`pdo show -n {}` shows it; a restart of the drive brings its stored one", node_);
   context_->errors.push_back(std::move(error));
 }

@@ -36,6 +36,8 @@ class ScopeMapping {
   Result<void> change(const session::Values& present, const session::Values& wanted,
                       const session::RestoreOptions& options);
   Result<void> put_back();
+  session::Values values_before() const;
+  std::string astray() const;
 
   Context* context_;
   std::uint8_t node_;

@@ -117,7 +117,8 @@ TEST_F(Sampling, WhatCouldNotBePutBackIsAnError) {
   bus->on_receive = [&](can::Frame&) { drive().misbehaviour().silent |= session->now() > end; };
   (void)run("scope", {{"object", "0x6064"}, {"--map", "true"}, {"--for", "100ms"}});
   const bool told = std::any_of(context.errors.begin(), context.errors.end(), [](const Error& error) {
-    return error.message.find("TPDO2 could not be put back") != std::string::npos;
+    return error.message.find("TPDO2 could not be put back") != std::string::npos &&
+           error.message.find("0x1A01:1") != std::string::npos;
   });
   EXPECT_TRUE(told);
 }
