@@ -58,5 +58,6 @@ inline constexpr ObjectAddress kHomeOffset{0x607C, 0};
 inline constexpr ObjectAddress kHomingMethod{0x6098, 0};
 inline constexpr ObjectAddress kHomingSpeedSwitch{0x6099, 1};
 inline constexpr ObjectAddress kHomingSpeedZero{0x6099, 2};
+inline constexpr ObjectAddress kHomingAcceleration{0x609A, 0};
 
 }  // namespace servoctl::objects

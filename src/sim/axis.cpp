@@ -10,7 +10,6 @@ namespace servoctl::sim {
 namespace {
 
 constexpr double kTick = 0.001;
-constexpr Duration kHomingTime = std::chrono::milliseconds(300);
 /// Speed that full rated torque gives the unloaded motor in one second.
 constexpr double kTurnsPerSecondOfRatedTorque = 10;
 
@@ -28,8 +27,10 @@ constexpr std::int8_t kInterpolatedMode = 7;  ///< CiA 402-2.
 
 void Axis::reset(TimePoint now) {
   const auto faults = faults_;
+  const auto track = track_;
   *this = Axis(*profile_, *values_);
   faults_ = faults;
+  track_ = track;
   time_ = now;
 }
 
@@ -53,7 +54,7 @@ void Axis::on_controlword(std::uint16_t controlword, bool enabled, TimePoint now
     target_.reset();
     waiting_.clear();
     acknowledged_ = false;
-    homing_ends_.reset();
+    homing_.stop();
     return;
   }
   if (kind() == Kind::position && profile_->rules.motion.handshake) {
@@ -61,11 +62,11 @@ void Axis::on_controlword(std::uint16_t controlword, bool enabled, TimePoint now
     if (rising) take_setpoint((controlword & kRelative) != 0, (controlword & kAtOnce) != 0);
   }
   if (kind() == Kind::homing) {
-    if (rising) start_homing(now);
+    if (rising) start_homing();
     // Where the start word is followed by one without bit 4, its fall does not end the run.
     const auto& start = profile_->rules.motion.start_homing;
     const bool may_fall = !start.empty() && (start.back() & kNewSetpoint) == 0;
-    if (low && !may_fall) homing_ends_.reset();
+    if (low && !may_fall) homing_.stop();
   }
 }
 
@@ -88,16 +89,30 @@ bool Axis::is_full() const {
   return waiting_.size() + (target_ ? 1U : 0U) >= most;
 }
 
-void Axis::start_homing(TimePoint now) {
+void Axis::start_homing() {
   const auto& nothing = profile_->rules.motion.no_homing;
   const auto method = static_cast<std::int8_t>(values_->number(objects::kHomingMethod));
   if (std::find(nothing.begin(), nothing.end(), method) != nothing.end()) return;
   was_homed_ = homed_;
   homed_ = false;
-  homing_failed_ = false;
-  homing_begins_ = time_ + faults_.late_start;
-  homing_moves_ = method != 35 && method != 37;  // They take the present position (CiA 402-2).
-  homing_ends_ = faults_.no_index ? kNever : now + faults_.late_start + kHomingTime;
+  const double seek = read(objects::kHomingSpeedSwitch) * speed_factor(objects::kHomingSpeedSwitch);
+  const double zero = read(objects::kHomingSpeedZero) * speed_factor(objects::kHomingSpeedZero);
+  const double part = ++homings_ % 3 / 2.0;  // 1/2, 1 and 0 in turn.
+  track_.shift = track_.scatter * part;
+  homing_.start(method, {seek, zero > 0 ? zero : seek}, time_ + faults_.late_start);
+}
+
+/// One step on the way home, and what that brings.
+void Axis::home(bool halted, double seconds) {
+  approach(halted ? 0 : homing_.speed(), seconds);
+  travel(seconds);
+  const auto found = homing_.look(track_, place(), velocity_ == 0, time_);
+  if (!found) return;
+  const double here = origin_ + *found * units_per_turn();
+  position_ = read(objects::kHomeOffset);
+  origin_ += position_ - here;
+  velocity_ = 0;
+  homed_ = true;
 }
 
 void Axis::advance(bool enabled, TimePoint now) {
@@ -108,19 +123,13 @@ void Axis::advance(bool enabled, TimePoint now) {
   }
   for (; time_ + std::chrono::milliseconds(1) <= now; time_ += std::chrono::milliseconds(1)) {
     if (enabled) follow_target();
-    if (!enabled || (is_steady() && !homing_ends_)) {
+    if (kind() != Kind::homing) homing_.stop();
+    if (!enabled || (is_steady() && !homing_.is_running())) {
       travel(std::chrono::duration<double>(now - time_).count());
       time_ = now;
       break;
     }
     step(kTick);
-    if (homing_ends_ && time_ >= *homing_ends_) {
-      homing_ends_.reset();
-      velocity_ = 0;
-      homing_failed_ = faults_.bad_home;
-      homed_ = !homing_failed_;
-      if (homed_) position_ = read(objects::kHomeOffset);
-    }
   }
   publish();
 }
@@ -172,12 +181,7 @@ void Axis::step(double seconds) {
       velocity_ += torque_ / 100 * kTurnsPerSecondOfRatedTorque * units_per_turn() * seconds;
       velocity_ = std::clamp(velocity_, -fastest_by_torque(), fastest_by_torque());
       break;
-    case Kind::homing:
-      approach(homing_ends_ && time_ >= homing_begins_ && !halted && homing_moves_
-                   ? read(objects::kHomingSpeedSwitch) * speed_factor(objects::kHomingSpeedSwitch)
-                   : 0,
-               seconds);
-      break;
+    case Kind::homing: return home(halted, seconds);
     case Kind::interpolated:
     case Kind::none: approach(0, seconds); break;
   }
@@ -185,14 +189,14 @@ void Axis::step(double seconds) {
 }
 
 void Axis::approach(double wanted, double seconds) {
-  const double most = ramp(objects::kProfileAcceleration) * seconds;
+  const double most = ramp() * seconds;
   velocity_ += std::clamp(wanted - velocity_, -most, most);
 }
 
 void Axis::step_position(double seconds) {
   if (!target_) return approach(0, seconds);
   const double left = *target_ - position_;
-  const double ramp_rate = ramp(objects::kProfileAcceleration);
+  const double ramp_rate = ramp();
   const double braking = std::sqrt(2 * ramp_rate * std::abs(left));
   const auto speed = speed_object();
   const double fastest = std::min(std::abs(read(speed) * speed_factor(speed)), braking);
@@ -215,11 +219,11 @@ std::uint16_t Axis::position_bits() const {
 std::uint16_t Axis::homing_bits() const {
   const auto& motion = profile_->rules.motion;
   const auto done = static_cast<std::uint16_t>(motion.homing_done & motion.homing_done_mask);
-  const bool waits = homing_ends_ && time_ < homing_begins_;
-  if (homing_ends_ && !waits) return static_cast<std::uint16_t>(~done & kModeBit);
+  const bool waits = homing_.is_waiting(time_);
+  if (homing_.is_running() && !waits) return static_cast<std::uint16_t>(~done & kModeBit);
   if (homed_ || (waits && was_homed_)) return static_cast<std::uint16_t>(done | kTargetReached);
-  if (homing_failed_) return motion.homing_error;
-  return kTargetReached;
+  const auto at_rest = velocity_ == 0 ? kTargetReached : std::uint16_t{0};
+  return static_cast<std::uint16_t>((homing_.has_failed() ? motion.homing_error : 0U) | at_rest);
 }
 
 std::uint16_t Axis::bits(bool enabled) const {
@@ -247,6 +251,13 @@ std::uint16_t Axis::bits(bool enabled) const {
 
 void Axis::publish() {
   write(objects::kPositionActual, position_);
+  const double here = place();
+  write(objects::kInternalPosition, here * per_turn(drive::Measure::pulses_per_turn));
+  std::uint32_t inputs = 0;
+  for (const auto input : {Input::negative_limit, Input::positive_limit, Input::home})
+    if (track_.is_pressed(input, here))
+      inputs |= 1U << profile_->rules.motion.inputs[static_cast<std::size_t>(input)];
+  values_->set_number(objects::kDigitalInputs, inputs);
   const double turning = faults_.stalled ? 0 : faults_.reversed ? -velocity_ : velocity_;
   write(objects::kVelocityActual, turning / speed_factor(objects::kVelocityActual));
   write(objects::kTorqueActual, torque_);

@@ -6,7 +6,9 @@
 
 #include "base/time.hpp"
 #include "drive/profile.hpp"
+#include "sim/homing.hpp"
 #include "sim/object_values.hpp"
+#include "sim/track.hpp"
 
 namespace servoctl::sim {
 
@@ -15,14 +17,12 @@ struct AxisFaults {
   bool stalled = false;   ///< The motor cannot turn: the following error grows.
   bool reversed = false;  ///< It turns the other way.
   double lag = 0;         ///< Seconds by which it is behind its command.
-  bool no_index = false;  ///< Homing looks for ever: the switch or the index pulse never comes.
-  bool bad_home = false;  ///< Homing ends in an error: the switch is stuck.
   Duration late_start{};  ///< Homing begins so long after it was told, and "homed" stands until then.
 };
 
 /// The moving part of a simulated drive: profile position with its set-points, profile velocity, torque and
-/// homing, in the units of the family's own objects. It moves by trapezoid ramps and without load; homing
-/// finds its reference after a fixed time. Positions are in units of 6064h, speeds in those units a second.
+/// homing, in the units of the family's own objects. It moves by trapezoid ramps and without load, past the
+/// switches of its track. Positions are in units of 6064h, speeds in those units a second.
 class Axis {
  public:
   Axis(const drive::Profile& profile, ObjectValues& values) : profile_(&profile), values_(&values) {}
@@ -41,6 +41,7 @@ class Axis {
   /// The following error is greater than 6065h, where there is one that is not zero.
   bool is_out_of_window() const;
   AxisFaults& faults() { return faults_; }
+  Track& track() { return track_; }
 
  private:
   enum class Kind : std::uint8_t { none, position, velocity, torque, homing, interpolated };
@@ -48,7 +49,8 @@ class Axis {
   Kind kind() const;
   bool is_full() const;
   void take_setpoint(bool relative, bool at_once);
-  void start_homing(TimePoint now);
+  void start_homing();
+  void home(bool halted, double seconds);
   bool is_steady() const;
   void step(double seconds);
   void approach(double wanted_velocity, double seconds);
@@ -58,11 +60,15 @@ class Axis {
   void publish();
   void write(ObjectAddress object, double value);
   double read(ObjectAddress object) const;
+  /// Where the axis stands on its track.
+  double place() const { return (position_ - origin_) / units_per_turn(); }
+  double per_turn(drive::Measure measure) const;
   double units_per_turn() const;
   double fastest_by_torque() const;                 ///< What the family's limits leave in torque mode.
   ObjectAddress speed_object() const;               ///< Holds the speed of a move to a position.
   double speed_factor(ObjectAddress object) const;  ///< One of the object's speed unit in units a second.
   double ramp(ObjectAddress object) const;          ///< Units a second a second.
+  double ramp() const;                              ///< The one of the present mode.
   std::uint16_t position_bits() const;
   std::uint16_t homing_bits() const;
 
@@ -71,6 +77,7 @@ class Axis {
   TimePoint time_{};
   std::uint16_t controlword_ = 0;
   double position_ = 0;
+  double origin_ = 0;  ///< 6064h where the axis stood at power-on.
   double velocity_ = 0;
   double torque_ = 0;
   std::optional<double> target_;
@@ -78,13 +85,12 @@ class Axis {
   bool acknowledged_ = false;  ///< Bit 12 in profile position.
   bool at_once_ = false;       ///< The present set-point gives way to a new one at once.
   bool homed_ = false;
-  bool homing_failed_ = false;
-  bool homing_moves_ = true;
   bool was_homed_ = false;  ///< Before the present run.
-  TimePoint homing_begins_{};
-  std::optional<TimePoint> homing_ends_;
+  Homing homing_;
+  unsigned homings_ = 0;
   double behind_ = 0;  ///< Demand minus actual position.
   AxisFaults faults_;
+  Track track_;
 };
 
 }  // namespace servoctl::sim

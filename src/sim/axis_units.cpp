@@ -11,7 +11,7 @@ namespace servoctl::sim {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-/// Where the manual does not tell the counts of a turn.
+/// Where the manual does not tell the counts of a turn, or the factory has left them at one.
 constexpr double kAssumedTurn = 10000;
 /// Speed that ramps given as a time lead to.
 constexpr double kRampSpeedRpm = 3000;
@@ -55,7 +55,11 @@ ObjectAddress Axis::speed_object() const {
 
 double Axis::units_per_turn() const {
   if (drive::meaning(drive::target_at(profile_, objects::kPositionActual), 0).unit == "rad") return 2 * kPi;
-  const auto rule = profile_->rules.units.find(drive::Measure::increments_per_turn);
+  return per_turn(drive::Measure::increments_per_turn);
+}
+
+double Axis::per_turn(drive::Measure measure) const {
+  const auto rule = profile_->rules.units.find(measure);
   if (rule == profile_->rules.units.end()) return kAssumedTurn;
   double out = 1;
   const auto factor = [&](const drive::Quotient::Factor& f) {
@@ -64,7 +68,7 @@ double Axis::units_per_turn() const {
   };
   for (const auto& f : rule->second.multiply) out *= factor(f);
   for (const auto& f : rule->second.divide) out /= factor(f);
-  return std::isfinite(out) && out > 0 ? out : kAssumedTurn;
+  return std::isfinite(out) && out > 1 ? out : kAssumedTurn;
 }
 
 double Axis::speed_factor(ObjectAddress object) const {
@@ -78,6 +82,12 @@ double Axis::ramp(ObjectAddress object) const {
   if (value <= 0) return kNoRamp;
   if (unit == "ms") return kRampSpeedRpm / 60 * units_per_turn() / (value / 1000);
   return unit == "rpm/s" ? value * units_per_turn() / 60 : value;
+}
+
+double Axis::ramp() const {
+  const bool own =
+      kind() == Kind::homing && profile_->dictionary.find(objects::kHomingAcceleration) != nullptr;
+  return ramp(own ? objects::kHomingAcceleration : objects::kProfileAcceleration);
 }
 
 }  // namespace servoctl::sim

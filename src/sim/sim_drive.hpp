@@ -56,6 +56,7 @@ class SimDrive final : public Device, private canopen::ObjectStore {
   void fall_silent_at(TimePoint time) { planned_silence_ = time; }
   Misbehaviour& misbehaviour() { return misbehaviour_; }
   AxisFaults& axis_faults() { return axis_.faults(); }
+  Track& track() { return axis_.track(); }
 
   const drive::Profile& profile() const { return *profile_; }
   std::uint8_t node() const { return node_; }

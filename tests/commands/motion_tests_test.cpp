@@ -125,7 +125,7 @@ TEST_F(MotionTests, HomeFailsWhereItEndsSomewhereElseEachTime) {
 
 TEST_F(MotionTests, HomeStopsAtTheFirstThatFails) {
   build("sv2@1", "sv2");
-  drive().axis_faults().bad_home = true;
+  drive().track().negative_limit.stuck = true;
   const auto result = run("test home", {{"--limit", "3000rpm"}});
   EXPECT_EQ(criterion(result, "found"), "failed 0");
   EXPECT_TRUE(criterion(result, "completed").starts_with("failed"));

@@ -61,16 +61,16 @@ TEST_F(MotionTrouble, LeavingTheWindowStopsTheMotion) {
 }
 
 TEST_F(MotionTrouble, AMissingIndexPulseEndsHomingInItsTime) {
-  bench.drive().axis_faults().no_index = true;
+  bench.drive().track().no_index = true;
   const auto done = bench.home(home_by("1", 3s));
   expect_stopped(done, "found no home");
 }
 
 TEST_F(MotionTrouble, AStuckSwitchEndsHomingWithItsError) {
-  bench.drive().axis_faults().bad_home = true;
+  bench.drive().track().negative_limit.stuck = true;
   expect_stopped(bench.home(home_by("1")), "with an error");
   // The error bit of that run does not end the next one before it begins.
-  bench.drive().axis_faults().bad_home = false;
+  bench.drive().track().negative_limit.stuck.reset();
   const auto again = bench.home(home_by("1"));
   EXPECT_TRUE(again.outcome) << again.outcome.error().message;
 }

@@ -5,7 +5,6 @@
 #include "base/csv.hpp"
 #include "base/file.hpp"
 #include "base/number.hpp"
-#include "drive/quantity.hpp"
 #include "sim_support.hpp"
 
 namespace servoctl::sim {
@@ -39,36 +38,8 @@ std::vector<Row> rows_of(const std::string& family, const std::string& mode, uns
   return out;
 }
 
-class ManualSteps : public CellTest {
+class ManualSteps : public DrivenTest {
  protected:
-  void boot(const std::string& family) {
-    family_ = family;
-    build(family + "@1");
-    ASSERT_EQ(next(100ms), "701#00");
-  }
-  const drive::Profile& profile() const { return *cell_.profiles.front(); }
-
-  std::string sdo(std::string_view frame) {
-    auto answer = ask(frame);
-    while (answer.substr(0, 3) == "081") answer = next();
-    return answer;
-  }
-  void write(ObjectAddress object, std::string_view value) {
-    const auto target = drive::target_at(&profile(), object);
-    const auto data = od::encode(drive::meaning(target, 1).type,
-                                 drive::parse_quantity(drive::meaning(target, 1), value).value())
-                          .value();
-    const auto command = data.size() == 1 ? 0x2F : data.size() == 2 ? 0x2B : 0x23;
-    char frame[40];
-    std::snprintf(frame, sizeof frame, "601#%02X%02X%02X%02X%08X", unsigned(command), object.index & 0xFFU,
-                  object.index >> 8U, unsigned{object.sub},
-                  static_cast<unsigned>(__builtin_bswap32(static_cast<std::uint32_t>(load_le(data)))));
-    EXPECT_EQ(sdo(frame).substr(0, 6), "581#60") << frame;
-  }
-  unsigned status() {
-    const auto answer = sdo("601#4041600000000000");
-    return static_cast<unsigned>(std::stoul(answer.substr(14, 2) + answer.substr(12, 2), nullptr, 16));
-  }
   bool reaches(const Row& row) {
     for (int i = 0; i < 5000; ++i) {
       if ((status() & row.mask) == (row.statusword & row.mask)) return true;
@@ -102,7 +73,6 @@ class ManualSteps : public CellTest {
                                 << row.statusword << " under " << row.mask;
     }
   }
-  std::string family_;
   int moves_ = 0;
 };
 
@@ -157,11 +127,10 @@ class HomingBits : public ManualSteps {
  protected:
   void home(const std::string& family, unsigned running, unsigned done) {
     boot(family);
-    write({0x6060, 0}, "6");
-    for (const auto* word : {"6", "7", "15", "31"}) write({0x6040, 0}, word);
+    enable("6");
+    write({0x6040, 0}, "31");
     EXPECT_EQ(status() & 0x1400U, running);
-    const auto end = bus.now() + 1s;
-    while (bus.now() < end) (void)next(end - bus.now());
+    wait(10s);
     EXPECT_EQ(status() & 0x1400U, done);
   }
 };

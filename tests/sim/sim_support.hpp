@@ -5,6 +5,8 @@
 #include <memory>
 #include <string>
 
+#include "base/bytes.hpp"
+#include "drive/quantity.hpp"
 #include "sim/cell.hpp"
 
 namespace servoctl::sim {
@@ -44,6 +46,56 @@ class CellTest : public testing::Test {
 
   Cell cell_;
   SimBus bus{SimBus::Clock::virtual_time};
+};
+
+/// One drive that is told what to do by SDO.
+class DrivenTest : public CellTest {
+ protected:
+  void boot(const std::string& family) {
+    family_ = family;
+    build(family + "@1");
+    ASSERT_EQ(next(std::chrono::milliseconds(100)), "701#00");
+  }
+  const drive::Profile& profile() const { return *cell_.profiles.front(); }
+
+  /// The answer; what the drive has to say beside it is kept.
+  std::string sdo(std::string_view frame) {
+    auto answer = ask(frame);
+    for (; answer.substr(0, 4) == "081#"; answer = next()) emergency_ = answer;
+    return answer;
+  }
+  void write(ObjectAddress object, std::string_view value) {
+    const auto meaning = drive::meaning(drive::target_at(&profile(), object), 1);
+    const auto data = od::encode(meaning.type, drive::parse_quantity(meaning, value).value()).value();
+    const auto command = data.size() == 1 ? 0x2F : data.size() == 2 ? 0x2B : 0x23;
+    char frame[40];
+    std::snprintf(frame, sizeof frame, "601#%02X%02X%02X%02X%08X", unsigned(command), object.index & 0xFFU,
+                  object.index >> 8U, unsigned{object.sub},
+                  static_cast<unsigned>(__builtin_bswap32(static_cast<std::uint32_t>(load_le(data)))));
+    EXPECT_EQ(sdo(frame).substr(0, 6), "581#60") << frame;
+  }
+  std::int32_t read(ObjectAddress object) {
+    char frame[40];
+    std::snprintf(frame, sizeof frame, "601#40%02X%02X%02X00000000", object.index & 0xFFU, object.index >> 8U,
+                  unsigned{object.sub});
+    const auto data = parse_hex_bytes(sdo(frame).substr(12)).value();
+    const auto type = profile().dictionary.find(object)->type;
+    const auto value = od::decode(type, std::span(data).first(od::size_of(type).value()));
+    return static_cast<std::int32_t>(od::to_double(value.value()));
+  }
+  unsigned status() { return static_cast<unsigned>(read({0x6041, 0})); }
+  void enable(std::string_view mode) {
+    write({0x6060, 0}, mode);
+    for (const auto* word : {"6", "7", "15"}) write({0x6040, 0}, word);
+  }
+  void wait(Duration time) {
+    const auto end = bus.now() + time;
+    while (bus.now() < end)
+      if (const auto frame = next(end - bus.now()); frame.substr(0, 4) == "081#") emergency_ = frame;
+  }
+
+  std::string family_;
+  std::string emergency_;  ///< The last one.
 };
 
 }  // namespace servoctl::sim

@@ -1,0 +1,155 @@
+#include "sim/homing.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace servoctl::sim {
+namespace {
+
+/// The drive gives up after it (bit 13 of the statusword).
+constexpr Duration kLongest = std::chrono::seconds(50);
+/// Methods without motion take so long.
+constexpr Duration kSettleTime = std::chrono::milliseconds(300);
+/// Methods 17 to 30 are 1 to 14 without the index pulse.
+constexpr std::int64_t kWithoutIndex = 16;
+
+/// The pictures of CiA 402-2, homing methods: switch, first direction, edge, last direction. Where a picture
+/// shows two starting sides, the second start is on the switch, or right of it (left of it in 11 to 14) with
+/// a limit switch to turn round at.
+constexpr std::array<HomingMethod, 16> kMethods{{
+    {1, Input::negative_limit, -1, +1, +1},
+    {2, Input::positive_limit, +1, -1, -1},
+    {3, Input::home, +1, -1, -1},
+    {4, Input::home, +1, -1, +1},
+    {5, Input::home, -1, +1, +1},
+    {6, Input::home, -1, +1, -1},
+    {7, Input::home, +1, -1, -1, true},
+    {8, Input::home, +1, -1, +1, true},
+    {9, Input::home, +1, +1, -1, true},
+    {10, Input::home, +1, +1, +1, true},
+    {11, Input::home, -1, +1, +1, true},
+    {12, Input::home, -1, +1, -1, true},
+    {13, Input::home, -1, -1, +1, true},
+    {14, Input::home, -1, -1, -1, true},
+    {33, {}, 0, 0, -1},
+    {34, {}, 0, 0, +1},
+}};
+
+bool stays_put(std::int64_t number) { return number == 0 || number == 35 || number == 37; }
+
+}  // namespace
+
+std::optional<HomingMethod> homing_method(std::int64_t number) {
+  const bool without_index = number > kWithoutIndex && number <= kWithoutIndex + 14;
+  const auto like = without_index ? number - kWithoutIndex : number;
+  const auto found =
+      std::find_if(kMethods.begin(), kMethods.end(), [&](const auto& m) { return m.number == like; });
+  if (found == kMethods.end()) return std::nullopt;
+  auto method = *found;
+  method.number = static_cast<std::int8_t>(number);
+  method.index = !without_index;
+  return method;
+}
+
+void Homing::start(std::int64_t method, Speeds speeds, TimePoint begins) {
+  const auto known = homing_method(method);
+  phase_ = known || stays_put(method) ? Phase::waiting : Phase::failed;
+  method_ = known.value_or(HomingMethod{});
+  speeds_ = speeds;
+  direction_ = 0;
+  turned_ = false;
+  begins_ = begins;
+}
+
+void Homing::stop() {
+  if (is_running()) phase_ = Phase::idle;
+}
+
+double Homing::speed() const {
+  switch (phase_) {
+    case Phase::seek: return direction_ * speeds_.seek;
+    case Phase::back:
+    case Phase::leave:
+    case Phase::enter:
+    case Phase::index: return direction_ * speeds_.zero;
+    default: return 0;
+  }
+}
+
+void Homing::go(Phase phase, int direction) {
+  phase_ = phase;
+  direction_ = direction;
+}
+
+void Homing::begin(const Track& track, double place) {
+  if (method_.number == 0) return go(Phase::settle, 0);
+  if (!method_.input) return seek_pulse(track, place);
+  if (track.is_pressed(*method_.input, place)) return go(Phase::leave, method_.edge);
+  go(Phase::seek, method_.seek);
+}
+
+/// On from this place to the next index pulse.
+void Homing::seek_pulse(const Track& track, double place) {
+  go(Phase::index, method_.approach);
+  const double ahead =
+      method_.approach > 0 ? std::floor(place - track.index) + 1 : std::ceil(place - track.index) - 1;
+  pulse_ = track.no_index ? method_.approach * Track::kFar : ahead + track.index;
+}
+
+/// A limit switch that is not the one it looks for stands in its way. While it brakes it is on its way back.
+bool Homing::meets_limit(const Track& track, double place) const {
+  const auto limit = Track::limit(direction_);
+  return speed() != 0 && limit != method_.input && track.is_pressed(limit, place);
+}
+
+void Homing::turn_or_fail() {
+  const bool turns = phase_ == Phase::seek && method_.turns && !turned_;
+  if (!turns) return go(Phase::failed, 0);
+  turned_ = true;
+  direction_ = -direction_;
+}
+
+std::optional<double> Homing::look(const Track& track, double place, bool stands, TimePoint now) {
+  if (!is_running() || now < begins_) return std::nullopt;
+  if (phase_ == Phase::waiting) begin(track, place);
+  if (now >= begins_ + kLongest) go(Phase::failed, 0);
+  if (meets_limit(track, place)) turn_or_fail();
+  const bool pressed = method_.input && track.is_pressed(*method_.input, place);
+  switch (phase_) {
+    case Phase::settle: return now >= begins_ + kSettleTime ? find(place) : std::nullopt;
+    case Phase::seek:
+      if (pressed) phase_ = Phase::brake;
+      return std::nullopt;
+    case Phase::brake:
+      if (stands) go(pressed ? Phase::leave : Phase::back, pressed ? method_.edge : -direction_);
+      return std::nullopt;
+    case Phase::back:
+      if (pressed) go(Phase::leave, method_.edge);
+      return std::nullopt;
+    case Phase::leave:
+      if (pressed) return std::nullopt;
+      if (method_.approach == method_.edge) return pass_edge(track);
+      go(Phase::enter, method_.approach);
+      return std::nullopt;
+    case Phase::enter: return pressed ? pass_edge(track) : std::nullopt;
+    case Phase::index: return method_.approach * (place - pulse_) >= 0 ? find(pulse_) : std::nullopt;
+    default: return std::nullopt;
+  }
+}
+
+/// The edge is passed slowly and in the right direction: it is home, or the index pulse behind it is.
+std::optional<double> Homing::pass_edge(const Track& track) {
+  const auto& one = track.at(*method_.input);
+  const double edge = (method_.edge < 0 ? one.from : one.to) + track.shift;
+  if (!method_.index) return find(edge);
+  seek_pulse(track, edge);
+  return std::nullopt;
+}
+
+std::optional<double> Homing::find(double place) {
+  go(Phase::idle, 0);
+  return place;
+}
+
+}  // namespace servoctl::sim

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+namespace servoctl::sim {
+
+/// Order of MotionRules::inputs.
+enum class Input : std::uint8_t { negative_limit, positive_limit, home };
+
+/// A switch beside the track, pressed from one place to another.
+struct Switch {
+  double from = 0;
+  double to = 0;
+  std::optional<bool> stuck;  ///< Says this, wherever the axis stands.
+};
+
+/// What stands along the way of a simulated axis. Places are in turns of the motor from where it stood at
+/// power-on; the axis starts between the limit switches, left of the home switch.
+struct Track {
+  static constexpr double kFar = std::numeric_limits<double>::infinity();
+
+  Switch negative_limit{-kFar, -2, {}};
+  Switch positive_limit{4, kFar, {}};
+  Switch home{1, 1.5, {}};
+  double index = 0.25;    ///< Where in each turn the index pulse comes.
+  bool no_index = false;  ///< It never comes.
+  double scatter = 0;     ///< The switches shift by up to so much from one homing to the next.
+  double shift = 0;       ///< By how much they are shifted now.
+
+  const Switch& at(Input input) const {
+    return input == Input::home ? home : input == Input::negative_limit ? negative_limit : positive_limit;
+  }
+  bool is_pressed(Input input, double place) const {
+    const auto& one = at(input);
+    return one.stuck.value_or(place >= one.from + shift && place <= one.to + shift);
+  }
+  /// The limit switch at the end this direction (±1) leads to.
+  static constexpr Input limit(int direction) {
+    return direction < 0 ? Input::negative_limit : Input::positive_limit;
+  }
+};
+
+}  // namespace servoctl::sim
