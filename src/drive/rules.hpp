@@ -135,8 +135,12 @@ struct MotionRules {
   std::string rated_speed;                ///< Object or parameter that holds the rated speed of the motor.
   std::vector<std::uint8_t> inputs{0, 1, 2};  ///< Bits of 60FDh: negative limit, positive limit, home.
   std::vector<std::int64_t> no_homing;        ///< Values of 6098h that do nothing.
-  std::vector<std::string> speed_limit;       ///< What limits the speed in torque mode.
-  std::optional<std::uint32_t> setpoints;     ///< Targets the drive can hold.
+  /// Values of 6098h that move like another method of CiA 402-2 than the one of the same number.
+  std::map<std::int64_t, std::int64_t> homing_like;
+  std::optional<Condition> software_limits;  ///< 607Dh acts only while this holds.
+  bool software_limits_homed = false;        ///< 607Dh acts only once the axis is homed.
+  std::vector<std::string> speed_limit;      ///< What limits the speed in torque mode.
+  std::optional<std::uint32_t> setpoints;    ///< Targets the drive can hold.
 };
 
 /// How an emergency message names the alarm of the panel.
@@ -152,11 +156,12 @@ struct FaultRules {
   std::optional<Condition> reset_enabled_by;
   std::vector<Setting> reset;  ///< What resets a fault beside the controlword.
   bool by_controlword = true;
-  std::string alarm;          ///< Parameter or object that holds the panel's alarm number.
-  std::string length_alarm;   ///< Panel text of the alarm a write of a wrong length raises.
-  std::string mapping_alarm;  ///< … of mapping in Operational.
-  std::string range_alarm;    ///< … of a value out of range.
-  std::string access_alarm;   ///< … of a write to what cannot be written.
+  std::string alarm;            ///< Parameter or object that holds the panel's alarm number.
+  std::string length_alarm;     ///< Panel text of the alarm a write of a wrong length raises.
+  std::string mapping_alarm;    ///< … of mapping in Operational.
+  std::string range_alarm;      ///< … of a value out of range.
+  std::string access_alarm;     ///< … of a write to what cannot be written.
+  std::string following_alarm;  ///< … of a following error; empty: 8611h (CiA 402-2).
 };
 
 /// A setting that makes motion more dangerous than it looks, often from the factory.

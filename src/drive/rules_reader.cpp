@@ -67,6 +67,10 @@ TableReader::Handler list_into(std::vector<T>& out) {
   };
 }
 
+TableReader::Handler condition_into(std::optional<Condition>& out) {
+  return [&out](const toml::node& node) { return get(node, out.emplace()); };
+}
+
 TableReader::Handler quotient_into(Quotient& out) {
   return [&out](const toml::node& node) {
     const auto* table = node.as_table();
@@ -199,6 +203,16 @@ Result<void> read_quick_stop(const TableReader& reader, Rules& rules) {
 
 Result<void> read_motion(const TableReader& reader, Rules& rules) {
   auto& out = rules.motion;
+  const auto homing_like = [&](const toml::node& node) {
+    const auto* table = node.as_table();
+    if (table == nullptr) return false;
+    for (const auto& [key, value] : *table) {
+      const auto number = parse_integer(std::string_view(key.str()));
+      const auto method = number ? number->as_signed() : std::nullopt;
+      if (!method || !drive::get(value, out.homing_like[*method])) return false;
+    }
+    return true;
+  };
   return reader.read(
       {{"position", into(out.position)},
        {"velocity", into(out.velocity)},
@@ -216,6 +230,9 @@ Result<void> read_motion(const TableReader& reader, Rules& rules) {
        {"rated_speed", into(out.rated_speed)},
        {"inputs", [&](const auto& n) { return into(out.inputs)(n) && out.inputs.size() == 3; }},
        {"no_homing", into(out.no_homing)},
+       {"homing_like", homing_like},
+       {"software_limits", condition_into(out.software_limits)},
+       {"software_limits_homed", into(out.software_limits_homed)},
        {"speed_limit", into(out.speed_limit)},
        {"setpoints", into(out.setpoints)}});
 }
@@ -235,20 +252,15 @@ Result<void> read_emergency(const TableReader& reader, Rules& rules) {
 
 Result<void> read_fault(const TableReader& reader, Rules& rules) {
   auto& out = rules.fault;
-  const auto condition = [&](const toml::node& node) {
-    Condition read;
-    if (!get(node, read)) return false;
-    out.reset_enabled_by = read;
-    return true;
-  };
-  return reader.read({{"reset_enabled_by", condition},
+  return reader.read({{"reset_enabled_by", condition_into(out.reset_enabled_by)},
                       {"reset", list_into(out.reset)},
                       {"by_controlword", into(out.by_controlword)},
                       {"alarm", into(out.alarm)},
                       {"length_alarm", into(out.length_alarm)},
                       {"mapping_alarm", into(out.mapping_alarm)},
                       {"range_alarm", into(out.range_alarm)},
-                      {"access_alarm", into(out.access_alarm)}});
+                      {"access_alarm", into(out.access_alarm)},
+                      {"following_alarm", into(out.following_alarm)}});
 }
 
 Result<void> read_caution(const TableReader& reader, Caution& out) {

@@ -37,6 +37,7 @@ inline constexpr ObjectAddress kSupportedModes{0x6502, 0};
 inline constexpr ObjectAddress kInternalPosition{0x6063, 0};  ///< Encoder increments.
 inline constexpr ObjectAddress kPositionActual{0x6064, 0};
 inline constexpr ObjectAddress kFollowingErrorWindow{0x6065, 0};
+inline constexpr ObjectAddress kFollowingErrorTime{0x6066, 0};  ///< ms.
 inline constexpr ObjectAddress kPositionWindow{0x6067, 0};
 inline constexpr ObjectAddress kVelocityActual{0x606C, 0};
 inline constexpr ObjectAddress kTorqueActual{0x6077, 0};
@@ -47,12 +48,17 @@ inline constexpr ObjectAddress kDigitalInputs{0x60FD, 0};
 inline constexpr ObjectAddress kTargetTorque{0x6071, 0};
 inline constexpr ObjectAddress kTargetPosition{0x607A, 0};
 inline constexpr ObjectAddress kTargetVelocity{0x60FF, 0};
+inline constexpr ObjectAddress kLowerPositionLimit{0x607D, 1};
+inline constexpr ObjectAddress kUpperPositionLimit{0x607D, 2};
 inline constexpr ObjectAddress kMaxProfileVelocity{0x607F, 0};
 inline constexpr ObjectAddress kMaxMotorSpeed{0x6080, 0};
 inline constexpr ObjectAddress kProfileVelocity{0x6081, 0};
 inline constexpr ObjectAddress kProfileAcceleration{0x6083, 0};
 inline constexpr ObjectAddress kProfileDeceleration{0x6084, 0};
 inline constexpr ObjectAddress kTorqueSlope{0x6087, 0};
+
+inline constexpr ObjectAddress kInterpolationPoint{0x60C1, 1};
+inline constexpr ObjectAddress kMaxSlippage{0x60F8, 0};
 
 inline constexpr ObjectAddress kHomeOffset{0x607C, 0};
 inline constexpr ObjectAddress kHomingMethod{0x6098, 0};
