@@ -34,28 +34,45 @@ class Axis {
   /// Lets time pass and puts position, speed and torque into their objects.
   void advance(bool enabled, TimePoint now);
 
-  /// Bits 10 to 15 of the statusword while the drive is enabled; bit 15 also when it is not.
+  /// Bits 10 to 15 of the statusword while the drive is enabled; else what lasts of them: homed, at a limit,
+  /// following error.
   std::uint16_t bits(bool enabled) const;
 
   bool is_moving() const { return velocity_ != 0 && !faults_.stalled; }
-  /// The following error is greater than 6065h, where there is one that is not zero.
-  bool is_out_of_window() const;
+  /// The following error was greater than 6065h for 6066h, where a mode follows a position (CiA 402-2); until
+  /// clear_error().
+  bool has_following_error() const { return following_error_; }
+  void clear_error() { following_error_ = false; }
   AxisFaults& faults() { return faults_; }
   Track& track() { return track_; }
 
  private:
-  enum class Kind : std::uint8_t { none, position, velocity, torque, homing, interpolated };
+  enum class Kind : std::uint8_t { none, position, velocity, torque, homing, interpolated, cyclic };
+  /// Of 6064h; infinite where nothing limits it.
+  struct Range {
+    double least;
+    double greatest;
+  };
 
   Kind kind() const;
+  bool controls_position() const;
+  bool is_halted() const;
+  bool is_active() const;  ///< Bit 4 of the controlword, in interpolated position.
   bool is_full() const;
   void take_setpoint(bool relative, bool at_once);
   void start_homing();
-  void home(bool halted, double seconds);
+  void home(double seconds);
   bool is_steady() const;
   void step(double seconds);
   void approach(double wanted_velocity, double seconds);
   void step_position(double seconds);
-  void follow_target();
+  /// Where it follows a position at once, without set-points: the object; empty where it does not.
+  std::optional<ObjectAddress> followed() const;
+  void follow();
+  Range limits() const;
+  double allowed(double wanted) const;
+  bool is_at_limit() const;
+  void watch_window();
   void travel(double seconds);
   void publish();
   void write(ObjectAddress object, double value);
@@ -69,8 +86,12 @@ class Axis {
   double speed_factor(ObjectAddress object) const;  ///< One of the object's speed unit in units a second.
   double ramp(ObjectAddress object) const;          ///< Units a second a second.
   double ramp() const;                              ///< The one of the present mode.
+  double turning() const;                           ///< The speed of the motor itself.
   std::uint16_t position_bits() const;
   std::uint16_t homing_bits() const;
+  std::uint16_t velocity_bits() const;
+  std::uint16_t following_bits(ObjectAddress target) const;
+  std::uint16_t bits_of_mode() const;
 
   const drive::Profile* profile_;
   ObjectValues* values_;
@@ -88,7 +109,9 @@ class Axis {
   bool was_homed_ = false;  ///< Before the present run.
   Homing homing_;
   unsigned homings_ = 0;
-  double behind_ = 0;  ///< Demand minus actual position.
+  double behind_ = 0;                   ///< Demand minus actual position.
+  std::optional<TimePoint> out_since_;  ///< Since when that is out of its window.
+  bool following_error_ = false;
   AxisFaults faults_;
   Track track_;
 };

@@ -14,8 +14,6 @@ namespace {
 
 /// From a reset to the boot-up message.
 constexpr Duration kBootTime = std::chrono::milliseconds(50);
-/// EMCY of a life guarding or heartbeat error (CiA 301, table 26).
-constexpr std::uint16_t kLifeGuardError = 0x8130;
 /// CiA 402-2, table of error codes.
 constexpr std::uint16_t kFollowingErrorFault = 0x8611;
 /// … of an RPDO that was too short to be taken.
@@ -97,7 +95,7 @@ void SimDrive::on_time(TimePoint now) {
   if (now >= boot_at_) power_on(now);
   power_.on_time(now);
   move_axis();
-  if (consumer_.take_lost(now)) on_producer_lost(now);
+  if (consumer_.take_lost(now)) on_master_lost(now);
   pdos_.on_time(now);
   collect_pdos();
   server_.on_time(now);
@@ -212,14 +210,15 @@ void SimDrive::set_up_consumers() {
 /// Lets the axis move up to now; it cannot follow for long without a fault.
 void SimDrive::move_axis() {
   axis_.advance(is_enabled(), now_);
-  if (is_enabled() && axis_.is_out_of_window()) raise_fault(kFollowingErrorFault, {}, now_);
+  if (!is_enabled() || !axis_.has_following_error()) return;
+  if (!raise_alarm(profile_->rules.fault.following_alarm)) raise_fault(kFollowingErrorFault, {}, now_);
 }
 
 /// The master has stopped asking.
 void SimDrive::on_life_lost(TimePoint now) {
   const auto* alarm = parameter(profile_->rules.nmt.guarding_alarm);
   const bool masked = alarm != nullptr && alarm->object && effective(*alarm->object) == 0;
-  if (!masked) raise_fault(kLifeGuardError, {}, now);
+  if (!masked) on_master_lost(now);
 }
 
 }  // namespace servoctl::sim

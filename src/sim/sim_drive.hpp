@@ -2,6 +2,7 @@
 
 #include <array>
 #include <deque>
+#include <set>
 #include <string>
 #include <unordered_map>
 
@@ -26,6 +27,7 @@ struct Misbehaviour {
   std::uint32_t drop_answers = 0;       ///< So many SDO answers are lost on the way.
   std::uint32_t duplicate_answers = 0;  ///< So many SDO answers arrive twice.
   Duration answer_delay{};              ///< Every SDO answer comes this late.
+  std::set<std::uint16_t> missing;      ///< Objects that its EDS tells of and it does not have.
 };
 
 /// A drive of a family, made from its profile: object dictionary behind an SDO server, NMT slave, boot-up,
@@ -96,13 +98,14 @@ class SimDrive final : public Device, private canopen::ObjectStore {
   bool is_kept(ObjectAddress object) const;
   bool may_reset() const;
   void clear_fault();
+  bool raise_alarm(std::string_view panel);
   void raise_access_alarm(ObjectAddress object, std::uint32_t code);
   void collect_answers(TimePoint now);
   void collect_pdos();
   void set_up_error_control(TimePoint now);
   void on_life_lost(TimePoint now);
   void set_up_consumers();
-  void on_producer_lost(TimePoint now);
+  void on_master_lost(TimePoint now);
   void move_axis();
   void send_emergency(std::uint16_t code, std::array<std::uint8_t, 5> vendor);
   std::uint64_t effective(ObjectAddress object) const;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kHistorySize = 8;
 /// EMCY of a life guarding or heartbeat error (CiA 301, table 26).
-constexpr std::uint16_t kHeartbeatError = 0x8130;
+constexpr std::uint16_t kLifeGuardError = 0x8130;
 constexpr std::uint16_t kQuickStopWord = 0x0002;
 constexpr std::uint64_t kGenericAndVendor = 0x81;  ///< Bits of 1001h.
 
@@ -36,13 +36,14 @@ void SimDrive::raise_fault(std::uint16_t code, std::array<std::uint8_t, 5> vendo
   send_emergency(code, vendor);
 }
 
-/// A heartbeat that 1016h watches has not come: emergency, and what 6007h says; a fault where there is none.
-void SimDrive::on_producer_lost(TimePoint now) {
+/// A heartbeat that 1016h watches, or the question of life guarding, has not come: emergency, and what 6007h
+/// says; a fault where there is none.
+void SimDrive::on_master_lost(TimePoint now) {
   enum : std::uint64_t { kNoAction, kFault, kDisable, kQuickStop };
   const bool has_option = values_.has(objects::kAbortConnectionOption);
   const auto option = has_option ? values_.number(objects::kAbortConnectionOption) : kFault;
-  if (option == kFault) return raise_fault(kHeartbeatError, {}, now);
-  send_emergency(kHeartbeatError, {});
+  if (option == kFault) return raise_fault(kLifeGuardError, {}, now);
+  send_emergency(kLifeGuardError, {});
   if (option == kDisable) power_.disable();
   if (option == kQuickStop) power_.on_controlword(kQuickStopWord, 0, false, now);
 }
@@ -56,11 +57,17 @@ void SimDrive::raise_access_alarm(ObjectAddress object, std::uint32_t code) {
   if (code == abort::kTooHigh || code == abort::kTooLow || code == abort::kRange) panel = rules.range_alarm;
   if (code == abort::kReadOnly) panel = rules.access_alarm;
   if (code == abort::kDeviceState && PdoGuard::is_mapping(object)) panel = rules.mapping_alarm;
+  (void)raise_alarm(panel);
+}
+
+/// Raises the fault the panel shows like this; false when the family's table has none.
+bool SimDrive::raise_alarm(std::string_view panel) {
   const auto& faults = profile_->faults;
   const auto found =
       std::find_if(faults.begin(), faults.end(), [&](const auto& f) { return f.panel == panel; });
-  if (panel.empty() || found == faults.end() || !found->code) return;
+  if (panel.empty() || found == faults.end() || !found->code) return false;
   raise_fault(*found->code, drive::panel_bytes(profile_->rules.emergency, panel), now_);
+  return true;
 }
 
 bool SimDrive::may_reset() const {
@@ -71,6 +78,7 @@ bool SimDrive::may_reset() const {
 
 void SimDrive::clear_fault() {
   fault_ = nullptr;
+  axis_.clear_error();
   values_.set_number(objects::kErrorCode, 0);
   values_.set_number(objects::kErrorRegister, 0);
   if (const auto alarm = drive::resolve(profile_, profile_->rules.fault.alarm); alarm)

@@ -12,6 +12,7 @@ namespace abort = canopen::sdo_abort;
 using canopen::NmtState;
 
 std::uint32_t SimDrive::read(ObjectAddress object, Bytes& out) {
+  if (misbehaviour_.missing.contains(object.index)) return abort::kNoObject;
   if (const auto code = values_.check_read(object); code != 0) return code;
   move_axis();
   if (object == objects::kStatusword) {
@@ -59,6 +60,7 @@ bool SimDrive::is_locked(ObjectAddress object) const {
 }
 
 std::uint32_t SimDrive::write(ObjectAddress object, ByteSpan data) {
+  if (misbehaviour_.missing.contains(object.index)) return abort::kNoObject;
   if (object == objects::kErrorHistory && data.size() == 1 && data[0] != 0) return abort::kRange;
   auto code = values_.check_write(object, data, node_);
   if (code == 0) code = check_state(object, data);

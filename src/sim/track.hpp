@@ -24,10 +24,11 @@ struct Track {
   Switch negative_limit{-kFar, -2, {}};
   Switch positive_limit{4, kFar, {}};
   Switch home{1, 1.5, {}};
-  double index = 0.25;    ///< Where in each turn the index pulse comes.
-  bool no_index = false;  ///< It never comes.
-  double scatter = 0;     ///< The switches shift by up to so much from one homing to the next.
-  double shift = 0;       ///< By how much they are shifted now.
+  bool limits_stop = false;  ///< The limit switches stop every motion; from the factory drives ignore them.
+  double index = 0.25;       ///< Where in each turn the index pulse comes.
+  bool no_index = false;     ///< It never comes.
+  double scatter = 0;        ///< The switches shift by up to so much from one homing to the next.
+  double shift = 0;          ///< By how much they are shifted now.
 
   const Switch& at(Input input) const {
     return input == Input::home ? home : input == Input::negative_limit ? negative_limit : positive_limit;

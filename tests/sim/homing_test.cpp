@@ -259,6 +259,35 @@ TEST_F(HomingTest, InAnotherModeItIsOver) {
   EXPECT_EQ(status() & (kReached | kAttained | kError), kReached);
 }
 
+/// A method of the TS and the direction its manual tells (2189-2202).
+struct TsMethod {
+  int method;
+  int first;
+};
+
+class TsHoming : public HomingTest, public testing::WithParamInterface<TsMethod> {
+ protected:
+  void SetUp() override {
+    boot("ts");
+    write({0x6099, 1}, "6000");
+    write({0x6099, 2}, "600");
+  }
+};
+
+TEST_P(TsHoming, StartsInTheDirectionItsManualTellsAndEndsHomed) {
+  enable("6");
+  const auto run = home(GetParam().method);
+  EXPECT_EQ(run.first, GetParam().first);
+  EXPECT_EQ(run.statusword & (kAttained | kError), kAttained);
+}
+
+constexpr TsMethod kTsMethods[] = {{-1, -1}, {-2, 1}, {-17, -1}, {-18, 1}, {1, -1},  {2, 1},
+                                   {3, -1},  {4, 1},  {17, -1},  {18, 1},  {19, -1}, {20, 1}};
+INSTANTIATE_TEST_SUITE_P(Homing, TsHoming, testing::ValuesIn(kTsMethods), [](const auto& row) {
+  return std::string(row.param.method < 0 ? "minus_" : "method_") +
+         std::to_string(std::abs(row.param.method));
+});
+
 TEST_F(HomingTest, TheInputsTellTheSwitches) {
   const auto pressed_at = [&](double place) {
     stand_at(place - from_);

@@ -1,10 +1,6 @@
 // The sequences the manuals print for each mode: controlword in, statusword reached, one after the other on
 // the same drive (tests/vectors/*-states.csv).
-#include <algorithm>
-
-#include "base/csv.hpp"
-#include "base/file.hpp"
-#include "base/number.hpp"
+#include "manual_rows.hpp"
 #include "sim_support.hpp"
 
 namespace servoctl::sim {
@@ -12,41 +8,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-struct Row {
-  unsigned line = 0;
-  std::string mode;
-  std::optional<unsigned> controlword;
-  unsigned statusword = 0;
-  unsigned mask = 0;
-};
-
-/// Rows of these lines and this mode that print a statusword.
-std::vector<Row> rows_of(const std::string& family, const std::string& mode, unsigned first, unsigned last) {
-  const std::string path = SERVOCTL_SOURCE_DIR "/tests/vectors/" + family + "-states.csv";
-  const auto table = parse_csv(read_file(path).value(), path).value();
-  std::vector<Row> out;
-  for (const auto& cells : table.rows) {
-    const auto number = [&](const char* column) -> std::optional<unsigned> {
-      const auto value = parse_integer(cells.cells[table.column(column)]);
-      return value ? std::optional(static_cast<unsigned>(value->magnitude)) : std::nullopt;
-    };
-    const auto line = number("line").value_or(0);
-    if (line < first || line > last || cells.cells[table.column("mode")] != mode) continue;
-    out.push_back(
-        {line, mode, number("controlword"), number("statusword").value_or(0), number("mask").value_or(0)});
-  }
-  return out;
-}
-
 class ManualSteps : public DrivenTest {
  protected:
-  bool reaches(const Row& row) {
-    for (int i = 0; i < 5000; ++i) {
-      if ((status() & row.mask) == (row.statusword & row.mask)) return true;
-      (void)next(1ms);
-    }
-    return false;
-  }
   /// What stands before the sequence: the steps of CiA 402 it leaves out.
   void prepare(unsigned first_controlword) {
     if ((first_controlword & 0x01U) != 0) write({0x6040, 0}, "6");
@@ -55,7 +18,7 @@ class ManualSteps : public DrivenTest {
 
   void play(const std::string& mode, int number, unsigned first, unsigned last,
             std::string_view target = {}) {
-    const auto rows = rows_of(family_, mode, first, last);
+    const auto rows = manual_rows(family_, mode, first, last);
     ASSERT_FALSE(rows.empty());
     write({0x6040, 0}, "0");
     write({0x6060, 0}, std::to_string(number));
@@ -69,8 +32,9 @@ class ManualSteps : public DrivenTest {
         high = (*row.controlword & 0x10U) != 0;
         write({0x6040, 0}, std::to_string(*row.controlword));
       }
-      EXPECT_TRUE(reaches(row)) << family_ << " line " << row.line << ": " << std::hex << status() << " for "
-                                << row.statusword << " under " << row.mask;
+      EXPECT_TRUE(reaches(row.statusword, row.mask))
+          << family_ << " line " << row.line << ": " << std::hex << status() << " for " << row.statusword
+          << " under " << row.mask;
     }
   }
   int moves_ = 0;

@@ -84,6 +84,14 @@ class DrivenTest : public CellTest {
     return static_cast<std::int32_t>(od::to_double(value.value()));
   }
   unsigned status() { return static_cast<unsigned>(read({0x6041, 0})); }
+  /// Within five seconds.
+  bool reaches(unsigned statusword, unsigned mask) {
+    for (int i = 0; i < 5000; ++i) {
+      if ((status() & mask) == (statusword & mask)) return true;
+      (void)next(std::chrono::milliseconds(1));
+    }
+    return false;
+  }
   void enable(std::string_view mode) {
     write({0x6060, 0}, mode);
     for (const auto* word : {"6", "7", "15"}) write({0x6040, 0}, word);
