@@ -67,6 +67,23 @@ Result<WatchdogPlan> plan_heartbeat(Session& session, const drive::Profile& prof
   return plan;
 }
 
+/// Whether life guarding would stop the drive: one that sends heartbeats is not guarded (CiA 301, 7.2.8.2.2),
+/// and some mask the alarm.
+Result<bool> can_guard(Session& session, const drive::Profile& profile, std::uint8_t node) {
+  if (!has(profile, objects::kGuardTime) || !has(profile, objects::kLifeTimeFactor)) return false;
+  std::vector<SdoRequest> requests;
+  for (const auto object : {objects::kGuardTime, objects::kLifeTimeFactor, objects::kProducerHeartbeat})
+    requests.push_back({.node = node, .object = object});
+  const auto* alarm = profile.parameter(profile.rules.nmt.guarding_alarm);
+  if (alarm != nullptr && alarm->object) requests.push_back({.node = node, .object = *alarm->object});
+  const auto answers = session.transfer(requests);
+  for (const auto& answer : answers)
+    if (!answer && answer.error().code != Errc::sdo_abort) return tl::unexpected<Error>(answer.error());
+  const bool beats = answers[2] && load_le(*answers[2]) != 0;
+  const bool masked = answers.size() > 3 && answers[3] && load_le(*answers[3]) == 0;
+  return answers[0] && answers[1] && !beats && !masked;
+}
+
 }  // namespace
 
 Result<WatchdogPlan> plan_watchdog(Session& session, const drive::Profile& profile, std::uint8_t node,
@@ -76,10 +93,11 @@ Result<WatchdogPlan> plan_watchdog(Session& session, const drive::Profile& profi
                 "give servoctl another one, such as 127");
   auto plan = plan_heartbeat(session, profile, node, producer);
   if (!plan) return plan;
-  if (plan->kind == WatchdogPlan::Kind::none && has(profile, objects::kGuardTime) &&
-      has(profile, objects::kLifeTimeFactor)) {
-    plan->kind = WatchdogPlan::Kind::guarding;
-    plan->time = 2 * kWatchdogTime;
+  if (plan->kind == WatchdogPlan::Kind::none) {
+    const auto guards = can_guard(session, profile, node);
+    if (!guards) return tl::unexpected<Error>(guards.error());
+    if (*guards) plan->kind = WatchdogPlan::Kind::guarding;
+    if (*guards) plan->time = 2 * kWatchdogTime;
   }
   if (plan->kind == WatchdogPlan::Kind::none || !has(profile, objects::kAbortConnectionOption)) return plan;
   const auto option = session.upload(node, objects::kAbortConnectionOption);

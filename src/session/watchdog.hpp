@@ -15,7 +15,8 @@ struct WatchdogPlan {
   enum class Kind : std::uint8_t {
     none,       ///< The family has neither: nothing stops the drive.
     heartbeat,  ///< Heartbeat consumer, 1016h; servoctl is the producer.
-    guarding,   ///< Life guarding, 100Ch and 100Dh; servoctl asks.
+    guarding,  ///< Life guarding, 100Ch and 100Dh; servoctl asks. Not where the drive itself sends heartbeats
+               ///< or masks the alarm of it.
   };
   Kind kind = Kind::none;
   Duration time{};            ///< From the last message until the drive reacts.
