@@ -37,12 +37,28 @@ std::string typed_line() {
 }  // namespace
 
 void StandardConsole::out(std::string_view text) {
+  if (live_) return live_out_.offer(text);
+  const auto all = live_out_.take_waiting().append(text);
   const bool written =
-      std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+      std::fwrite(all.data(), 1, all.size(), stdout) == all.size() && std::fflush(stdout) == 0;
   if (!written && write_error_ == 0) write_error_ = errno;
 }
 
-void StandardConsole::err(std::string_view text) { std::fwrite(text.data(), 1, text.size(), stderr); }
+void StandardConsole::err(std::string_view text) {
+  if (live_) return live_err_.offer(text);
+  const auto all = live_err_.take_waiting().append(text);
+  std::fwrite(all.data(), 1, all.size(), stderr);
+}
+
+void StandardConsole::set_live(bool live) {
+  live_ = live;
+  for (auto* output : {&live_out_, &live_err_}) {
+    if (live)
+      output->open();
+    else
+      output->close();
+  }
+}
 
 void StandardConsole::show_progress(std::string_view line) {
   if (::isatty(STDERR_FILENO) == 1) err("\r\033[K" + std::string(line));

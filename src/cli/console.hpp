@@ -4,6 +4,7 @@
 #include <memory>
 #include <string_view>
 
+#include "cli/live_output.hpp"
 #include "commands/keys.hpp"
 
 namespace servoctl::cli {
@@ -30,6 +31,10 @@ class Console {
   virtual std::unique_ptr<commands::Keys> open_keys() { return nullptr; }
   /// Whether data can no longer be written: the reader has gone.
   virtual bool output_lost() const { return false; }
+  /// Told true while a drive is energised: until false is told, nobody who reads is waited for.
+  virtual void set_live(bool live) { (void)live; }
+  /// How many texts of out() were left out since the last call, because their reader was too slow.
+  virtual std::size_t take_left_out() { return 0; }
 };
 
 /// Standard streams of the process.
@@ -43,12 +48,17 @@ class StandardConsole final : public Console {
   bool can_ask() const override;
   std::size_t width() const override;
   std::unique_ptr<commands::Keys> open_keys() override;
-  bool output_lost() const override { return write_error_ != 0; }
+  bool output_lost() const override { return write_error() != 0; }
+  void set_live(bool live) override;
+  std::size_t take_left_out() override { return live_out_.take_left_out(); }
 
   /// The first error (errno) that kept data from being written; 0 when all of it was.
-  int write_error() const { return write_error_; }
+  int write_error() const { return write_error_ != 0 ? write_error_ : live_out_.error(); }
 
  private:
+  bool live_ = false;
+  LiveOutput live_out_{1};
+  LiveOutput live_err_{2};
   int write_error_ = 0;
 };
 

@@ -62,7 +62,10 @@ Shell::Shell(Console& console, Options options)
 session::Options Shell::session_options() {
   session::Options out;
   out.cancelled = options_.cancelled;
-  out.protect = protect_from_signals;
+  out.protect = [this](bool energised) {
+    protect_from_signals(energised);
+    console_->set_live(energised);
+  };
   out.progress = [this](std::size_t done, std::optional<std::size_t> total, TimePoint now) {
     progress_.update(done, total, now);
   };
@@ -254,6 +257,9 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
   if (!result) errors.insert(errors.begin(), result.error());
   for (auto& notice : take_notices(run.context.profile, run.settings.chinese))
     run.context.notices.push_back(std::move(notice));
+  if (const auto left_out = console_->take_left_out(); left_out > 0)
+    run.context.notices.push_back(fmt::format(
+        "{} samples were not shown, because nobody read them in time; --csv has every sample", left_out));
   if (run.context.profile != nullptr && run.settings.chinese)
     for (auto& error : errors) {
       const auto& texts = run.context.profile->rules.abort_texts_zh;

@@ -17,6 +17,8 @@ std::unique_ptr<commands::Keys> TerminalKeys::open(int descriptor) {
   if (::tcgetattr(descriptor, &before) != 0) return nullptr;
   auto raw = before;
   raw.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
+  // Ctrl-S ends the motion as any other key does, and holds nothing back.
+  raw.c_iflag &= ~static_cast<tcflag_t>(IXON);
   raw.c_cc[VMIN] = 0;
   raw.c_cc[VTIME] = 0;
   // What was typed before nobody meant as a key that moves something.

@@ -103,6 +103,12 @@ try:
 
     jog = Jog()
     jog.hold(right, 0.5)
+    os.write(jog.terminal, b"\x13")
+    check("Ctrl-S is a key as any other", jog.ended() == 0)
+    check("nothing is energised after Ctrl-S", status()["energised"] is False)
+
+    jog = Jog()
+    jog.hold(right, 0.5)
     jog.process.send_signal(2)
     check("Ctrl-C ends it as interrupted", jog.ended() == 130)
     check("nothing is energised after Ctrl-C", status()["energised"] is False)

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace servoctl::cli {
+
+/// The way to a reader who must not be waited for: passes text on as fast as it is taken, keeps a little of
+/// it meanwhile, and leaves out what is beyond that. What was begun is never cut.
+class LiveOutput {
+ public:
+  /// Bytes that wait for the reader; as many as a pipe holds.
+  static constexpr std::size_t kMost = std::size_t{64} << 10U;
+
+  explicit LiveOutput(int descriptor) : descriptor_(descriptor) {}
+  ~LiveOutput() { close(); }
+  LiveOutput(const LiveOutput&) = delete;
+  LiveOutput& operator=(const LiveOutput&) = delete;
+
+  /// Before the first offer().
+  void open();
+  void close();
+
+  /// Never waits.
+  void offer(std::string_view text);
+
+  /// What was offered and has not gone yet; the caller sees to it.
+  std::string take_waiting() { return std::exchange(waiting_, {}); }
+  /// How many texts were left out since the last call.
+  std::size_t take_left_out() { return std::exchange(left_out_, 0); }
+  /// The first error (errno) that kept text from being written; 0 when there was none.
+  int error() const { return error_; }
+
+ private:
+  std::ptrdiff_t pass(std::string_view text) const;
+
+  int descriptor_;
+  int own_ = -1;  ///< The same pipe or terminal without waiting; -1 where it cannot be opened again.
+  bool is_file_ = false;
+  bool is_socket_ = false;
+  std::string waiting_;
+  std::size_t left_out_ = 0;
+  int error_ = 0;
+};
+
+}  // namespace servoctl::cli
