@@ -1,9 +1,11 @@
 #!/usr/bin/env bash
 # Kills servoctl at random points of jog, move and home, with every signal, and looks with a second servoctl whether the
 # simulated drive, a process of its own, is without power: at once after a signal that can be caught, after the time of
-# its watchdog after SIGKILL and after the interface went down.
+# its watchdog after SIGKILL and after the cable was cut (on a vcan; the cable is that between can0 and can1 then). A
+# drive without a watchdog is not killed by SIGKILL, and goes on when the cable is cut: servoctl says so.
 # usage: motion_kill_test.sh SERVOCTL [KILLS [BUS [FAMILY]]]
-set -u
+# Job control: a process whose parent does not control it cannot be stopped by SIGTSTP.
+set -um
 servoctl=$1
 kills=${2:-20}
 bus=${3:-local:motion-kill-$$}
@@ -22,27 +24,51 @@ sim=$!
 wait_for || { cat "$work/sim"; echo "FAILED: the simulated drive does not answer"; exit 1; }
 
 commands=("jog 60rpm --for 2s" "jog -120rpm --turns 3" "move 2rev --relative --speed 120rpm" "home 1 --speed 60rpm")
-signals=(INT TERM HUP KILL INTINT)
+signals=(INT TERM HUP QUIT TSTP USR1 KILL INTINT)
 objects=(0x6060 0x60FF 0x1016:1)
+watched=true
 case $family in
   gsd600) commands=("${commands[@]/%/ --turn 131072}") ;;
-  da200 | sv2)  # Without a watchdog: nothing but SIGKILL can be survived.
-    signals=(INT TERM HUP INTINT)
-    objects=(0x6060 0x60FF)
+  ts) commands=("${commands[@]/%/ --turn 10000}") ;;
+  da200)
+    commands=("${commands[@]/%/ --turn 10000}")
+    watched=false
+    ;;
+  sv2)
+    commands=("${commands[@]/home 1/home 17}")
+    watched=false
     ;;
   dm) commands=("jog 60rpm --for 2s" "jog -20rpm --turns 1" "move 2rev --relative --speed 60rpm") ;;
 esac
+if ! $watched; then
+  signals=(INT TERM HUP QUIT TSTP USR1 INTINT)
+  objects=(0x6060 0x60FF)
+fi
+for command in "${commands[@]}"; do
+  # shellcheck disable=SC2086
+  "$servoctl" $command --dry-run >"$work/out" 2>&1 || fail "$command does not begin: $(cat "$work/out")"
+done
+# Ends, or is stopped with the drive at rest: then it goes on, but not with the motion.
+end_or_stop() {
+  for _ in $(seq 200); do
+    case $(ps -o stat= -p "$1") in '' | Z*) return ;; T*) break ;; esac
+    sleep 0.05
+  done
+  case $(state) in false*) ;; *) fail "$command, stopped after $delay ms: the drive is '$(state)'" ;; esac
+  kill -INT "$1"; kill -CONT "$1"
+}
 held() { "$servoctl" read "${objects[@]}" --json | jq -c '[.result[].value]'; }
 before=$(held)
 RANDOM=${SEED:-4711}
 moving=0
-for i in $(seq "$kills"); do
+# One kill, of this number. A function, because job control leaves a loop in which a job is stopped.
+kill_once() {
   command=${commands[RANDOM % ${#commands[@]}]}
-  signal=${signals[i % ${#signals[@]}]}
-  delay=$((RANDOM % 1200))
-  # A shell without a terminal starts background programs deaf to SIGINT.
+  signal=${signals[$1 % ${#signals[@]}]}
+  delay=$((500 + RANDOM % 2000))  # It listens for a second before it begins.
+  # Whoever starts this test may have made it deaf to them.
   # shellcheck disable=SC2086
-  env --default-signal=INT "$servoctl" $command --yes >"$work/out" 2>"$work/err" &
+  env --default-signal=INT,QUIT,TSTP "$servoctl" $command --yes >"$work/out" 2>"$work/err" &
   pid=$!
   sleep "$((delay / 1000)).$(printf %03d $((delay % 1000)))"
   case $(state) in true*) moving=$((moving + 1)) ;; esac
@@ -50,12 +76,13 @@ for i in $(seq "$kills"); do
     INTINT) kill -INT "$pid" 2>/dev/null; kill -INT "$pid" 2>/dev/null; sleep 0.02; kill -INT "$pid" 2>/dev/null ;;
     *) kill "-$signal" "$pid" 2>/dev/null ;;
   esac
+  [ "$signal" = TSTP ] && end_or_stop "$pid"
   wait "$pid" 2>/dev/null
   [ "$signal" = KILL ] && sleep 0.6
   after=$(state)
   case $after in
     false*) ;;
-    *) fail "$command, $signal after $delay ms: the drive is '$after'"; cat "$work/err" ;;
+    *) fail "$command, $signal after $delay ms: the drive is '$after'"; cat "$work/err"; "$servoctl" disable >/dev/null ;;
   esac
   if [ "$signal" != KILL ]; then
     left=$(held)
@@ -63,18 +90,49 @@ for i in $(seq "$kills"); do
   fi
   # A drive whose watchdog has tripped is in fault, and keeps what was set: it starts anew.
   [ "$signal" = KILL ] && { "$servoctl" nmt reset --wait --yes >/dev/null 2>&1 || fail "the drive does not restart"; }
-done
+}
+for i in $(seq "$kills"); do kill_once "$i"; done
+
+# The motion begins, and its drive is energised.
+start_jog() {
+  "$servoctl" jog 60rpm --for 10s --turn 131072 --yes >"$work/out" 2>"$work/err" &
+  pid=$!
+  for _ in $(seq 200); do case $(SERVOCTL_BUS=${1:-$bus} state) in true*) return ;; esac; sleep 0.05; done
+  fail "the drive is not energised: $(cat "$work/err")"
+}
+
+if [ "$family" = gsd600 ]; then
+  for entry in 1 2 3 4; do "$servoctl" write "0x1016:$entry" "$((0x000203E8 + entry * 65536))" >/dev/null; done
+  "$servoctl" jog 60rpm --for 1s --turn 131072 --dry-run | grep -q 'none: .*Pn0199 is 0' || fail "guarding without an alarm is promised"
+  "$servoctl" param set Pn0199 1 --keep --yes >/dev/null || fail "Pn0199 cannot be kept"
+  "$servoctl" nmt reset --wait --yes >/dev/null || fail "the drive does not restart"
+  for entry in 1 2 3 4; do "$servoctl" write "0x1016:$entry" "$((0x000203E8 + entry * 65536))" >/dev/null; done
+  start_jog
+  grep -q 'life guarding by servoctl' "$work/err" || fail "no life guarding: $(cat "$work/err")"
+  kill -KILL "$pid"; wait "$pid" 2>/dev/null
+  sleep 1.1
+  case $(state) in false*) ;; *) fail "killed under life guarding: the drive is '$(state)'" ;; esac
+fi
 
 case $bus in
-  vcan*)  # The same when the interface goes down under a motion.
-    "$servoctl" jog 60rpm --for 10s --turn 131072 --yes >"$work/out" 2>"$work/err" &
-    pid=$!
-    sleep 1
-    ip link set "$bus" down
-    wait "$pid"
-    [ $? -eq 3 ] || fail "interface down: the exit code is not 3: $(cat "$work/err")"
-    grep -q 'TAKE THE POWER AWAY' "$work/err" || fail "interface down: it does not say that nothing could be verified"
-    ip link set "$bus" up
+  vcan*)
+    if ip link show can1 >/dev/null 2>&1; then
+      "$servoctl" sim "$family@1" --bus can1 >"$work/sim2" 2>&1 &
+      sim2=$!
+      SERVOCTL_BUS=can1 wait_for || fail "the drive on can1 does not answer: $(cat "$work/sim2")"
+      SERVOCTL_BUS=can0 start_jog can1
+      ip link set can0 down
+      wait "$pid"
+      [ $? -eq 3 ] || fail "cable cut: the exit code is not 3: $(cat "$work/err")"
+      grep -q 'TAKE THE POWER AWAY' "$work/err" || fail "cable cut: it does not say that nothing could be verified"
+      sleep 0.6
+      after=$(SERVOCTL_BUS=can1 state)
+      case $watched-$after in
+        true-false* | false-true*) echo "cable cut: the drive is '$after'" ;;
+        *) fail "cable cut: the drive is '$after'" ;;
+      esac
+      kill "$sim2"; wait "$sim2"
+    fi
     ;;
 esac
 
