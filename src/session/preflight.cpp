@@ -36,8 +36,8 @@ class Preflight {
     if (const auto done = look_at_state(); !done) return tl::unexpected<Error>(done.error());
     if (const auto done = look_at_objects(); !done) return tl::unexpected<Error>(done.error());
     if (const auto done = look_at_cautions(); !done) return tl::unexpected<Error>(done.error());
-    add(watchdog.kind == WatchdogPlan::Kind::none ? Weight::caution : Weight::good, "watchdog",
-        to_string(watchdog));
+    const bool sure = watchdog.kind != WatchdogPlan::Kind::none && !watchdog.assumed;
+    add(sure ? Weight::good : Weight::caution, "watchdog", to_string(watchdog));
     return std::move(items_);
   }
 

@@ -17,7 +17,7 @@ constexpr Duration kCancelSlice = std::chrono::milliseconds(250);
 }  // namespace
 
 Session::Session(std::unique_ptr<can::Bus> bus, std::string url, Options options)
-    : bus_(std::move(bus)), url_(std::move(url)), options_(std::move(options)) {}
+    : bus_(std::move(bus)), opened_at_(bus_->now()), url_(std::move(url)), options_(std::move(options)) {}
 
 std::vector<Result<Bytes>> Session::transfer(std::span<const SdoRequest> requests) {
   return TransferRun(*this, requests).run();

@@ -97,6 +97,8 @@ class Session {
   void stop_heartbeat() { heartbeat_.reset(); }
 
   TimePoint now() const { return bus_->now(); }
+  /// Since then every frame is heard.
+  TimePoint opened_at() const { return opened_at_; }
   can::Bus& bus() { return *bus_; }
   const std::string& url() const { return url_; }
   Options& options() { return options_; }
@@ -118,6 +120,7 @@ class Session {
   };
 
   std::unique_ptr<can::Bus> bus_;
+  TimePoint opened_at_;
   std::string url_;
   Options options_;
   canopen::NodeWatch watch_;

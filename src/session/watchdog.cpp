@@ -6,6 +6,7 @@
 
 #include "base/duration.hpp"
 #include "canopen/cob_id.hpp"
+#include "drive/naming.hpp"
 #include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/hurry.hpp"
@@ -32,15 +33,24 @@ bool answers(Session& session, std::uint8_t node) {
   return answer || answer.error().code == Errc::sdo_abort;
 }
 
+/// Takes in what all send, until the bus has been listened to for long enough.
+Result<void> hear_others(Session& session) {
+  const auto waited = session.wait([] { return false; }, session.opened_at() + kListening);
+  if (!waited) return tl::unexpected<Error>(waited.error());
+  return session.listen();
+}
+
 /// Node-ID for servoctl: not the drive's, not one that was heard or that the drive watches already.
-std::optional<std::uint8_t> free_producer(Session& session, std::uint8_t node,
-                                          const std::vector<std::uint64_t>& entries) {
+Result<std::optional<std::uint8_t>> free_producer(Session& session, std::uint8_t node,
+                                                  const std::vector<std::uint64_t>& entries) {
+  if (const auto heard = hear_others(session); !heard) return tl::unexpected<Error>(heard.error());
   for (std::uint8_t id = canopen::kLastNode; id >= canopen::kFirstNode; --id) {
     const bool watched =
         std::any_of(entries.begin(), entries.end(), [&](auto e) { return !is_free(e) && node_of(e) == id; });
-    if (id != node && !watched && !session.watch().state(id) && !answers(session, id)) return id;
+    if (id != node && !watched && !session.watch().state(id) && !answers(session, id))
+      return std::optional(id);
   }
-  return std::nullopt;
+  return std::optional<std::uint8_t>();
 }
 
 Result<WatchdogPlan> plan_heartbeat(Session& session, const drive::Profile& profile, std::uint8_t node,
@@ -59,29 +69,70 @@ Result<WatchdogPlan> plan_heartbeat(Session& session, const drive::Profile& prof
     entries.push_back(load_le(*answers[i]));
     if (plan.entry == 0 && is_free(entries.back())) plan.entry = requests[i].object.sub;
   }
-  const auto id = producer ? producer : free_producer(session, node, entries);
-  if (plan.entry == 0 || !id) return WatchdogPlan{};
+  if (plan.entry == 0) {
+    if (!entries.empty()) plan.remark = "all entries of 1016h are taken";
+    return plan;
+  }
+  const auto id =
+      producer ? Result<std::optional<std::uint8_t>>(producer) : free_producer(session, node, entries);
+  if (!id) return tl::unexpected<Error>(id.error());
+  if (!*id) {
+    plan.remark = "no node-ID is free for the heartbeat of servoctl";
+    return plan;
+  }
   plan.kind = WatchdogPlan::Kind::heartbeat;
   plan.time = kWatchdogTime;
-  plan.producer = *id;
+  plan.producer = **id;
   return plan;
 }
 
-/// Whether life guarding would stop the drive: one that sends heartbeats is not guarded (CiA 301, 7.2.8.2.2),
-/// and some mask the alarm.
-Result<bool> can_guard(Session& session, const drive::Profile& profile, std::uint8_t node) {
-  if (!has(profile, objects::kGuardTime) || !has(profile, objects::kLifeTimeFactor)) return false;
-  std::vector<SdoRequest> requests;
-  for (const auto object : {objects::kGuardTime, objects::kLifeTimeFactor, objects::kProducerHeartbeat})
-    requests.push_back({.node = node, .object = object});
-  const auto* alarm = profile.parameter(profile.rules.nmt.guarding_alarm);
-  if (alarm != nullptr && alarm->object) requests.push_back({.node = node, .object = *alarm->object});
-  const auto answers = session.transfer(requests);
-  for (const auto& answer : answers)
-    if (!answer && answer.error().code != Errc::sdo_abort) return tl::unexpected<Error>(answer.error());
-  const bool beats = answers[2] && load_le(*answers[2]) != 0;
-  const bool masked = answers.size() > 3 && answers[3] && load_le(*answers[3]) == 0;
-  return answers[0] && answers[1] && !beats && !masked;
+/// The number in an object; empty where the drive does not give it.
+Result<std::optional<std::uint64_t>> number(Session& session, std::uint8_t node, ObjectAddress object) {
+  const auto value = session.upload(node, object);
+  if (!value && value.error().code != Errc::sdo_abort) return tl::unexpected<Error>(value.error());
+  return value ? std::optional(load_le(*value)) : std::nullopt;
+}
+
+/// Why life guarding would stop nothing; empty when it does.
+Result<std::string> against_guarding(Session& session, const drive::Profile& profile, std::uint8_t node) {
+  for (const auto object : {objects::kGuardTime, objects::kLifeTimeFactor}) {
+    const auto there = number(session, node, object);
+    if (!there) return tl::unexpected<Error>(there.error());
+    if (!*there) return "it has no " + to_string(object);
+  }
+  if (has(profile, objects::kProducerHeartbeat)) {
+    const auto period = number(session, node, objects::kProducerHeartbeat);
+    if (!period) return tl::unexpected<Error>(period.error());
+    // CiA 301, 7.2.8.2.2: one of the two protocols.
+    if (period->value_or(0) != 0) return "it sends heartbeats (1017h), so it does not answer node guarding";
+  }
+  const auto& name = profile.rules.nmt.guarding_alarm;
+  if (name.empty()) return {};
+  const auto alarm = drive::resolve(&profile, name);
+  if (!alarm) return tl::unexpected<Error>(alarm.error());
+  const auto on = number(session, node, alarm->address);
+  if (!on) return tl::unexpected<Error>(on.error());
+  if (on->value_or(0) != 0) return {};
+  const bool at_restart = drive::meaning(*alarm, node).effect == od::Effect::restart;
+  return fmt::format("the end of life guarding is no alarm while {} is {}{}", name,
+                     *on ? "0" : "not readable",
+                     at_restart ? " (a change takes effect when the drive starts)" : "");
+}
+
+/// Life guarding where it stops the drive.
+Result<void> plan_guarding(Session& session, const drive::Profile& profile, std::uint8_t node,
+                           WatchdogPlan& plan) {
+  const auto why_not = against_guarding(session, profile, node);
+  if (!why_not) return tl::unexpected<Error>(why_not.error());
+  if (!why_not->empty()) {
+    plan.remark += (plan.remark.empty() ? "" : ", and ") + *why_not;
+    return {};
+  }
+  const auto& alarm = profile.rules.nmt.guarding_alarm;
+  plan.remark = alarm.empty() ? "" : fmt::format("provided that {} was on when the drive started", alarm);
+  plan.kind = WatchdogPlan::Kind::guarding;
+  plan.time = 2 * kWatchdogTime;
+  return {};
 }
 
 }  // namespace
@@ -93,12 +144,13 @@ Result<WatchdogPlan> plan_watchdog(Session& session, const drive::Profile& profi
                 "give servoctl another one, such as 127");
   auto plan = plan_heartbeat(session, profile, node, producer);
   if (!plan) return plan;
-  if (plan->kind == WatchdogPlan::Kind::none) {
-    const auto guards = can_guard(session, profile, node);
-    if (!guards) return tl::unexpected<Error>(guards.error());
-    if (*guards) plan->kind = WatchdogPlan::Kind::guarding;
-    if (*guards) plan->time = 2 * kWatchdogTime;
+  if (plan->kind == WatchdogPlan::Kind::none && has(profile, objects::kGuardTime) &&
+      has(profile, objects::kLifeTimeFactor)) {
+    if (const auto done = plan_guarding(session, profile, node, *plan); !done)
+      return tl::unexpected<Error>(done.error());
   }
+  const auto& assumed = profile.rules.assumed;
+  plan->assumed = std::find(assumed.begin(), assumed.end(), "watchdog") != assumed.end();
   if (plan->kind == WatchdogPlan::Kind::none || !has(profile, objects::kAbortConnectionOption)) return plan;
   const auto option = session.upload(node, objects::kAbortConnectionOption);
   if (!option) return plan;
@@ -112,8 +164,9 @@ Result<WatchdogPlan> plan_watchdog(Session& session, const drive::Profile& profi
 }
 
 std::string to_string(const WatchdogPlan& plan) {
-  const auto then =
-      plan.reaction.empty() ? std::string() : fmt::format("; it reacts with: {}", plan.reaction);
+  auto then = plan.reaction.empty() ? std::string() : fmt::format("; it reacts with: {}", plan.reaction);
+  if (!plan.remark.empty()) then += "; " + plan.remark;
+  if (plan.assumed) then += "; ASSUMED: its manual does not say what the motor does then";
   switch (plan.kind) {
     case WatchdogPlan::Kind::heartbeat:
       return fmt::format(
@@ -124,7 +177,8 @@ std::string to_string(const WatchdogPlan& plan) {
                          servoctl::to_string(plan.time), then);
     case WatchdogPlan::Kind::none: break;
   }
-  return "none: nothing stops the drive when the cable is cut or servoctl dies";
+  return "none: nothing stops the drive when the cable is cut or servoctl dies" +
+         (plan.remark.empty() ? "" : "; " + plan.remark);
 }
 
 }  // namespace servoctl::session

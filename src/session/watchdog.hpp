@@ -22,8 +22,10 @@ struct WatchdogPlan {
   Duration time{};            ///< From the last message until the drive reacts.
   std::uint8_t producer = 0;  ///< Node-ID under which servoctl sends heartbeats.
   std::uint8_t entry = 0;     ///< Sub-index of 1016h.
-  std::string reaction;       ///< What the drive does then, by 6007h; empty when it does not tell.
+  std::string reaction = {};  ///< What the drive does then, by 6007h; empty when it does not tell.
   bool reaction_off = false;  ///< 6007h is 0, no action: it has to be set as well.
+  bool assumed = false;       ///< The manual does not say what the motor does when the master is lost.
+  std::string remark = {};    ///< Why there is none, or on what it depends; may be empty.
 };
 
 /// 6007h, and its value for a fault (CiA 402-2, abort connection option code).
@@ -32,8 +34,13 @@ inline constexpr std::uint8_t kReactWithFault = 1;
 /// Time of the watchdog unless asked otherwise; servoctl sends five messages in it.
 inline constexpr Duration kWatchdogTime = std::chrono::milliseconds(500);
 
+/// How long the bus is listened to before a node-ID counts as free: masters that only send heartbeats send
+/// one at least so often.
+inline constexpr Duration kListening = std::chrono::seconds(1);
+
 /// Finds out which watchdog the drive has; only reads. `producer`: servoctl's node-ID, where the user names
-/// one; else the highest that nobody was heard under.
+/// one; else the highest that nobody was heard under since the bus was opened, for which it waits up to
+/// kListening.
 Result<WatchdogPlan> plan_watchdog(Session& session, const drive::Profile& profile, std::uint8_t node,
                                    std::optional<std::uint8_t> producer);
 

@@ -1,117 +1,141 @@
-// What stops a drive without a heartbeat consumer (1016h) when servoctl or the cable dies: life guarding.
-#include <algorithm>
+// Which watchdog a drive has, and what is promised of it before a motion.
+#include "session/watchdog.hpp"
 
+#include "canopen/cob_id.hpp"
+#include "canopen/nmt.hpp"
 #include "motion_support.hpp"
+#include "session/preflight.hpp"
 
 namespace servoctl::session {
 namespace {
 
 using namespace std::chrono_literals;
-using drive::DriveState;
+using Kind = WatchdogPlan::Kind;
 
-constexpr ObjectAddress kGuardTime{0x100C, 0};
-constexpr ObjectAddress kLifeFactor{0x100D, 0};
-constexpr const char* kQuestion = "701#R";
+constexpr ObjectAddress kGuardingAlarm{0x2000, 0xC8};
 
-class LifeGuarding : public testing::TestWithParam<const char*> {
- protected:
-  LifeGuarding() { bench.drive().misbehaviour().missing = {0x1016}; }
+/// A master that sends heartbeats and answers nothing.
+class BeatingMaster final : public sim::Device {
+ public:
+  BeatingMaster(std::uint8_t node, Duration period, TimePoint first)
+      : node_(node), period_(period), next_(first) {}
 
-  long questions() const {
-    const auto& frames = bench.bus->frames;
-    return std::count_if(frames.begin(), frames.end(),
-                         [](const auto& f) { return f.starts_with(kQuestion); });
+  void on_frame(const can::Frame& /*frame*/, TimePoint /*now*/) override {}
+  void on_time(TimePoint now) override {
+    for (; next_ <= now; next_ += period_) ++due_;
   }
-  WatchdogPlan plan() {
-    const auto out = plan_watchdog(*bench.session, bench.profile(), 1, {});
-    EXPECT_TRUE(out);
+  std::optional<can::Frame> take_frame() override {
+    if (due_ == 0) return std::nullopt;
+    --due_;
+    return canopen::heartbeat_frame(node_, canopen::NmtState::operational);
+  }
+  TimePoint deadline() const override { return next_; }
+
+ private:
+  std::uint8_t node_;
+  Duration period_;
+  TimePoint next_;
+  int due_ = 0;
+};
+
+class Watchdog : public testing::Test {
+ protected:
+  WatchdogPlan plan(std::optional<std::uint8_t> producer = {}) {
+    auto out = plan_watchdog(*bench.session, bench.profile(), 1, producer);
+    EXPECT_TRUE(out) << out.error().message;
     return out.value_or(WatchdogPlan{});
   }
-  std::uint64_t value(ObjectAddress object) { return load_le(bench.drive().value(object)); }
+  void write(ObjectAddress object, std::uint32_t value, std::size_t size) {
+    const auto done = bench.session->download(1, object, store_le(value, size));
+    ASSERT_TRUE(done) << done.error().message;
+  }
+  /// Other masters are watched by every entry of 1016h.
+  void take_all_entries() {
+    for (std::uint8_t entry = 1; entry <= 4; ++entry)
+      write({0x1016, entry}, 0x0002'03E8U + (std::uint32_t{entry} << 16U), 4);
+  }
 
-  MotionBench bench{GetParam(), 10000};
+  MotionBench bench{"gsd600", 131072};
 };
 
-TEST_P(LifeGuarding, IsWhatWatchesADriveWithoutAHeartbeatConsumer) {
-  EXPECT_EQ(plan().kind, WatchdogPlan::Kind::guarding);
-  std::pair<std::uint64_t, std::uint64_t> set;
-  bench.options.on_sample = [&](const MotionSample&) { set = {value(kGuardTime), value(kLifeFactor)}; };
-  const auto done = bench.jog(jog_for("60rpm", 2s));
-  ASSERT_TRUE(done.outcome) << done.outcome.error().message;
-  EXPECT_EQ(set, std::pair(std::uint64_t{200}, std::uint64_t{5}));
-  EXPECT_GE(questions(), 10);  // Five in the time of the watchdog, which is a second.
-  EXPECT_EQ(bench.drive().power_state(), DriveState::switch_on_disabled);
+TEST_F(Watchdog, AMasterThatOnlySendsHeartbeatsKeepsItsNodeId) {
+  BeatingMaster plc(127, 900ms, bench.session->now() + 900ms);
+  bench.bus->bus.attach(plc);
+  const auto found = plan();
+  EXPECT_EQ(found.kind, Kind::heartbeat);
+  EXPECT_EQ(found.producer, 126);
+  EXPECT_NE(to_string(found).find("as node 126"), std::string::npos) << to_string(found);
 }
 
-TEST_P(LifeGuarding, IsOverWhenTheMotionIs) {
-  ASSERT_TRUE(bench.jog(jog_for("60rpm", 500ms)).outcome);
-  EXPECT_EQ(bench.changed(), std::vector<std::string>{});
-  bench.bus->frames.clear();
-  bench.wait(5s);
-  EXPECT_EQ(questions(), 0);
-  EXPECT_EQ(bench.drive().power_state(), DriveState::switch_on_disabled) << "no alarm of the silence";
+TEST_F(Watchdog, NobodyIsWaitedForWhereTheBusHasBeenHeardForLongEnough) {
+  bench.wait(kListening);
+  const auto begin = bench.session->now();
+  EXPECT_EQ(plan().producer, 127);
+  EXPECT_LT(bench.session->now() - begin, 200ms);
 }
 
-TEST_P(LifeGuarding, StopsTheDriveByItselfWhenTheBusIsLost) {
-  bench.started = [&] { bench.bus->lost_after = bench.bus->sent + 250; };
-  const auto done = bench.jog(jog_for("60rpm", 10s));
-  ASSERT_FALSE(done.outcome);
-  EXPECT_FALSE(done.end.verified);
-  EXPECT_EQ(done.watchdog.kind, WatchdogPlan::Kind::guarding);
-  EXPECT_TRUE(bench.energised());
-  EXPECT_TRUE(bench.drive().is_moving());
-  bench.wait(done.watchdog.time + 30ms);
-  EXPECT_FALSE(bench.energised());
-  EXPECT_FALSE(bench.drive().is_moving());
+TEST_F(Watchdog, NobodyIsWaitedForWhereTheUserNamesTheNodeId) {
+  const auto begin = bench.session->now();
+  EXPECT_EQ(plan(std::uint8_t{100}).producer, 100);
+  EXPECT_LT(bench.session->now() - begin, 200ms);
 }
 
-TEST_P(LifeGuarding, StopsTheDriveByItselfWhenTheCableIsOut) {
-  bench.started = [&] { bench.drive().fall_silent_at(bench.session->now() + 600ms); };
-  const auto done = bench.jog(jog_for("60rpm", 10s));
-  ASSERT_FALSE(done.outcome);
-  bench.wait(done.watchdog.time + 30ms);
-  EXPECT_FALSE(bench.energised());
+TEST_F(Watchdog, CtrlCEndsTheListening) {
+  bench.session->options().cancelled = [] { return true; };
+  const auto found = plan_watchdog(*bench.session, bench.profile(), 1, {});
+  ASSERT_FALSE(found);
+  EXPECT_EQ(found.error().code, Errc::interrupted);
 }
 
-TEST_P(LifeGuarding, IsNoWatchdogWhereTheDriveSendsHeartbeatsItself) {
-  ASSERT_TRUE(bench.session->download(1, {0x1017, 0}, {0xF4, 0x01}));
-  EXPECT_EQ(plan().kind, WatchdogPlan::Kind::none);
+TEST_F(Watchdog, GuardingWhoseAlarmIsMaskedIsNotPromised) {
+  take_all_entries();
+  const auto found = plan();
+  EXPECT_EQ(found.kind, Kind::none);
+  const auto text = to_string(found);
+  EXPECT_NE(text.find("nothing stops the drive"), std::string::npos) << text;
+  EXPECT_NE(text.find("all entries of 1016h are taken"), std::string::npos) << text;
+  EXPECT_NE(text.find("Pn0199 is 0 (a change takes effect when the drive starts)"), std::string::npos)
+      << text;
 }
 
-TEST_P(LifeGuarding, TakesOverWhereAllOfTheConsumersEntriesAreTaken) {
-  bench.drive().misbehaviour().missing.clear();
-  for (std::uint8_t entry = 1; entry <= 5; ++entry)
-    (void)bench.session->download(1, {0x1016, entry}, store_le(std::uint32_t{entry + 10U} << 16U | 500U, 4));
-  EXPECT_EQ(plan().kind, WatchdogPlan::Kind::guarding);
+TEST_F(Watchdog, GuardingWhoseAlarmIsOnIsPromisedAsFarAsItCanBeKnown) {
+  take_all_entries();
+  write(kGuardingAlarm, 1, 2);
+  const auto found = plan();
+  EXPECT_EQ(found.kind, Kind::guarding);
+  const auto text = to_string(found);
+  EXPECT_NE(text.find("provided that Pn0199 was on when the drive started"), std::string::npos) << text;
+  EXPECT_EQ(text.find("taken"), std::string::npos) << text;
 }
 
-INSTANTIATE_TEST_SUITE_P(Families, LifeGuarding, testing::Values("cia402", "dm"),
-                         [](const auto& one) { return std::string(one.param); });
-
-class MaskedGuarding : public LifeGuarding {
- protected:
-  static constexpr ObjectAddress kAlarm{0x2000, 0xC8};  // Pn0199; 0 masks it (2703 of the manual).
-};
-
-TEST_P(MaskedGuarding, IsNone) {
-  EXPECT_EQ(value(kAlarm), 0U);
-  EXPECT_EQ(plan().kind, WatchdogPlan::Kind::none);
+TEST_F(Watchdog, GuardingIsNotPromisedOfADriveThatSendsHeartbeats) {
+  take_all_entries();
+  write(kGuardingAlarm, 1, 2);
+  write({0x1017, 0}, 100, 2);
+  const auto found = plan();
+  EXPECT_EQ(found.kind, Kind::none);
+  EXPECT_NE(to_string(found).find("1017h"), std::string::npos) << to_string(found);
 }
 
-TEST_P(MaskedGuarding, StopsTheDriveOnceTheAlarmIsThere) {
-  ASSERT_TRUE(bench.session->download(1, kAlarm, {1, 0}));
-  ASSERT_TRUE(bench.session->send(canopen::nmt_frame(canopen::NmtCommand::reset_node, 1)));
-  bench.wait(500ms);
-  bench.started = [&] { bench.bus->lost_after = bench.bus->sent + 250; };
-  const auto done = bench.jog(jog_for("60rpm", 10s));
-  EXPECT_EQ(done.watchdog.kind, WatchdogPlan::Kind::guarding);
-  EXPECT_TRUE(bench.energised());
-  bench.wait(done.watchdog.time + 30ms);
-  EXPECT_FALSE(bench.energised());
+/// Weight of the watchdog's line in what is shown before a motion.
+PreflightItem::Weight weight(std::string_view family, WatchdogPlan::Kind kind) {
+  MotionBench bench(family);
+  const auto plan = plan_watchdog(*bench.session, bench.profile(), 1, {});
+  EXPECT_TRUE(plan);
+  EXPECT_EQ(plan->kind, kind) << family;
+  const MotionUnits units(*bench.session, bench.profile(), 1, {});
+  const auto items = preflight(*bench.session, units, 1, *plan, false);
+  EXPECT_TRUE(items);
+  return items->back().weight;
 }
 
-INSTANTIATE_TEST_SUITE_P(Families, MaskedGuarding, testing::Values("gsd600"),
-                         [](const auto& one) { return std::string(one.param); });
+TEST(WatchdogLine, IsACautionWhereTheManualDoesNotTellTheReaction) {
+  EXPECT_EQ(weight("gsd600", Kind::heartbeat), PreflightItem::Weight::good);
+  EXPECT_EQ(weight("dm", Kind::heartbeat), PreflightItem::Weight::caution);
+  EXPECT_EQ(weight("ts", Kind::heartbeat), PreflightItem::Weight::caution);
+  EXPECT_EQ(weight("da200", Kind::none), PreflightItem::Weight::caution);
+  EXPECT_EQ(weight("sv2", Kind::none), PreflightItem::Weight::caution);
+}
 
 }  // namespace
 }  // namespace servoctl::session
