@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <vector>
 
 #include "base/text.hpp"
 #include "commands/command.hpp"
@@ -69,7 +70,9 @@ std::string command_help(const Command& command, std::size_t width) {
     out += "\nArguments:\n" + words;
   if (const auto options = rows(command.parameters, true, width); !options.empty())
     out += "\nOptions:\n" + options;
-  return out + "\nOptions of every command:\n" + rows(global_options(), true, width);
+  std::vector<Parameter> others(global_options().begin(), global_options().end());
+  std::erase_if(others, [&](const Parameter& global) { return has_own(command, global); });
+  return out + "\nOptions of every command:\n" + rows(others, true, width);
 }
 
 std::string command_rows(std::string_view group, std::size_t width) {
@@ -118,6 +121,11 @@ std::string usage_line(std::string_view path) {
     out += parameter.required ? " " + word : " [" + word + "]";
   }
   return out + " [OPTIONS]";
+}
+
+bool has_own(const Command& command, const Parameter& global) {
+  return std::any_of(command.parameters.begin(), command.parameters.end(),
+                     [&](const Parameter& parameter) { return parameter.name == global.name; });
 }
 
 Result<std::string> help_text(std::string_view path, std::size_t width) {

@@ -6,6 +6,7 @@
 #include "base/text.hpp"
 #include "can/socketcan.hpp"
 #include "cli/prompt_words.hpp"
+#include "commands/help.hpp"
 #include "drive/naming.hpp"
 
 namespace servoctl::cli {
@@ -163,7 +164,8 @@ Completions complete(std::string_view line, Shell& shell) {
   if (!last.empty() && last.front() == '-') {
     for (const auto& parameter : own)
       if (parameter.name.starts_with("-")) out.add(parameter.name);
-    for (const auto& parameter : commands::global_options()) out.add(parameter.name);
+    for (const auto& parameter : commands::global_options())
+      if (match.command == nullptr || !commands::has_own(*match.command, parameter)) out.add(parameter.name);
     return out.take();
   }
   if (match.command == nullptr)

@@ -6,6 +6,7 @@
 #include <deque>
 
 #include "base/text.hpp"
+#include "commands/help.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -52,7 +53,7 @@ class Parser {
     app_.allow_extras();
     for (const auto& parameter : command.parameters) bind(parameter);
     for (const auto& parameter : commands::global_options())
-      if (!has_own(parameter)) bind(parameter);
+      if (!commands::has_own(command, parameter)) bind(parameter);
   }
 
   Result<commands::Arguments> parse(std::vector<std::string> words) {
@@ -74,12 +75,6 @@ class Parser {
     CLI::Option* option;
     std::vector<std::string>* values;
   };
-
-  /// A command's own option goes before the one every command has.
-  bool has_own(const Parameter& global) const {
-    return std::any_of(command_->parameters.begin(), command_->parameters.end(),
-                       [&](const Parameter& parameter) { return parameter.name == global.name; });
-  }
 
   void bind(const Parameter& parameter) {
     const auto names = parameter.short_name.empty()
