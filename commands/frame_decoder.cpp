@@ -17,7 +17,6 @@ namespace servoctl::commands {
 namespace {
 
 using canopen::SdoStep;
-using report::Value;
 using Step = SdoStep::Kind;
 
 constexpr std::uint32_t kTime = 0x100;  ///< TIME (CiA 301, 7.3.5).
@@ -124,7 +123,7 @@ void FrameDecoder::decode_nmt(const can::Frame& frame) {
   if (message->node != 0) out_.node = message->node;
   out_.text =
       fmt::format("NMT {}{}", canopen::name(message->command), message->node == 0 ? ", all nodes" : "");
-  if (options_.fields) out_.fields = {{"command", canopen::name(message->command)}};
+  if (options_.fields) fields_.member("command", canopen::name(message->command));
 }
 
 void FrameDecoder::decode_sync(const can::Frame& frame) {
@@ -132,7 +131,7 @@ void FrameDecoder::decode_sync(const can::Frame& frame) {
   out_.text = "SYNC";
   if (frame.remote || frame.size == 0) return;
   out_.text += fmt::format(" {}", frame.data[0]);
-  if (options_.fields) out_.fields = {{"counter", frame.data[0]}};
+  if (options_.fields) fields_.member("counter", frame.data[0]);
 }
 
 void FrameDecoder::decode_time(const can::Frame& frame) {
@@ -143,7 +142,7 @@ void FrameDecoder::decode_time(const can::Frame& frame) {
   }
   const auto time = time_of_day(frame.payload());
   out_.text = "TIME " + time;
-  if (options_.fields) out_.fields = {{"tells", time}};
+  if (options_.fields) fields_.member("tells", time);
 }
 
 void FrameDecoder::decode_emergency(const canopen::Emergency& emergency) {
@@ -151,8 +150,9 @@ void FrameDecoder::decode_emergency(const canopen::Emergency& emergency) {
   out_.node = emergency.node;
   const auto text = notice_text({{}, emergency.node, emergency}, options_.profile, options_.chinese);
   out_.text = text.substr(text.find(": ") + 2);
-  if (options_.fields)
-    out_.fields = {{"code", report::Hex{emergency.code, 4}}, {"error_register", emergency.error_register}};
+  if (!options_.fields) return;
+  fields_.member("code", emergency.code);
+  fields_.member("error_register", emergency.error_register);
 }
 
 /// By its mapping, or by the pre-defined connection set alone.
@@ -176,7 +176,10 @@ void FrameDecoder::decode_pdo(const can::Frame& frame, std::uint8_t node, const 
   out_.text += ' ';
   append_values(*view, data, options_.chinese, out_.text);
   for (const auto& field : view->fields) out_.objects.push_back(field.entry.object);
-  if (options_.fields) out_.fields = {{"pdo", view->name}, {"values", value_records(*view, data)}};
+  if (!options_.fields) return;
+  fields_.member("pdo", view->name);
+  fields_.key("values");
+  write_values(*view, data, fields_);
 }
 
 void FrameDecoder::decode_error_control(const can::Frame& frame) {
@@ -201,13 +204,16 @@ void FrameDecoder::decode_error_control(const can::Frame& frame) {
   out_.service = "heartbeat";
   out_.text = canopen::name(message->state);
   if (toggle) out_.text += " (answer to node guarding)";
-  if (options_.fields) out_.fields = {{"state", canopen::name(message->state)}, {"toggle", toggle}};
+  if (!options_.fields) return;
+  fields_.member("state", canopen::name(message->state));
+  fields_.member("toggle", toggle);
 }
 
-std::string FrameDecoder::name_of(ObjectAddress object) const {
-  const auto target = drive::target_at(options_.profile, object);
+std::string FrameDecoder::name_of(const drive::Target& target) const {
+  auto out = to_string(target.address);
   const auto label = options_.chinese ? target.label_zh() : target.label();
-  return to_string(object) + (label.empty() ? "" : " " + label);
+  if (!label.empty()) (out += ' ') += label;
+  return out;
 }
 
 void FrameDecoder::decode_sdo(const can::Frame& frame) {
@@ -217,39 +223,48 @@ void FrameDecoder::decode_sdo(const can::Frame& frame) {
   const auto step = asked ? channel.on_client_frame(frame) : channel.on_server_frame(frame);
   out_.service = "sdo";
   out_.node = node;
-  out_.text = phrase(step, step.object ? name_of(*step.object) : "of a transfer begun before");
+  drive::Target target;
+  if (step.object) target = drive::target_at(options_.profile, *step.object);
+  out_.text = phrase(step, step.object ? name_of(target) : "of a transfer begun before");
   if (step.object) out_.objects.push_back(*step.object);
-  if (options_.fields) add_sdo_fields(step);
-  if (step.object && step.data) add_sdo_value(step);
+  if (options_.fields) add_sdo_fields(step, target);
+  if (step.object && step.data) add_sdo_value(*step.data, target);
   if (step.announced) out_.text += fmt::format(", {} bytes", *step.announced);
-  if (options_.fields && step.announced) out_.fields.push_back({"announced", *step.announced});
-  if (options_.fields && step.kind == Step::abort)
-    out_.fields.push_back({"abort", report::Record{{"code", fmt::format("0x{:08X}", step.abort_code)},
-                                                   {"text", canopen::sdo_abort_text(step.abort_code)}}});
+  if (options_.fields) end_sdo_fields(step);
   learn(step);
 }
 
-void FrameDecoder::add_sdo_fields(const canopen::SdoStep& step) {
-  auto& fields = out_.fields;
-  fields = {{"step", name(step.kind)}, {"from", step.from_client ? "master" : "node"}};
-  if (step.block) fields.push_back({"block", true});
+void FrameDecoder::add_sdo_fields(const canopen::SdoStep& step, const drive::Target& target) {
+  fields_.member("step", name(step.kind));
+  fields_.member("from", step.from_client ? "master" : "node");
+  if (step.block) fields_.member("block", true);
   if (!step.object) return;
-  fields.push_back({"index", step.object->index});
-  fields.push_back({"sub", step.object->sub});
-  fields.push_back({"name", report::text_or_null(drive::target_at(options_.profile, *step.object).label())});
+  fields_.member("index", step.object->index);
+  fields_.member("sub", step.object->sub);
+  fields_.text_or_null("name", target.label());
 }
 
-void FrameDecoder::add_sdo_value(const canopen::SdoStep& step) {
-  const auto target = drive::target_at(options_.profile, *step.object);
-  const auto value = decode_value({*out_.node, target, {}, *step.data}, *step.data);
+/// What stands behind the value.
+void FrameDecoder::end_sdo_fields(const canopen::SdoStep& step) {
+  if (step.announced) fields_.member("announced", *step.announced);
+  if (step.kind != Step::abort) return;
+  fields_.key("abort");
+  fields_.begin_record();
+  fields_.member("code", fmt::format("0x{:08X}", step.abort_code));
+  fields_.member("text", canopen::sdo_abort_text(step.abort_code));
+  fields_.end_record();
+}
+
+void FrameDecoder::add_sdo_value(const Bytes& data, const drive::Target& target) {
+  const auto value = decode_value({*out_.node, target, {}, Bytes{}}, data);
   out_.text += " = " + value.text;
   const auto& label = options_.chinese && !value.label_zh.is_null() ? value.label_zh : value.label;
   if (const auto* words = std::get_if<std::string>(&label.data())) out_.text += " " + *words;
   if (!options_.fields) return;
-  out_.fields.push_back({"value", value.value});
-  out_.fields.push_back({"unit", report::text_or_null(value.unit)});
-  out_.fields.push_back({"label", value.label});
-  out_.fields.push_back({"bytes", to_hex(*step.data)});
+  fields_.member("value", value.value);
+  fields_.text_or_null("unit", value.unit);
+  fields_.member("label", value.label);
+  fields_.member("bytes", to_hex(data));
 }
 
 /// A value that was read holds; one that was written holds when the node has taken it.

@@ -11,6 +11,7 @@
 #include "canopen/sdo_observer.hpp"
 #include "commands/command.hpp"
 #include "commands/pdo_book.hpp"
+#include "report/json_writer.hpp"
 
 namespace servoctl::commands {
 
@@ -23,7 +24,7 @@ struct DecodedFrame {
   std::string_view service;          ///< One of kServices.
   std::optional<std::uint8_t> node;  ///< Empty for frames of the whole bus.
   std::string text;                  ///< For people, without the node.
-  report::Record fields;             ///< What is special to the service, for JSON; empty where not asked for.
+  std::string fields;  ///< What is special to the service, as members of JSON; empty where not asked for.
   std::vector<ObjectAddress> objects;  ///< Those it carries or names.
 };
 
@@ -38,6 +39,8 @@ class FrameDecoder {
     bool fields = true;  ///< Whether DecodedFrame::fields are wanted: they take longer than the text.
   };
   explicit FrameDecoder(Options options) : options_(options), pdos_(options.profile, options.chinese) {}
+  FrameDecoder(const FrameDecoder&) = delete;
+  FrameDecoder& operator=(const FrameDecoder&) = delete;
 
   /// The answer holds until the next call.
   const DecodedFrame& decode(const can::Frame& frame);
@@ -53,10 +56,11 @@ class FrameDecoder {
   void decode_pdo(const can::Frame& frame, std::uint8_t node, const PdoView* view);
   void decode_error_control(const can::Frame& frame);
   void decode_sdo(const can::Frame& frame);
-  void add_sdo_fields(const canopen::SdoStep& step);
-  void add_sdo_value(const canopen::SdoStep& step);
+  void add_sdo_fields(const canopen::SdoStep& step, const drive::Target& target);
+  void add_sdo_value(const Bytes& data, const drive::Target& target);
+  void end_sdo_fields(const canopen::SdoStep& step);
   void learn(const canopen::SdoStep& step);
-  std::string name_of(ObjectAddress object) const;
+  std::string name_of(const drive::Target& target) const;
 
   /// A write whose acknowledge has not come.
   struct Pending {
@@ -67,6 +71,7 @@ class FrameDecoder {
   Options options_;
   PdoBook pdos_;
   DecodedFrame out_;
+  report::JsonWriter fields_{out_.fields};
   std::array<canopen::SdoObserver, 128> channels_;
   std::array<std::optional<Pending>, 128> pending_;
 };

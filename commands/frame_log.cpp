@@ -10,14 +10,18 @@
 namespace servoctl::commands {
 namespace {
 
-using report::Value;
-
 /// Columns of the frame itself in a line: `601#4041600000000000`.
 constexpr std::size_t kFrameWidth = 21;
 /// Columns of the seconds before the point.
 constexpr std::size_t kSecondsWidth = 4;
 
 double seconds(Duration time) { return std::chrono::duration<double>(time).count(); }
+
+void write_service(std::string_view service, std::optional<std::uint8_t> node, report::JsonWriter& json) {
+  json.member("service", service);
+  json.key("node");
+  node ? json.value(*node) : json.null();
+}
 
 /// Right-aligned in `width` columns.
 void append_number(std::int64_t number, std::size_t width, char fill, std::string& out) {
@@ -86,14 +90,16 @@ void FrameLog::add(Duration time, std::string_view interface_name, const can::Fr
   ++services_[decoded.service];
   if (!filter_.passes(decoded)) return;
   if (writer_.wants_records()) {
-    report::Record record{{"time", seconds(time)},
-                          {"interface", interface_name},
-                          {"frame", can::to_string(frame)},
-                          {"service", decoded.service},
-                          {"node", decoded.node ? Value(*decoded.node) : Value()}};
-    record.insert(record.end(), decoded.fields.begin(), decoded.fields.end());
-    record.push_back({"text", decoded.text});
-    return writer_.add_record(std::move(record));
+    return writer_.add_record([&](report::JsonWriter& json) {
+      json.member("time", seconds(time));
+      json.member("interface", interface_name);
+      line_.clear();
+      can::append(frame, line_);
+      json.member("frame", line_);
+      write_service(decoded.service, decoded.node, json);
+      json.written(decoded.fields);
+      json.member("text", decoded.text);
+    });
   }
   begin_line(time);
   if (raw_) (line_ += pad_right(can::to_string(frame), kFrameWidth)) += ' ';
@@ -103,14 +109,15 @@ void FrameLog::add(Duration time, std::string_view interface_name, const can::Fr
 }
 
 void FrameLog::remark(Duration time, std::string_view service, std::optional<std::uint8_t> node,
-                      std::string_view text, report::Record fields) {
+                      std::string_view text, std::string_view event) {
   if (!filter_.services.empty() && service != "alarm") return;
   if (writer_.wants_records()) {
-    report::Record record{
-        {"time", seconds(time)}, {"service", service}, {"node", node ? Value(*node) : Value()}};
-    record.insert(record.end(), fields.begin(), fields.end());
-    record.push_back({"text", text});
-    return writer_.add_record(std::move(record));
+    return writer_.add_record([&](report::JsonWriter& json) {
+      json.member("time", seconds(time));
+      write_service(service, node, json);
+      json.member("event", event);
+      json.member("text", text);
+    });
   }
   begin_line(time);
   if (raw_) line_.append(kFrameWidth + 1, ' ');

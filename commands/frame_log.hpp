@@ -43,16 +43,16 @@ class FrameLog {
 
   /// `time` in a record is that of the log; in text it counts from the first frame.
   void add(Duration time, std::string_view interface_name, const can::Frame& frame);
-  /// Something that is no frame: an alarm, or the load of the bus.
+  /// Something that is no frame: an alarm.
   void remark(Duration time, std::string_view service, std::optional<std::uint8_t> node,
-              std::string_view text, report::Record fields);
+              std::string_view text, std::string_view event);
   void flush() { writer_.flush(); }
 
   FrameDecoder& decoder() { return decoder_; }
   std::size_t count() const { return count_; }
   /// How many frames of each service came, shown or not.
   const std::map<std::string_view, std::size_t>& services() const { return services_; }
-  report::List take_kept() { return writer_.take_kept(); }
+  report::Written take_kept() { return writer_.take_kept(); }
 
  private:
   void begin_line(Duration time);

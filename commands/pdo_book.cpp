@@ -33,13 +33,17 @@ od::DataType unsigned_type(std::size_t bytes) {
 
 PdoField make_field(const drive::Profile* profile, bool chinese, std::uint8_t node, canopen::PdoEntry entry,
                     std::size_t first_bit) {
-  PdoField out{entry, first_bit, drive::target_at(profile, entry.object), {}, {}, {}};
+  PdoField out{entry, first_bit, drive::target_at(profile, entry.object), {}, {}, {}, {}};
   const std::size_t bytes = (entry.bits + 7U) / 8U;
   out.meaning = drive::fitted(drive::meaning(out.target, node), bytes);
   out.type = out.meaning.type_known && od::size_of(out.meaning.type) == bytes ? out.meaning.type
                                                                               : unsigned_type(bytes);
   out.name = chinese ? out.target.label_zh() : out.target.label();
   if (out.name.empty()) out.name = to_string(entry.object);
+  report::JsonWriter head(out.head);
+  head.member("index", entry.object.index);
+  head.member("sub", entry.object.sub);
+  head.text_or_null("name", out.target.label());
   return out;
 }
 
@@ -49,6 +53,20 @@ std::uint32_t predefined_cob_id(const canopen::Pdo& pdo, std::uint8_t node) {
   if (pdo.number > kPredefined) return canopen::kPdoInvalid;
   const bool receive = pdo.direction == canopen::PdoDirection::receive;
   return canopen::kPdoInvalid | ((receive ? 0x100U : 0x080U) + 0x100U * pdo.number + node);
+}
+
+void write_value(const PdoField& field, const od::Value& value, report::JsonWriter& json) {
+  const auto& meaning = field.meaning;
+  const auto raw = od_value(value);
+  const bool as_sent = meaning.scale == 1 && meaning.encoding == od::Encoding::plain;
+  const auto* label = drive::label_of(meaning, value);
+  json.begin_record();
+  json.written(field.head);
+  json.member("value", as_sent ? raw : Value(drive::scaled(meaning, value)));
+  json.member("raw", raw);
+  json.text_or_null("unit", meaning.unit);
+  json.text_or_null("label", label != nullptr ? std::string_view(label->label) : std::string_view());
+  json.end_record();
 }
 
 bool fits_frame(const PdoView& view, ByteSpan data) { return view.pdo.bits() <= data.size() * 8; }
@@ -119,24 +137,11 @@ void append_values(const PdoView& view, ByteSpan data, bool chinese, std::string
   }
 }
 
-report::List value_records(const PdoView& view, ByteSpan data) {
-  report::List out;
-  if (!fits_frame(view, data)) return out;
-  for (const auto& field : view.fields) {
-    const auto value = field.value(data);
-    const auto& meaning = field.meaning;
-    const auto raw = od_value(value);
-    const bool as_sent = meaning.scale == 1 && meaning.encoding == od::Encoding::plain;
-    const auto* label = drive::label_of(meaning, value);
-    out.emplace_back(report::Record{{"index", field.entry.object.index},
-                                    {"sub", field.entry.object.sub},
-                                    {"name", report::text_or_null(field.target.label())},
-                                    {"value", as_sent ? raw : Value(drive::scaled(meaning, value))},
-                                    {"raw", raw},
-                                    {"unit", report::text_or_null(std::string(meaning.unit))},
-                                    {"label", label != nullptr ? Value(label->label) : Value()}});
-  }
-  return out;
+void write_values(const PdoView& view, ByteSpan data, report::JsonWriter& json) {
+  json.begin_list();
+  if (fits_frame(view, data))
+    for (const auto& field : view.fields) write_value(field, field.value(data), json);
+  json.end_list();
 }
 
 PdoBook::Node& PdoBook::node(std::uint8_t id) {

@@ -10,6 +10,7 @@
 #include "canopen/pdo.hpp"
 #include "commands/command.hpp"
 #include "drive/quantity.hpp"
+#include "report/json_writer.hpp"
 #include "session/pdo_setup.hpp"
 
 namespace servoctl::commands {
@@ -22,6 +23,7 @@ struct PdoField {
   drive::Meaning meaning;
   od::DataType type = od::DataType::u32;  ///< As long as the entry.
   std::string name;                       ///< What a person reads: `Statusword`, `0x6041:0`.
+  std::string head;                       ///< `"index":24641,"sub":0,"name":"Statusword"` of its records.
 
   /// The value in a frame that is long enough.
   od::Value value(ByteSpan data) const;
@@ -47,8 +49,8 @@ void append_value(const PdoField& field, const od::Value& value, bool chinese, s
 /// frame is too short.
 void append_values(const PdoView& view, ByteSpan data, bool chinese, std::string& out);
 
-/// The values as records for JSON; empty where the frame is too short.
-report::List value_records(const PdoView& view, ByteSpan data);
+/// Writes the values as a list of records; an empty one where the frame is too short.
+void write_values(const PdoView& view, ByteSpan data, report::JsonWriter& json);
 
 /// Which PDO a CAN-ID belongs to, on a bus with many nodes. Of a node nothing is known of, the PDOs are those
 /// its family leaves the factory with, at the CAN-IDs of the pre-defined connection set.

@@ -92,12 +92,19 @@ Result<void> check_operational(Context& context, const PdoView& view) {
               fmt::format("`nmt start -n {}` makes it operational", view.node));
 }
 
+report::Written written_values(const PdoView& view, const can::Frame& frame) {
+  report::Written out;
+  report::JsonWriter json(out.json);
+  write_values(view, frame.payload(), json);
+  return out;
+}
+
 Result<Value> run(Context& context, const Arguments& arguments) {
   if (context.nodes.size() != 1)
     return fail(Errc::usage, "`pdo send` is for one node at a time", "name one node, such as -n 1");
   const auto views = read_views(context, context.nodes.front());
   if (!views) return tl::unexpected<Error>(views.error());
-  const auto found = find_view(*views, arguments.text("pdo"));
+  const auto found = find_view(*views, context.nodes.front(), arguments.text("pdo"));
   if (!found) return tl::unexpected<Error>(found.error());
   const auto& view = **found;
   if (const auto usable = check_usable(view); !usable) return tl::unexpected<Error>(usable.error());
@@ -107,7 +114,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
                         {"pdo", view.name},
                         {"frame", can::to_string(message->frame)},
                         {"values", message->text, report::Show::text},
-                        {"values", value_records(view, message->frame.payload()), report::Show::json}};
+                        {"values", written_values(view, message->frame), report::Show::json}};
   if (context.dry_run) return Value(std::move(answer));
   if (const auto ready = check_operational(context, view); !ready)
     return tl::unexpected<Error>(ready.error());

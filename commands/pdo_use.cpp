@@ -1,9 +1,8 @@
 #include "commands/pdo_use.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
-#include "base/text.hpp"
+#include "commands/pdo_changing.hpp"
 
 namespace servoctl::commands {
 
@@ -15,21 +14,14 @@ Result<std::vector<PdoView>> read_views(Context& context, std::uint8_t node) {
   return out;
 }
 
-Result<const PdoView*> find_view(std::span<const PdoView> views, std::string_view name) {
-  const auto wanted = canopen::parse_pdo_name(name);
-  if (!wanted)
-    return fail(Errc::usage, fmt::format("'{}' is no PDO", name),
-                "write RPDO1 or TPDO2, as the drive sees it");
-  const auto found = std::find_if(views.begin(), views.end(), [&](const PdoView& view) {
-    return view.pdo.direction == wanted->direction && view.pdo.number == wanted->number;
+Result<const PdoView*> find_view(std::span<const PdoView> views, std::uint8_t node, std::string_view name) {
+  PresentPdos present{node, {}, {}};
+  for (const auto& view : views) present.pdos.push_back(view.pdo);
+  const auto pdo = find_pdo(present, name);
+  if (!pdo) return tl::unexpected<Error>(pdo.error());
+  return &*std::find_if(views.begin(), views.end(), [&](const PdoView& view) {
+    return view.pdo.direction == pdo->direction && view.pdo.number == pdo->number;
   });
-  if (found != views.end()) return &*found;
-  std::vector<std::string> names;
-  for (const auto& view : views)
-    if (view.pdo.direction == wanted->direction) names.push_back(view.name);
-  return fail(Errc::negative,
-              fmt::format("the node has no {}", canopen::name(wanted->direction, wanted->number)),
-              names.empty() ? std::string() : "it has " + one_of(names));
 }
 
 }  // namespace servoctl::commands

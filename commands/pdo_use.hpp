@@ -12,7 +12,7 @@ namespace servoctl::commands {
 /// The PDOs of a node as the drive tells them.
 Result<std::vector<PdoView>> read_views(Context& context, std::uint8_t node);
 
-/// The one of this name. Errc::usage when the text names none, Errc::negative when the node does not have it.
-Result<const PdoView*> find_view(std::span<const PdoView> views, std::string_view name);
+/// The one of this name among the PDOs of a node. Errors as find_pdo().
+Result<const PdoView*> find_view(std::span<const PdoView> views, std::uint8_t node, std::string_view name);
 
 }  // namespace servoctl::commands

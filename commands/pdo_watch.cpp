@@ -33,7 +33,7 @@ Result<std::vector<Watched>> pdos_of(Context& context, const Arguments& argument
     const auto views = read_views(context, node);
     if (!views) return tl::unexpected<Error>(views.error());
     for (const auto& name : arguments.all("pdo")) {
-      const auto view = find_view(*views, name);
+      const auto view = find_view(*views, node, name);
       if (!view) return tl::unexpected<Error>(view.error());
       if (!(*view)->pdo.is_valid())
         return fail(Errc::negative, fmt::format("node {}: {} is not in use", node, (*view)->name),
@@ -65,11 +65,14 @@ void show(Context& context, SampleWriter& writer, const Watched& entry, const ca
   const auto data = frame.payload();
   const auto seconds = std::chrono::duration<double>(time).count();
   if (writer.wants_records()) {
-    return writer.add_record({{"time", seconds},
-                              {"node", view.node},
-                              {"pdo", view.name},
-                              {"bytes", to_hex(data)},
-                              {"values", value_records(view, data)}});
+    return writer.add_record([&](report::JsonWriter& json) {
+      json.member("time", seconds);
+      json.member("node", view.node);
+      json.member("pdo", view.name);
+      json.member("bytes", to_hex(data));
+      json.key("values");
+      write_values(view, data, json);
+    });
   }
   auto line = fmt::format("{:11.6f} {:3} {} ", seconds, view.node, view.name);
   append_values(view, data, context.chinese, line);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "commands/command.hpp"
+#include "report/json_writer.hpp"
 
 namespace servoctl::commands {
 
@@ -22,26 +23,35 @@ class SampleWriter {
 
   void add_line(std::string_view line) {
     lines_ += line;
-    lines_ += '\n';
-    if (lines_.size() >= kPiece) flush();
+    end_line();
   }
-  void add_record(report::Record record) {
-    if (context_->wants_records) add_line(report::to_json(record));
-    if (context_->keeps_samples) kept_.emplace_back(std::move(record));
+  /// Adds a record; `fill` is given a JsonWriter and writes the members.
+  template <class Fill>
+  void add_record(const Fill& fill) {
+    report::JsonWriter json(context_->keeps_samples ? kept_ : lines_);
+    json.begin_record();
+    fill(json);
+    json.end_record();
+    if (!context_->keeps_samples) end_line();
   }
   void flush() {
     if (!lines_.empty()) context_->write(lines_);
     lines_.clear();
   }
-  /// What `--json` keeps for the result.
-  report::List take_kept() { return std::move(kept_); }
+  /// The list of records that `--json` keeps for the result.
+  report::Written take_kept() { return {std::exchange(kept_, "[") + "]"}; }
 
  private:
   static constexpr std::size_t kPiece = std::size_t{64} << 10U;
 
+  void end_line() {
+    lines_ += '\n';
+    if (lines_.size() >= kPiece) flush();
+  }
+
   Context* context_;
   std::string lines_;
-  report::List kept_;
+  std::string kept_ = "[";
 };
 
 }  // namespace servoctl::commands

@@ -79,7 +79,11 @@ class Watching {
     }
     if (!changed) return;
     if (writer_.wants_records())
-      writer_.add_record({{"time", seconds}, {"node", node}, {"values", std::move(values)}});
+      writer_.add_record([&](report::JsonWriter& json) {
+        json.member("time", seconds);
+        json.member("node", node);
+        json.member("values", Value(std::move(values)));
+      });
     else
       writer_.add_line(line);
   }

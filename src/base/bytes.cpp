@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/hex.hpp"
+
 namespace servoctl {
 namespace {
 
@@ -35,12 +37,10 @@ Bytes store_le(std::uint64_t value, std::size_t size) {
 }
 
 std::string to_hex(ByteSpan bytes, std::string_view separator) {
-  static constexpr char kDigits[] = "0123456789ABCDEF";
   std::string out;
   for (const auto byte : bytes) {
     if (!out.empty()) out += separator;
-    out += kDigits[byte >> 4U];
-    out += kDigits[byte & 0x0FU];
+    append_hex(byte, 2, out);
   }
   return out;
 }

@@ -1,7 +1,6 @@
 #include "base/object_address.hpp"
 
-#include <fmt/format.h>
-
+#include "base/hex.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 
@@ -22,7 +21,11 @@ std::optional<std::uint64_t> hex_field(std::string_view text, std::uint64_t max)
 }  // namespace
 
 std::string to_string(ObjectAddress address) {
-  return fmt::format("0x{:04X}:{:X}", address.index, address.sub);
+  std::string out = "0x";
+  append_hex(address.index, 4, out);
+  out += ':';
+  append_hex(address.sub, address.sub > 0xF ? 2 : 1, out);
+  return out;
 }
 
 std::optional<ObjectAddress> parse_object_address(std::string_view text) {

@@ -121,6 +121,15 @@ std::string printable(std::string_view text) {
   return out;
 }
 
+bool is_utf8(std::string_view text) {
+  while (!text.empty()) {
+    const auto c = decode_utf8(text);
+    if (c.size == 1 && c.value >= 0x80) return false;
+    text.remove_prefix(c.size);
+  }
+  return true;
+}
+
 std::string valid_utf8(std::string_view text) {
   std::string out;
   while (!text.empty()) {

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
-#include "base/bytes.hpp"
+#include "base/hex.hpp"
 #include "base/number.hpp"
 
 namespace servoctl::can {
@@ -43,11 +43,22 @@ Frame make_frame(std::uint32_t id, std::span<const std::uint8_t> data) {
   return frame;
 }
 
+void append(const Frame& frame, std::string& out) {
+  const auto id = frame.error ? kErrorFlag | frame.id : frame.id;
+  append_hex(id, frame.extended || id > 0x7FF ? 8 : 3, out);
+  out += '#';
+  if (frame.remote) {
+    out += 'R';
+    if (frame.size != 0) out += fmt::format_int(frame.size).c_str();
+    return;
+  }
+  for (const auto byte : frame.payload()) append_hex(byte, 2, out);
+}
+
 std::string to_string(const Frame& frame) {
-  if (frame.error) return fmt::format("{:08X}#{}", kErrorFlag | frame.id, to_hex(frame.payload(), ""));
-  auto out = frame.extended ? fmt::format("{:08X}#", frame.id) : fmt::format("{:03X}#", frame.id);
-  if (frame.remote) return out + (frame.size == 0 ? "R" : fmt::format("R{}", frame.size));
-  return out + to_hex(frame.payload(), "");
+  std::string out;
+  append(frame, out);
+  return out;
 }
 
 std::optional<Frame> parse_frame(std::string_view text) {

@@ -29,6 +29,7 @@ Frame make_frame(std::uint32_t id, std::span<const std::uint8_t> data);
 /// The compact notation of can-utils: `601#4041600000000000`, `701#R`, `00000123#00` for 29 bits,
 /// `20000040#0000000000000000` for a report of the controller.
 std::string to_string(const Frame& frame);
+void append(const Frame& frame, std::string& out);
 
 /// Reads the compact notation; empty when the text is not of this form or names more than 8 bytes.
 std::optional<Frame> parse_frame(std::string_view text);

@@ -19,6 +19,12 @@ tl::unexpected<Error> no_path(std::string_view path) {
               "write [0].value, .state or .fault.code: the names are those of --json");
 }
 
+/// What was kept as JSON, as values again.
+Value opened(const Value& value) {
+  const auto* kept = std::get_if<report::Written>(&value.data());
+  return kept == nullptr ? value : report::parse_json(kept->json, "the result").value_or(value);
+}
+
 Record row_record(const Table& table, const List& row) {
   Record out;
   for (std::size_t i = 0; i < row.size(); ++i)
@@ -37,7 +43,7 @@ Result<Part> take_field(const Part& from, const std::string& name) {
   const auto said = from.where == "." ? std::string("the result") : from.where;
   if (record == nullptr) return fail(Errc::negative, fmt::format("{} has no field {}", said, name));
   if (const auto* value = field_of(*record, name))
-    return Part{(from.where == "." ? "" : from.where) + "." + name, *value};
+    return Part{(from.where == "." ? "" : from.where) + "." + name, opened(*value)};
   std::vector<std::string> names;
   for (const auto& field : *record)
     if (field.show != Show::text) names.push_back(field.key);
@@ -99,7 +105,7 @@ Result<std::vector<PathStep>> parse_path(std::string_view path) {
 Result<std::vector<Part>> follow(const Value& result, std::string_view path) {
   const auto steps = parse_path(path);
   if (!steps) return tl::unexpected<Error>(steps.error());
-  std::vector<Part> parts{{".", result}};
+  std::vector<Part> parts{{".", opened(result)}};
   for (const auto& step : *steps) {
     auto next = take_step(parts, step);
     if (!next) return next;

@@ -94,7 +94,7 @@ std::optional<double> conversion(std::string_view from, std::string_view to) {
 }
 
 std::string_view familiar_unit(std::string_view unit) {
-  const auto* known = find_unit(unit);
+  const auto* known = unit.empty() ? nullptr : find_unit(unit);
   if (known == nullptr) return {};
   for (const auto& row : kFamiliar)
     if (row.dimension == known->dimension && conversion(unit, row.unit) != 1) return row.unit;

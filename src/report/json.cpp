@@ -1,10 +1,14 @@
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "base/text.hpp"
+#include "report/json_writer.hpp"
 #include "report/value.hpp"
 
 namespace servoctl::report {
@@ -12,66 +16,156 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json json(const Value& value);
+/// Bytes that stand in JSON as they are, whatever stands beside them.
+constexpr auto kPlain = [] {
+  std::array<bool, 256> out{};
+  for (std::size_t byte = 0x20; byte < 0x80; ++byte) out[byte] = byte != '"' && byte != '\\';
+  return out;
+}();
 
+bool is_plain(char c) { return kPlain[static_cast<unsigned char>(c)]; }
+
+void append_escaped(char c, std::string& out) {
+  switch (c) {
+    case '"': out += "\\\""; return;
+    case '\\': out += "\\\\"; return;
+    case '\b': out += "\\b"; return;
+    case '\f': out += "\\f"; return;
+    case '\n': out += "\\n"; return;
+    case '\r': out += "\\r"; return;
+    case '\t': out += "\\t"; return;
+    default: break;
+  }
+  const auto byte = static_cast<unsigned char>(c);
+  if (byte < 0x20)
+    fmt::format_to(std::back_inserter(out), "\\u{:04x}", byte);
+  else
+    out += c;
+}
+
+/// Writes a value by its kind.
 struct ToJson {
-  Json operator()(std::monostate) const { return nullptr; }
-  Json operator()(bool b) const { return b; }
-  Json operator()(std::int64_t i) const { return i; }
-  Json operator()(std::uint64_t u) const { return u; }
-  Json operator()(double d) const {
-    // A whole number is written without ".0", so that 40 Hz reads 40 as in text.
-    if (d == std::floor(d) && std::abs(d) < 9.0e15) return static_cast<std::int64_t>(d);
-    return d;
+  JsonWriter& json;
+
+  void operator()(std::monostate) const { json.null(); }
+  void operator()(const Hex& h) const { json.value(h.value); }
+  void operator()(const Written& w) const { json.written(w.json); }
+  template <class T>
+  void operator()(const T& scalar) const {
+    json.value(scalar);
   }
-  Json operator()(const std::string& s) const { return s; }
-  Json operator()(const Hex& h) const { return h.value; }
-  Json operator()(const List& l) const {
-    Json out = Json::array();
-    for (const auto& v : l) out.push_back(json(v));
-    return out;
+  void operator()(const List& l) const {
+    json.begin_list();
+    for (const auto& v : l) json.value(v);
+    json.end_list();
   }
-  Json operator()(const Record& r) const {
-    Json out = Json::object();
-    for (const auto& field : r)
-      if (field.show != Show::text) out[field.key] = json(field.value);
-    return out;
+  void operator()(const Record& r) const {
+    json.begin_record();
+    for (const auto& field : r) member(field.key, field.value, field.show);
+    json.end_record();
   }
-  Json operator()(const Table& t) const {
-    Json out = Json::array();
+  void operator()(const Table& t) const {
+    json.begin_list();
     for (const auto& row : t.rows) {
-      Json object = Json::object();
-      for (std::size_t i = 0; i < row.size(); ++i)
-        if (t.columns[i].show != Show::text) object[t.columns[i].key] = json(row[i]);
-      out.push_back(std::move(object));
+      json.begin_record();
+      for (std::size_t i = 0; i < row.size(); ++i) member(t.columns[i].key, row[i], t.columns[i].show);
+      json.end_record();
     }
-    return out;
+    json.end_list();
   }
-  Json operator()(const Plot& p) const {
-    Json out = Json::array();
-    for (const auto& series : p.series)
-      out.push_back({{"name", series.name},
-                     {"unit", series.unit.empty() ? Json() : Json(series.unit)},
-                     {"seconds", numbers(series.seconds)},
-                     {"values", numbers(series.values)}});
-    return out;
+  void operator()(const Plot& p) const {
+    json.begin_list();
+    for (const auto& series : p.series) {
+      json.begin_record();
+      json.member("name", series.name);
+      json.text_or_null("unit", series.unit);
+      numbers("seconds", series.seconds);
+      numbers("values", series.values);
+      json.end_record();
+    }
+    json.end_list();
   }
 
  private:
-  Json numbers(const std::vector<double>& all) const {
-    Json out = Json::array();
-    for (const double number : all) out.push_back(std::isfinite(number) ? (*this)(number) : Json());
-    return out;
+  void member(std::string_view key, const Value& value, Show show) const {
+    if (show == Show::text) return;
+    json.key(key);
+    json.value(value);
+  }
+  void numbers(std::string_view key, const std::vector<double>& all) const {
+    json.key(key);
+    json.begin_list();
+    for (const double number : all) json.value(number);
+    json.end_list();
   }
 };
 
-Json json(const Value& value) { return std::visit(ToJson{}, value.data()); }
-
 }  // namespace
 
-std::string to_json(const Value& value) {
+void JsonWriter::begin(char first) {
+  if (needs_comma()) *out_ += ',';
+  *out_ += first;
+}
+
+void JsonWriter::written(std::string_view json) {
+  if (json.empty()) return;
+  if (needs_comma()) *out_ += ',';
+  *out_ += json;
+}
+
+void JsonWriter::key(std::string_view key) {
+  value(key);
+  *out_ += ':';
+}
+
+void JsonWriter::integer(std::int64_t number) {
+  const fmt::format_int digits(number);
+  written({digits.data(), digits.size()});
+}
+
+void JsonWriter::natural(std::uint64_t number) {
+  const fmt::format_int digits(number);
+  written({digits.data(), digits.size()});
+}
+
+void JsonWriter::value(double number) {
+  constexpr double kMostWhole = 9.0e15;  // Beyond it not every whole number is a double.
+  if (!std::isfinite(number)) return null();
+  if (number == std::floor(number) && std::abs(number) < kMostWhole)
+    return integer(static_cast<std::int64_t>(number));
+  std::array<char, 64> digits;
+  const auto* end = nlohmann::detail::to_chars(digits.data(), digits.data() + digits.size(), number);
+  written({digits.data(), static_cast<std::size_t>(end - digits.data())});
+}
+
+void JsonWriter::value(std::string_view text) {
   // Names come from files and drives: a byte that is no UTF-8 becomes U+FFFD instead of an exception.
-  return json(value).dump(-1, ' ', false, Json::error_handler_t::replace);
+  const bool plain = std::all_of(text.begin(), text.end(), is_plain);
+  if (!plain && !is_utf8(text))
+    return written(Json(std::string(text)).dump(-1, ' ', false, Json::error_handler_t::replace));
+  if (plain) return quoted(text, "\"");
+  begin('"');
+  for (const char c : text) append_escaped(c, *out_);
+  *out_ += '"';
+}
+
+/// In one go: most of the time of a writer is spent here.
+void JsonWriter::quoted(std::string_view text, std::string_view end) {
+  const bool comma = needs_comma();
+  const auto size = out_->size();
+  out_->resize(size + (comma ? 2 : 1) + text.size() + end.size());
+  auto* at = out_->data() + size;
+  if (comma) *at++ = ',';
+  *at++ = '"';
+  std::copy(end.begin(), end.end(), std::copy(text.begin(), text.end(), at));
+}
+
+void JsonWriter::write(const Value& tree) { std::visit(ToJson{*this}, tree.data()); }
+
+std::string to_json(const Value& value) {
+  std::string out;
+  JsonWriter(out).value(value);
+  return out;
 }
 
 namespace {

@@ -48,6 +48,7 @@ std::string line_text(const Value& value) {
                         },
                         [](const Table&) { return std::string(); },
                         [](const Plot&) { return std::string(); },
+                        [](const Written& w) { return w.json; },
                     },
                     value.data());
 }

@@ -18,5 +18,6 @@ Value::Value(List list) : data_(std::move(list)) {}
 Value::Value(Record record) : data_(std::move(record)) {}
 Value::Value(Table table) : data_(std::move(table)) {}
 Value::Value(Plot plot) : data_(std::move(plot)) {}
+Value::Value(Written json) : data_(std::move(json)) {}
 
 }  // namespace servoctl::report

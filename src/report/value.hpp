@@ -23,6 +23,11 @@ struct Hex {
 /// Where a field is shown. Text is for reading, JSON carries everything.
 enum class Show : std::uint8_t { everywhere, text, json };
 
+/// What has been written as JSON already: samples, of which there may be millions. As text it is as in JSON.
+struct Written {
+  std::string json;
+};
+
 class Value;
 struct Field;
 using List = std::vector<Value>;
@@ -51,7 +56,7 @@ struct Plot {
 class Value {
  public:
   using Data = std::variant<std::monostate, bool, std::int64_t, std::uint64_t, double, std::string, Hex, List,
-                            Record, Table, Plot>;
+                            Record, Table, Plot, Written>;
   // Defined where Field is complete.
   Value();
   Value(const Value&);
@@ -70,6 +75,7 @@ class Value {
   Value(Record record);
   Value(Table table);
   Value(Plot plot);
+  Value(Written json);
   template <class T>
   requires std::is_integral_v<T> Value(T number);
   // NOLINTEND(google-explicit-constructor)

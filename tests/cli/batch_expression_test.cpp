@@ -34,6 +34,13 @@ std::string refusal(std::string_view text, const Value& result = two_nodes()) {
   return met ? std::string() : met.error().message;
 }
 
+TEST(Expectation, LooksIntoSamplesThatAreKeptAsJson) {
+  const report::Written kept{R"([{"node":1,"service":"pdo"},{"node":2,"service":"sdo"}])"};
+  EXPECT_EQ(refusal(".samples[1].service == 'sdo'", Record{{"frames", 2}, {"samples", kept}}), "");
+  EXPECT_EQ(refusal("[0].node == 1", kept), "");
+  EXPECT_NE(refusal("[0].node == 2", kept), "");
+}
+
 TEST(Expectation, ComparesNumbersAsNumbersAndTextAsText) {
   for (const auto* text :
        {"[0].value == 400", "[0].value==0x190", "[0].value != 401", "[0].value < 400.5", "[0].value <= 400",
