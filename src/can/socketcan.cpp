@@ -21,7 +21,7 @@ namespace {
 using std::chrono::milliseconds;
 
 /// Frames one call takes from the kernel.
-constexpr std::size_t kBatch = 16;
+constexpr std::size_t kBatch = 64;
 /// Frames that wait here at most, some 24 MB; beyond that the kernel's queue has to do.
 constexpr std::size_t kMostWaiting = 1U << 20U;
 
@@ -120,15 +120,16 @@ Result<void> SocketCanBus::send(const Frame& frame) {
 }
 
 Result<std::optional<Frame>> SocketCanBus::receive(TimePoint deadline) {
-  if (inbox_.empty() && delay_ > Duration::zero())
-    nap(std::min(delay_, std::max(deadline - now(), Duration{})));
+  if (inbox_.empty() && delay_ > Duration::zero()) {
+    wait_for(-1, 0, std::min(deadline, now() + delay_));
+    drain();  // Most likely there is something: no need to ask first.
+  }
   while (inbox_.empty()) {
     if (failed_) return tl::unexpected<Error>(*std::exchange(failed_, std::nullopt));
     if (wait_for(socket_.get(), POLLIN, deadline) != Wake::ready) return std::optional<Frame>();
-    if (const auto filled = fill(); !filled) return tl::unexpected<Error>(filled.error());
-    given_ = 0;
+    drain();
   }
-  if (inbox_.size() >= kBatch && given_ % kBatch == 0) drain();
+  if (inbox_.size() >= kBatch && given_ >= kBatch) drain();
   ++given_;
   const auto [frame, time] = inbox_.front();
   inbox_.pop_front();
@@ -138,6 +139,7 @@ Result<std::optional<Frame>> SocketCanBus::receive(TimePoint deadline) {
 
 /// Whoever is slower than the bus finds its frames here: the kernel drops what its queue has no room for.
 void SocketCanBus::drain() {
+  given_ = 0;
   for (auto before = inbox_.size(); !failed_ && before < kMostWaiting; before = inbox_.size()) {
     if (const auto filled = fill(); !filled) failed_ = filled.error();
     if (inbox_.size() < before + kBatch) return;

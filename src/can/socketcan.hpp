@@ -76,7 +76,7 @@ class SocketCanBus final : public Bus {
   };
   std::deque<Received> inbox_;   ///< Received, not given yet.
   std::optional<Error> failed_;  ///< What ended drain(); told when the inbox is empty.
-  std::size_t given_ = 0;        ///< Frames out of the inbox since it was empty.
+  std::size_t given_ = 0;        ///< Frames out of the inbox since drain().
   Duration delay_{};             ///< See gather().
   TimePoint arrived_{};
 };
