@@ -76,11 +76,15 @@ Result<PdoFile> read_json(std::string_view text, const std::string& file) {
 
 }  // namespace
 
+Result<PdoFile> parse_pdo_file(std::string_view text, const std::filesystem::path& file) {
+  if (lower(file.extension().string()) == ".json") return read_json(text, file.string());
+  return drive::parse_pdo_file(text, file.string());
+}
+
 Result<PdoFile> read_pdo_file(const std::filesystem::path& file) {
   const auto text = read_file(file);
   if (!text) return tl::unexpected<Error>(text.error());
-  if (lower(file.extension().string()) == ".json") return read_json(*text, file.string());
-  return drive::parse_pdo_file(*text, file.string());
+  return parse_pdo_file(*text, file);
 }
 
 }  // namespace servoctl::commands

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "commands/pdo_changing.hpp"
@@ -23,6 +24,8 @@ drive::PdoRecipe recipe_of(const drive::Profile* profile, const PresentPdos& pre
 
 /// A file of PDOs, `.toml` or `.json`. Errc::file with file and line.
 Result<drive::PdoFile> read_pdo_file(const std::filesystem::path& file);
+/// The same for a text; the name of the file decides how it is read.
+Result<drive::PdoFile> parse_pdo_file(std::string_view text, const std::filesystem::path& file);
 
 /// The text of such a file; `names` are those of the mapped objects, one list for each recipe.
 std::string pdo_toml(const drive::PdoFile& file, const std::vector<std::vector<std::string>>& names);
