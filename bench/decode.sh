@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Times `decode` on recordings of a million frames: a bus at work (PDOs and SYNC, some SDO and heartbeats), and SDO alone.
+# Times `decode` on recordings of a million frames: a bus at work (PDOs and SYNC, some SDO and heartbeats), and SDO alone;
+# beside the readers of python-can, which take the frames out of the same files and do nothing with them.
 # usage: decode.sh BUILD_DIR
 set -euo pipefail
 build=$1
@@ -38,12 +39,29 @@ command -v log2asc >/dev/null && log2asc -I "$work/work.log" -O "$work/work.asc"
 
 # CPU time, for a machine may have other work; decode has one thread.
 export SERVOCTL_DRIVES=$data/eds TIMEFORMAT='%U %S'
-printf 'decode, a million frames, best of 5 runs      CPU s   million frames/s\n'
-for run in "work.log text" "work.log jsonl" "sdo.log text" "work.asc text"; do
-  set -- $run
-  [ -f "$work/$1" ] || continue
+printf 'a million frames, best of 5 runs              CPU s   million frames/s\n'
+show() { awk -v name="$1" -v t="$2" 'BEGIN { printf "%-42s %8.2f %10.2f\n", name, t, 1 / t }'; }
+for run in "work.log text" "work.log jsonl" "work.log json" "sdo.log text" "sdo.log jsonl" "work.asc text"; do
+  read -r file form <<<"$run"
+  [ -f "$work/$file" ] || continue
   best=$(for _ in 1 2 3 4 5; do
-    { time "$build/servoctl" decode "$work/$1" -d gsd600 -o "$2" >"$work/out"; } 2>&1
+    { time "$build/servoctl" decode "$work/$file" -d gsd600 -o "$form" >"$work/out"; } 2>&1
   done | awk '{ t = $1 + $2; if (NR == 1 || t < best) best = t } END { print best }')
-  awk -v name="$1, -o $2" -v t="$best" 'BEGIN { printf "%-42s %8.2f %10.2f\n", name, t, 1 / t }'
+  show "decode $file, -o $form" "$best"
+done
+
+python=$("$(dirname "$0")/python_can.sh") || exit 0
+for run in "work.log CanutilsLogReader" "work.asc ASCReader"; do
+  read -r file reader <<<"$run"
+  [ -f "$work/$file" ] || continue
+  show "python-can $reader, one run" "$("$python" - "$work/$file" "$reader" <<'PYTHON'
+import sys, time
+import can
+
+begin = time.process_time()
+frames = sum(1 for _ in getattr(can, sys.argv[2])(sys.argv[1]))
+assert frames == 1_000_000, frames
+print(time.process_time() - begin)
+PYTHON
+)"
 done
