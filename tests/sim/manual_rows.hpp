@@ -7,6 +7,7 @@
 #include "base/csv.hpp"
 #include "base/file.hpp"
 #include "base/number.hpp"
+#include "sim_support.hpp"
 
 namespace servoctl::sim {
 
@@ -38,5 +39,38 @@ inline std::vector<ManualRow> manual_rows(const std::string& family, const std::
   }
   return out;
 }
+
+inline constexpr unsigned kReached = 1U << 10U;
+inline constexpr unsigned kLimit = 1U << 11U;
+inline constexpr unsigned kError = 1U << 13U;
+
+inline constexpr ObjectAddress kControlword{0x6040, 0};
+inline constexpr ObjectAddress kMode{0x6060, 0};
+inline constexpr ObjectAddress kTarget{0x607A, 0};
+inline constexpr ObjectAddress kLower{0x607D, 1};
+inline constexpr ObjectAddress kUpper{0x607D, 2};
+inline constexpr ObjectAddress kPosition{0x6064, 0};
+inline constexpr ObjectAddress kVelocity{0x60FF, 0};
+inline constexpr ObjectAddress kPoint{0x60C1, 1};
+
+/// A drive whose rows of a manual are looked for.
+class RowTest : public DrivenTest {
+ protected:
+  /// The row of the manual comes; `of` are the bits that are looked at where the row prints more.
+  void expect_row(const std::string& mode, unsigned line, const std::string& step, unsigned of = 0xFFFF) {
+    for (const auto& row : manual_rows(family_, mode, line, line))
+      if (row.step == step) {
+        EXPECT_TRUE(reaches(row.statusword, row.mask & of))
+            << mode << " line " << line << ": " << std::hex << status() << " for " << row.statusword;
+        return;
+      }
+    ADD_FAILURE() << "the manual has no row " << mode << " " << line << " " << step;
+  }
+  void control(std::string_view word) { write(kControlword, word); }
+  void stop_at(std::string_view lower, std::string_view upper) {
+    write(kLower, lower);
+    write(kUpper, upper);
+  }
+};
 
 }  // namespace servoctl::sim
