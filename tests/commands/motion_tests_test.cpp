@@ -123,6 +123,27 @@ TEST_F(MotionTests, HomeFailsWhereItEndsSomewhereElseEachTime) {
   EXPECT_TRUE(failed());
 }
 
+TEST_F(MotionTests, HomeIsMeasuredAgainstTheEncoderWhichAnIndexPulseFollowsAndASwitchDoesNot) {
+  build("cia402@1", "cia402");
+  for (const auto& [object, value] : {std::pair(ObjectAddress{0x608F, 1}, 10000U),
+                                      {ObjectAddress{0x6092, 1}, 10000U},
+                                      {ObjectAddress{0x6099, 1}, 100000U},
+                                      {ObjectAddress{0x6099, 2}, 10000U},
+                                      {ObjectAddress{0x609A, 0}, 1000000U}})
+    ASSERT_TRUE(session->download(1, object, store_le(value, 4)));
+  drive().track().scatter = 0.1;  // Turns: 36 degrees.
+  const auto home = [&](const std::string& method) {
+    return run("test home", {{"method", method}, {"--repeat", "3"}, {"--limit", "3000rpm"}});
+  };
+  const auto by_switch = home("23");
+  EXPECT_EQ(criterion(by_switch, "found"), "passed 3");
+  EXPECT_EQ(criterion(by_switch, "spread"), "passed 0");
+  EXPECT_EQ(criterion(by_switch, "encoder_spread"), "failed 36");
+  const auto by_index = home("7");
+  EXPECT_EQ(criterion(by_index, "found"), "passed 3");
+  EXPECT_EQ(criterion(by_index, "encoder_spread"), "passed 0");
+}
+
 TEST_F(MotionTests, HomeStopsAtTheFirstThatFails) {
   build("sv2@1", "sv2");
   drive().track().negative_limit.stuck = true;
