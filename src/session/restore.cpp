@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <set>
 
+#include "canopen/pdo.hpp"
 #include "session/deaf.hpp"
 #include "session/write.hpp"
 
@@ -55,7 +56,7 @@ class Run {
     Values out = *present_;
     for (auto& [object, data] : out)
       if (object.index >= 0x2000 && object.index < 0x6000 && (unlocked || locked.count(object) == 0))
-        data = other_than(data);
+        data = other_than(object, data);
     out_.notices.push_back(fmt::format(
         "node {}: it worked in its RAM, so every value is written to its flash, not only those that differ",
         node_));
@@ -108,7 +109,7 @@ class Run {
     const Deaf deaf(*session_);
     auto now = read_touched();
     for (const auto object : touched_)
-      if (now.count(object) == 0) now.emplace(object, other_than(present_->at(object)));
+      if (now.count(object) == 0) now.emplace(object, other_than(object, present_->at(object)));
     std::size_t ignored = 0;
     if (!silent_) (void)write(plan_writes(profile_, now, *present_), ignored);
     now = silent_ ? Values{} : read_touched();
@@ -119,8 +120,14 @@ class Run {
     out_.rolled_back = out_.astray.empty();
   }
 
-  /// Stands for a value that could not be read: it is written back all the same.
-  static Bytes other_than(Bytes bytes) {
+  /// Stands for a value that could not be read: it is written back all the same. Of a COB-ID only bit 31
+  /// is another, so that no made-up CAN-ID is ever sent.
+  static Bytes other_than(ObjectAddress object, Bytes bytes) {
+    const auto pdo = canopen::pdo_at(object.index);
+    if (pdo && !pdo->mapping && object.sub == 1 && bytes.size() == 4) {
+      bytes[3] ^= 0x80;
+      return bytes;
+    }
     for (auto& byte : bytes) byte = static_cast<std::uint8_t>(~byte);
     return bytes;
   }

@@ -22,38 +22,35 @@ std::optional<std::uint16_t> block_of(std::uint16_t index) {
 }
 
 /// The writes of one PDO, or of one assignment.
-class PdoPlan {
+class BlockPlan {
  public:
-  PdoPlan(const drive::Profile* profile, const Values& present, const Values& wanted, std::uint16_t block)
+  BlockPlan(const drive::Profile* profile, const Values& present, const Values& wanted, std::uint16_t block)
       : by_count_(profile != nullptr && profile->rules.pdo.disable_by_count),
         present_(&present),
         wanted_(&wanted),
-        communication_(block),
-        list_(is_assignment(block) ? block : static_cast<std::uint16_t>(block + 0x200)) {}
+        cob_id_{block, 1},
+        list_(is_assignment(block) ? block : static_cast<std::uint16_t>(block + 0x200)) {
+    const bool has_cob_id = list_ != block && has(cob_id_);
+    if (has_cob_id) now_ = present.at(cob_id_);
+    const bool valid = has_cob_id && (number(present, cob_id_) & canopen::kPdoInvalid) == 0;
+    if (valid && (!by_count_ || differs(cob_id_)))
+      now_ = store_le(number(present, cob_id_) | canopen::kPdoInvalid, 4);
+  }
 
-  void add_to(std::vector<PlannedWrite>& out) {
-    if (list_ != communication_)
-      add_pdo(out);
-    else if (list_differs())
-      add_list(out);
+  void add_switching_off(std::vector<PlannedWrite>& out) const {
+    if (now_ && *now_ != present_->at(cob_id_)) out.push_back({cob_id_, *now_});
+  }
+  void add_settings(std::vector<PlannedWrite>& out) const {
+    if (list_differs()) add_list(out);
+    for (const auto& [object, data] : *wanted_)
+      if (list_ != cob_id_.index && object.index == cob_id_.index && object.sub > 1 && differs(object))
+        out.push_back({object, data});
+  }
+  void add_switching_on(std::vector<PlannedWrite>& out) const {
+    if (now_ && *now_ != wanted_->at(cob_id_)) out.push_back({cob_id_, wanted_->at(cob_id_)});
   }
 
  private:
-  void add_pdo(std::vector<PlannedWrite>& out) const {
-    const ObjectAddress cob_id{communication_, 1};
-    const bool valid = has(cob_id) && (number(*present_, cob_id) & canopen::kPdoInvalid) == 0;
-    const bool switch_off = valid && (!by_count_ || differs(cob_id));
-    auto now = has(cob_id) ? present_->at(cob_id) : Bytes();
-    if (switch_off) {
-      now = store_le(number(*present_, cob_id) | canopen::kPdoInvalid, 4);
-      out.push_back({cob_id, now});
-    }
-    if (list_differs()) add_list(out);
-    for (const auto& [object, data] : *wanted_)
-      if (object.index == communication_ && object.sub > 1 && differs(object)) out.push_back({object, data});
-    if (has(cob_id) && now != wanted_->at(cob_id)) out.push_back({cob_id, wanted_->at(cob_id)});
-  }
-
   static std::uint32_t number(const Values& values, ObjectAddress object) {
     const auto& bytes = values.at(object);
     return static_cast<std::uint32_t>(load_le(ByteSpan(bytes).first(std::min<std::size_t>(bytes.size(), 8))));
@@ -81,40 +78,39 @@ class PdoPlan {
   bool by_count_;
   const Values* present_;
   const Values* wanted_;
-  std::uint16_t communication_;
-  std::uint16_t list_;  ///< The mapping, or the assignment.
+  ObjectAddress cob_id_;
+  std::uint16_t list_;        ///< The mapping, or the assignment.
+  std::optional<Bytes> now_;  ///< The COB-ID while the rest is set; empty where there is none.
 };
+
+/// No two PDOs may have one COB-ID at any moment, also when they exchange theirs: all are switched off before
+/// the first is switched on.
+void add_blocks(const std::vector<BlockPlan>& blocks, std::vector<PlannedWrite>& out) {
+  for (const auto& block : blocks) block.add_switching_off(out);
+  for (const auto& block : blocks) block.add_settings(out);
+  for (const auto& block : blocks) block.add_switching_on(out);
+}
 
 }  // namespace
 
 std::vector<PlannedWrite> plan_writes(const drive::Profile* profile, const Values& present,
                                       const Values& wanted) {
-  std::vector<PlannedWrite> out;
-  std::optional<std::uint16_t> planned;
-  const auto differs = [&](ObjectAddress object, const Bytes& data) {
+  std::vector<PlannedWrite> before;
+  std::vector<PlannedWrite> after;
+  std::set<std::uint16_t> blocks;
+  for (const auto& [object, data] : wanted) {
     const auto found = present.find(object);
-    return found != present.end() && found->second != data;
-  };
-  for (const auto& each : wanted) {
-    const auto object = each.first;
-    const auto& data = each.second;
-    if (!differs(object, data)) continue;
-    const auto block = block_of(object.index);
-    if (!block) {
-      out.push_back({object, data});
-      continue;
-    }
-    if (block == planned) continue;
-    // A block is planned where its first difference is met, communication or mapping.
-    const bool met = std::any_of(wanted.begin(), wanted.end(), [&](const auto& value) {
-      return value.first < object && block_of(value.first.index) == block &&
-             differs(value.first, value.second);
-    });
-    if (met) continue;
-    planned = block;
-    PdoPlan(profile, present, wanted, *block).add_to(out);
+    if (found == present.end() || found->second == data) continue;
+    if (const auto block = block_of(object.index))
+      blocks.insert(*block);
+    else
+      (blocks.empty() ? before : after).push_back({object, data});
   }
-  return out;
+  std::vector<BlockPlan> plans;
+  for (const auto block : blocks) plans.emplace_back(profile, present, wanted, block);
+  add_blocks(plans, before);
+  before.insert(before.end(), after.begin(), after.end());
+  return before;
 }
 
 std::set<ObjectAddress> touched_by(const std::vector<PlannedWrite>& plan, const Values& present) {

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,47 +17,65 @@
 
 namespace servoctl::session {
 
-/// What goes wrong with one of the writes, counted from 0; -1: nothing.
-struct WriteTrouble {
+/// What goes wrong with one of the SDO requests, reads and writes, counted from 0; -1: nothing.
+struct StepTrouble {
   int refused = -1;
   int silent = -1;     ///< The drive is gone from here on.
   int cancelled = -1;  ///< Ctrl-C after it.
   bool refuses_empty_entries = false;
 };
 
-/// A simulated bus that sees the SDO writes to a drive.
+/// A simulated bus that sees the SDO requests to a drive, and the drive's COB-IDs after each frame.
 class PdoBus final : public can::Bus {
  public:
-  PdoBus(sim::SimBus& bus, sim::SimDrive& drive, WriteTrouble trouble)
-      : bus_(&bus), drive_(&drive), trouble_(trouble) {}
+  PdoBus(sim::SimBus& bus, sim::SimDrive& drive, StepTrouble trouble)
+      : bus_(&bus), drive_(&drive), trouble_(trouble) {
+    for (const auto& object : drive.profile().dictionary.objects())
+      if (const auto place = canopen::pdo_at(object.index); place && !place->mapping)
+        cob_ids_.push_back({object.index, 1});
+  }
 
   TimePoint now() const override { return bus_->now(); }
   TimePoint next_event() const override { return bus_->next_event(); }
   Result<void> send(const can::Frame& frame) override {
-    const bool write = frame.id == 0x600U + drive_->node() && (frame.data[0] & 0xE0U) == 0x20;
-    const bool nmt = frame.id == 0;
-    if (write || nmt) sent.push_back(can::to_string(frame));
-    if (!write) return bus_->send(frame);
-    const int number = writes++;
+    const auto command = frame.data[0] & 0xE0U;
+    const bool to_drive = frame.id == 0x600U + drive_->node();
+    const bool write = to_drive && command == 0x20;
+    if (write || frame.id == 0) sent.push_back(can::to_string(frame));
+    if (!write && !(to_drive && command == 0x40)) return pass(frame);
+    const int number = requests++;
     if (number == trouble_.silent) drive_->misbehaviour().silent = true;
-    if (number != trouble_.refused && !(trouble_.refuses_empty_entries && is_empty_entry(frame)))
-      return bus_->send(frame);
+    if (number != trouble_.refused && !(write && trouble_.refuses_empty_entries && is_empty_entry(frame)))
+      return pass(frame);
     auto refusal = can::parse_frame("580#8000000000000406").value();
     refusal.id += drive_->node();
     std::copy_n(frame.data.begin() + 1, 3, refusal.data.begin() + 1);
     refusal_ = refusal;
+    refused = static_cast<std::uint16_t>(frame.data[1] | frame.data[2] << 8U);
     return {};
   }
   Result<std::optional<can::Frame>> receive(TimePoint deadline) override {
     if (refusal_) return std::exchange(refusal_, std::nullopt);
     return bus_->receive(deadline);
   }
-  bool is_cancelled() const { return trouble_.cancelled >= 0 && writes > trouble_.cancelled; }
+  bool is_cancelled() const { return trouble_.cancelled >= 0 && requests > trouble_.cancelled; }
 
   std::vector<std::string> sent;  ///< SDO writes and NMT commands.
-  int writes = 0;
+  int requests = 0;
+  std::uint16_t refused = 0;   ///< Index of what was refused last.
+  bool shared_cob_id = false;  ///< Two valid PDOs had one at some moment.
 
  private:
+  Result<void> pass(const can::Frame& frame) {
+    auto sent_on = bus_->send(frame);
+    std::set<std::uint64_t> valid;
+    for (const auto object : cob_ids_) {
+      const auto cob_id = load_le(drive_->value(object));
+      if ((cob_id & canopen::kPdoInvalid) == 0 && !valid.insert(cob_id & canopen::kPdoCobIdMask).second)
+        shared_cob_id = true;
+    }
+    return sent_on;
+  }
   static bool is_empty_entry(const can::Frame& frame) {
     const auto place = canopen::pdo_at(static_cast<std::uint16_t>(frame.data[1] | frame.data[2] << 8U));
     return place && place->mapping && frame.data[3] > 0 &&
@@ -64,7 +84,8 @@ class PdoBus final : public can::Bus {
 
   sim::SimBus* bus_;
   sim::SimDrive* drive_;
-  WriteTrouble trouble_;
+  StepTrouble trouble_;
+  std::vector<ObjectAddress> cob_ids_;
   std::optional<can::Frame> refusal_;
 };
 
@@ -81,8 +102,10 @@ class PdoWorld {
   }
 
   static drive::Profile profile_of(std::string_view family) {
+    static std::map<std::string, drive::Profile, std::less<>> loaded;
+    if (const auto found = loaded.find(family); found != loaded.end()) return found->second;
     const std::filesystem::path folders[] = {std::filesystem::path(SERVOCTL_SOURCE_DIR) / "eds"};
-    return drive::load_profile(family, folders).value();
+    return loaded.emplace(family, drive::load_profile(family, folders).value()).first->second;
   }
 
   sim::SimDrive& drive() { return drive_; }
@@ -97,18 +120,21 @@ class PdoWorld {
   }
 
   /// Writes these PDOs over what is there.
-  RestoreOutcome change(const std::vector<canopen::Pdo>& wanted, WriteTrouble trouble = {},
+  RestoreOutcome change(const std::vector<canopen::Pdo>& wanted, StepTrouble trouble = {},
                         const Values& assignments = {}) {
     auto present = read();
     Values values = assignments;
     for (const auto& pdo : wanted)
       for (auto& [object, data] : values_of(pdo, present)) values.emplace(object, data);
+    auto quiet = session({});
+    EXPECT_TRUE(complete(quiet, drive_.node(), present, values));
     auto troubled = session(trouble);
-    EXPECT_TRUE(complete(troubled, drive_.node(), present, values));
     const auto* bus = last_bus_;
     auto outcome = change_pdos(troubled, client_profile, drive_.node(), present, values, {});
     sent = bus->sent;
-    writes = bus->writes;
+    requests = bus->requests;
+    refused = bus->refused;
+    shared_cob_id = bus->shared_cob_id;
     return outcome;
   }
 
@@ -122,10 +148,11 @@ class PdoWorld {
   }
 
   /// Refuses and cancels as told; the bus lives as long as the session.
-  Session session(WriteTrouble trouble) {
+  Session session(StepTrouble trouble) {
     auto bus = std::make_unique<PdoBus>(bus_, drive_, trouble);
     auto* seen = last_bus_ = bus.get();
     Session out(std::move(bus), "sim", {});
+    out.options().timeout = std::chrono::milliseconds(50);  // The simulated drive answers at once or never.
     out.options().cancelled = [seen] { return seen->is_cancelled(); };
     return out;
   }
@@ -140,7 +167,9 @@ class PdoWorld {
  public:
   const drive::Profile* client_profile;
   std::vector<std::string> sent;
-  int writes = 0;
+  int requests = 0;
+  std::uint16_t refused = 0;
+  bool shared_cob_id = false;
 };
 
 inline canopen::PdoEntry entry(std::uint32_t mapping) { return canopen::parse_pdo_entry(mapping); }

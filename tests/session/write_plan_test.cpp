@@ -59,6 +59,32 @@ TEST(PlanOfWrites, ClearsAMappingByItsCountAlone) {
   EXPECT_EQ(told(plan_writes(nullptr, kPresent, wanted)), (Steps{"0x1800:1=810100C0", "0x1A00:0=00"}));
 }
 
+/// kPresent beside a second TPDO, valid as well.
+Values two_pdos() {
+  return with(kPresent,
+              {{{0x1801, 1}, {0x81, 0x02, 0, 0}}, {{0x1A01, 0}, {1}}, {{0x1A01, 1}, {0x20, 0, 0x64, 0x60}}});
+}
+
+TEST(PlanOfWrites, SwitchesAllPdosOffBeforeItSwitchesOneOn) {
+  const auto present = two_pdos();
+  const auto wanted = with(
+      present, {{{0x1800, 1}, {0x81, 0x02, 0, 0}}, {{0x1801, 1}, {0x81, 0x01, 0, 0x40}}, {{0x1A01, 0}, {0}}});
+  const Steps steps{"0x1800:1=810100C0", "0x1801:1=81020080", "0x1A01:0=00", "0x1800:1=81020000",
+                    "0x1801:1=81010040"};
+  EXPECT_EQ(told(plan_writes(nullptr, present, wanted)), steps);
+  drive::Profile profile;
+  profile.rules.pdo.disable_by_count = true;
+  EXPECT_EQ(told(plan_writes(&profile, present, wanted)), steps);
+}
+
+TEST(PlanOfWrites, ChangesPdosBetweenWhatStandsBelowAndAboveThem) {
+  const auto present = with(two_pdos(), {{{0x1017, 0}, {0, 0}}, {{0x2000, 1}, {0, 0}}});
+  const auto wanted =
+      with(present, {{{0x1017, 0}, {100, 0}}, {{0x1801, 1}, {0x81, 0x02, 0, 0x80}}, {{0x2000, 1}, {1, 0}}});
+  EXPECT_EQ(told(plan_writes(nullptr, present, wanted)),
+            (Steps{"0x1017:0=6400", "0x1801:1=81020080", "0x2000:1=0100"}));
+}
+
 TEST(PlanOfWrites, OpensAnAssignmentByItsCountToo) {
   const Values present{{{0x1C12, 0}, {1}}, {{0x1C12, 1}, {0x01, 0x17}}};
   const Values wanted{{{0x1C12, 0}, {1}}, {{0x1C12, 1}, {0x02, 0x17}}};
