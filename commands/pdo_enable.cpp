@@ -41,7 +41,8 @@ Result<void> check(Context&, const Arguments& arguments) {
   return {};
 }
 
-Result<report::Value> run(Context& context, const Arguments& arguments, Action action) {
+template <Action action>
+Result<report::Value> run(Context& context, const Arguments& arguments) {
   if (const auto fits = check(context, arguments); !fits) return tl::unexpected<Error>(fits.error());
   const PdoEdit edit = [&](const PresentPdos& present) -> Result<WantedPdos> {
     WantedPdos out;
@@ -56,54 +57,33 @@ Result<report::Value> run(Context& context, const Arguments& arguments, Action a
   return change_pdos(context, edit, {.keep = arguments.has("--keep"), .unlock = arguments.has("--unlock")});
 }
 
-Result<report::Value> run_enable(Context& context, const Arguments& arguments) {
-  return run(context, arguments, Action::enable);
-}
-Result<report::Value> run_disable(Context& context, const Arguments& arguments) {
-  return run(context, arguments, Action::disable);
-}
-Result<report::Value> run_clear(Context& context, const Arguments& arguments) {
-  return run(context, arguments, Action::clear);
+template <Action action>
+constexpr Command command(std::string_view path, std::string_view summary, std::string_view details) {
+  return {.path = path,
+          .summary = summary,
+          .details = details,
+          .parameters = kParameters,
+          .needs = Needs::node | Needs::dictionary,
+          .effect = Effect::stores,
+          .run = run<action>,
+          .check = check};
 }
 
 }  // namespace
 
 extern const Command kPdoEnable;
-const Command kPdoEnable{
-    .path = "pdo enable",
-    .summary = "Switch PDOs on",
-    .details =
-        "Bit 31 of the COB-ID goes, the other bits stay; on a family that assigns fixed PDOs, the PDO is "
-        "assigned.",
-    .parameters = kParameters,
-    .needs = Needs::node | Needs::dictionary,
-    .effect = Effect::stores,
-    .run = run_enable,
-    .check = check,
-};
+constexpr Command kPdoEnable = command<Action::enable>(
+    "pdo enable", "Switch PDOs on",
+    "Bit 31 of the COB-ID goes, the other bits stay; on a family that assigns fixed PDOs, the PDO is "
+    "assigned.");
 
 extern const Command kPdoDisable;
-const Command kPdoDisable{
-    .path = "pdo disable",
-    .summary = "Switch PDOs off",
-    .details = "Bit 31 of the COB-ID is set; what the PDO carries stays for `pdo enable`.",
-    .parameters = kParameters,
-    .needs = Needs::node | Needs::dictionary,
-    .effect = Effect::stores,
-    .run = run_disable,
-    .check = check,
-};
+constexpr Command kPdoDisable =
+    command<Action::disable>("pdo disable", "Switch PDOs off",
+                             "Bit 31 of the COB-ID is set; what the PDO carries stays for `pdo enable`.");
 
 extern const Command kPdoClear;
-const Command kPdoClear{
-    .path = "pdo clear",
-    .summary = "Switch PDOs off and empty them",
-    .details = "The PDO is switched off, and nothing is mapped into it.",
-    .parameters = kParameters,
-    .needs = Needs::node | Needs::dictionary,
-    .effect = Effect::stores,
-    .run = run_clear,
-    .check = check,
-};
+constexpr Command kPdoClear = command<Action::clear>(
+    "pdo clear", "Switch PDOs off and empty them", "The PDO is switched off, and nothing is mapped into it.");
 
 }  // namespace servoctl::commands
