@@ -95,10 +95,11 @@ struct Context {
   const drive::Profile* profile =
       nullptr;  ///< Set when a family was named; always when it needs a dictionary.
   std::span<const std::filesystem::path> drive_folders;
-  std::vector<std::uint8_t> nodes;  ///< Set when the command needs a node; 0 stands for all.
-  bool chinese = false;             ///< Names in Chinese where there are any.
-  bool read_only = false;           ///< Nothing in a drive may be changed.
-  bool dry_run = false;             ///< Show what would be sent, send nothing.
+  std::filesystem::path state_folder;  ///< For records of changes under way; empty: none are kept.
+  std::vector<std::uint8_t> nodes;     ///< Set when the command needs a node; 0 stands for all.
+  bool chinese = false;                ///< Names in Chinese where there are any.
+  bool read_only = false;              ///< Nothing in a drive may be changed.
+  bool dry_run = false;                ///< Show what would be sent, send nothing.
   /// Asks before something that stores, resets, re-addresses or moves; Errc::refused when the answer is no.
   std::function<Result<void>(std::string_view question)> confirm;
   /// Shows one sample of a command that goes on: the line in text, the record with `-o jsonl`. With `--json`

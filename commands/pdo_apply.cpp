@@ -107,7 +107,9 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
                                 error.line ? fmt::format(":{}", *error.line) : std::string(), error.message);
     return tl::unexpected<Error>(std::move(error));
   };
-  return change_pdos(context, edit, {.keep = arguments.has("--keep"), .unlock = arguments.has("--unlock")});
+  return change_pdos(
+      context, edit,
+      {.keep = arguments.has("--keep"), .unlock = arguments.has("--unlock"), .file = arguments.text("file")});
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "canopen/nmt.hpp"
 #include "commands/change.hpp"
 #include "commands/pdo_check.hpp"
+#include "commands/pdo_record.hpp"
 #include "commands/pdo_report.hpp"
 #include "session/pdo_change.hpp"
 #include "session/pdo_setup.hpp"
@@ -30,6 +31,12 @@ struct Job {
   std::vector<session::PlannedWrite> plan;
 };
 
+/// A change that was cut off and is put back.
+struct Undone {
+  PdoRecord record;
+  RestoreJournal journal;
+};
+
 /// One command's change of some nodes.
 class Changing {
  public:
@@ -37,10 +44,11 @@ class Changing {
       : context_(&context), edit_(&edit), how_(how) {}
 
   Result<Value> run() {
+    if (const auto known = take_up_record(); !known) return tl::unexpected<Error>(known.error());
     if (const auto planned = plan_all(); !planned) return tl::unexpected<Error>(planned.error());
     if (context_->dry_run) return frames();
     const bool any =
-        std::any_of(jobs_.begin(), jobs_.end(), [](const Job& job) { return !job.plan.empty(); });
+        undone_ || std::any_of(jobs_.begin(), jobs_.end(), [](const Job& job) { return !job.plan.empty(); });
     if (any) {
       if (const auto quiet = check_quiet(); !quiet) return tl::unexpected<Error>(quiet.error());
       if (const auto yes = context_->confirm(question()); !yes) return tl::unexpected<Error>(yes.error());
@@ -56,6 +64,23 @@ class Changing {
   }
 
  private:
+  /// Of a change that was cut off only its own record is the way back; until then every other change says so.
+  Result<void> take_up_record() {
+    if (context_->nodes.size() == 1 && !how_.file.empty()) {
+      PdoRecord record(*context_, context_->nodes.front());
+      const auto journal = record.take_up(how_.file);
+      if (!journal) return tl::unexpected<Error>(journal.error());
+      if (*journal) {
+        undone_ = Undone{std::move(record), **journal};
+        how_.keep = how_.keep || undone_->journal.keep;
+        how_.unlock = how_.unlock || undone_->journal.unlock;
+        return {};
+      }
+    }
+    tell_cut_off_changes(*context_);
+    return {};
+  }
+
   Result<void> plan_all() {
     const auto read = session::read_pdo_values(*context_->session, context_->profile, context_->nodes);
     for (std::size_t i = 0; i < read.size(); ++i) {
@@ -137,18 +162,38 @@ class Changing {
     return table;
   }
 
+  bool is_idle(const Job& job) const { return job.plan.empty() && !how_.keep; }
+
+  Result<void> make_ready(const Job& job, PdoRecord& before) const {
+    if (undone_) return put_means_back(*context_->session, undone_->journal);
+    return is_idle(job) ? Result<void>() : before.begin(job.present.values, how_.keep, how_.unlock);
+  }
+
   Record carry_out(const Job& job) {
-    if (job.plan.empty()) {
-      if (!how_.keep) return record(job, "as wanted already, nothing was written", {});
+    auto before = undone_ ? undone_->record : PdoRecord(*context_, job.present.node);
+    if (const auto ready = make_ready(job, before); !ready) {
+      context_->errors.push_back(ready.error());
+      return record(job, "not changed", {});
+    }
+    if (is_idle(job)) {
+      before.settle();
+      return record(job, "as wanted already, nothing was written", {});
     }
     const auto outcome =
         session::change_pdos(*context_->session, context_->profile, job.present.node, job.present.values,
                              job.values, {.keep = how_.keep, .unlock = how_.unlock});
     for (const auto& notice : outcome.notices) context_->notices.push_back(notice);
+    if (!outcome.failure || outcome.all_written || (outcome.rolled_back && !undone_)) before.settle();
     if (!outcome.failure) return record(job, "written, read back", kept(outcome));
     context_->errors.push_back(*outcome.failure);
     if (outcome.all_written) return record(job, "written, read back; keeping it failed", {});
     if (outcome.rolled_back) return record(job, "not changed: everything is as it was", {});
+    add_astray(job, outcome);
+    if (auto notice = before.notice(); !notice.empty()) context_->notices.push_back(std::move(notice));
+    return record(job, "failed; see the errors", {});
+  }
+
+  void add_astray(const Job& job, const session::RestoreOutcome& outcome) {
     for (const auto object : outcome.astray) {
       Error error;
       error.code = Errc::negative;
@@ -159,7 +204,6 @@ class Changing {
       error.hint = "`pdo show` reads it when the node answers; a restart of the drive brings what is stored";
       context_->errors.push_back(std::move(error));
     }
-    return record(job, "failed; see the errors", {});
   }
 
   /// Whether it survives power-off: where a family has neither 1010h nor stored copies, no manual tells.
@@ -193,6 +237,7 @@ class Changing {
   PdoChanging how_;
   bool copies_ = false;
   std::vector<Job> jobs_;
+  std::optional<Undone> undone_;
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -35,6 +36,7 @@ using PdoEdit = std::function<Result<WantedPdos>(const PresentPdos& present)>;
 struct PdoChanging {
   bool keep = false;
   bool unlock = false;
+  std::filesystem::path file = {};  ///< That says what is wanted, where one does.
 };
 
 /// The PDO of this name at this node. Errc::usage, with those it has.
@@ -43,6 +45,7 @@ Result<canopen::Pdo> find_pdo(const PresentPdos& present, std::string_view name)
 /// Reads the PDOs of all nodes, lets `edit` say what is wanted, and checks it, all before the first write;
 /// then changes node after node, each as a whole. With --dry-run the answer is the frames. Asks before it
 /// writes: whoever sends and receives these PDOs is concerned. Failures of a node go to `context.errors`.
+/// While a node is written to, its PdoRecord stands; one that is the file is put back and goes away.
 Result<report::Value> change_pdos(Context& context, const PdoEdit& edit, const PdoChanging& how);
 
 /// A mapped object as it is named on the command line: `statusword`, `0x6041:0`, with the number of bits

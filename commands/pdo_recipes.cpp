@@ -140,7 +140,7 @@ PdoRecipe recipe_of(const drive::Profile* profile, const PresentPdos& present, c
   const auto can_id = pdo.cob_id & canopen::kPdoCobIdMask;
   if (can_id > 0x7F && can_id <= 0x7FF && (can_id & 0x7FU) == present.node)
     out.cob_id = fmt::format("$NODEID+0x{:X}", can_id - present.node);
-  else if (can_id != 0)
+  else
     out.cob_id = fmt::format("0x{:X}", can_id);
   out.valid = pdo.is_valid();
   if (holds(communication, 2)) out.type = pdo.type;

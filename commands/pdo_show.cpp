@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "commands/command.hpp"
+#include "commands/pdo_record.hpp"
 #include "commands/pdo_report.hpp"
 #include "commands/records.hpp"
 #include "session/pdo_setup.hpp"
@@ -126,6 +127,7 @@ Record node_record(const Context& context, const NodePdos& mine, const std::vect
 
 Result<Value> run(Context& context, const Arguments&) {
   const auto read = session::read_pdo_values(*context.session, context.profile, context.nodes);
+  tell_cut_off_changes(context);
   std::vector<NodePdos> all;
   for (std::size_t i = 0; i < read.size(); ++i) {
     if (!read[i]) {

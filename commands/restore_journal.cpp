@@ -4,7 +4,9 @@
 
 #include "base/file.hpp"
 #include "base/number.hpp"
+#include "commands/backup_file.hpp"
 #include "commands/field_reader.hpp"
+#include "drive/drive_settings.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -63,6 +65,28 @@ Result<void> write_journal(const std::filesystem::path& path, const RestoreJourn
                         {"force", journal.force},       {"keep", journal.keep},
                         {"unlock", journal.unlock},     {"means", std::move(means)}};
   return write_file_atomically(path, report::to_json(document) + "\n");
+}
+
+Result<void> note_before(const Context& context, const std::filesystem::path& before,
+                         const session::Snapshot& snapshot, RestoreJournal journal) {
+  if (journal.means.empty())
+    for (const auto& mean : drive::means_of_writing(*context.profile)) {
+      const auto value = context.session->upload(journal.node, mean.first);
+      if (value) journal.means.emplace_back(mean.first, *value);
+      if (!value && value.error().code != Errc::sdo_abort) return tl::unexpected<Error>(value.error());
+    }
+  const auto saved = write_file_atomically(before, backup_text(context, make_backup(context, snapshot)));
+  return saved ? write_journal(journal_of(before), journal) : saved;
+}
+
+Result<void> put_means_back(session::Session& session, const RestoreJournal& journal) {
+  for (const auto& [object, bytes] : journal.means) {
+    const auto present = session.upload(journal.node, object);
+    if (!present) return tl::unexpected<Error>(present.error());
+    if (*present == bytes) continue;
+    if (const auto written = session.download(journal.node, object, bytes); !written) return written;
+  }
+  return {};
 }
 
 }  // namespace servoctl::commands

@@ -10,6 +10,8 @@
 #include "base/bytes.hpp"
 #include "base/object_address.hpp"
 #include "base/result.hpp"
+#include "commands/command.hpp"
+#include "session/snapshot.hpp"
 
 namespace servoctl::commands {
 
@@ -35,5 +37,13 @@ Result<std::optional<RestoreJournal>> read_journal(const std::filesystem::path& 
 
 /// Writes a journal; it is on the disk when this returns.
 Result<void> write_journal(const std::filesystem::path& path, const RestoreJournal& journal);
+
+/// Before the first write: saves what a node holds as a backup in `before`, and the journal beside it. A
+/// journal without memory switch and password gets them as they are now.
+Result<void> note_before(const Context& context, const std::filesystem::path& before,
+                         const session::Snapshot& snapshot, RestoreJournal journal);
+
+/// Memory switch and password as they were before what was cut off.
+Result<void> put_means_back(session::Session& session, const RestoreJournal& journal);
 
 }  // namespace servoctl::commands

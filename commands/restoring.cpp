@@ -40,7 +40,8 @@ class Restoring {
     if (const auto answer = context_->confirm(question(comparison.different)); !answer)
       return tl::unexpected<Error>(answer.error());
     if (const auto noted = note(target); !noted) return tl::unexpected<Error>(noted.error());
-    if (const auto back = put_means_back(); !back) return tl::unexpected<Error>(back.error());
+    if (const auto back = put_means_back(*context_->session, left_); !back)
+      return tl::unexpected<Error>(back.error());
     return carry_out(target, std::move(comparison.record));
   }
 
@@ -116,26 +117,7 @@ class Restoring {
     journal.keep = options_.keep;
     journal.unlock = options_.unlock;
     journal.means = left_.means;
-    for (const auto& mean : drive::means_of_writing(*context_->profile)) {
-      if (!left_.means.empty()) break;
-      const auto value = context_->session->upload(node_, mean.first);
-      if (value) journal.means.emplace_back(mean.first, *value);
-      if (!value && value.error().code != Errc::sdo_abort) return tl::unexpected<Error>(value.error());
-    }
-    const auto saved =
-        write_file_atomically(before_, backup_text(*context_, make_backup(*context_, snapshot)));
-    return saved ? write_journal(this->journal(), journal) : saved;
-  }
-
-  /// The memory switch and the password as they were before what was cut off.
-  Result<void> put_means_back() {
-    for (const auto& [object, bytes] : left_.means) {
-      const auto present = context_->session->upload(node_, object);
-      if (!present) return tl::unexpected<Error>(present.error());
-      if (*present == bytes) continue;
-      if (const auto written = context_->session->download(node_, object, bytes); !written) return written;
-    }
-    return {};
+    return note_before(*context_, before_, snapshot, std::move(journal));
   }
 
   Value take_away_journals(Value done) {

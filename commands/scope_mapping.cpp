@@ -95,8 +95,10 @@ Result<void> ScopeMapping::begin(std::span<const std::string> objects, Duration 
   if (const auto full = session::complete(*context_->session, node_, present, mapped); !full) return full;
   const auto plan = session::plan_writes(context_->profile, present, mapped);
   if (const auto able = check_state(plan); !able) return able;
+  if (const auto noted = record_.begin(before_, false, false); !noted) return noted;
   changed_ = true;
   const auto done = change(present, mapped, {});
+  if (!done && !changed_) record_.settle();
   if (!done) end();
   return done;
 }
@@ -137,7 +139,7 @@ void ScopeMapping::end() {
   const session::Deaf deaf(*context_->session);
   const auto done = put_back();
   changed_ = false;
-  if (done) return;
+  if (done) return record_.settle();
   auto error = done.error();
   error.node = node_;
   error.message =

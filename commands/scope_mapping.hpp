@@ -6,6 +6,7 @@
 
 #include "canopen/pdo.hpp"
 #include "commands/command.hpp"
+#include "commands/pdo_record.hpp"
 #include "session/restore.hpp"
 
 namespace servoctl::commands {
@@ -13,7 +14,7 @@ namespace servoctl::commands {
 /// Puts objects of one node into a TPDO that is not in use, for as long as it lives.
 class ScopeMapping {
  public:
-  ScopeMapping(Context& context, std::uint8_t node) : context_(&context), node_(node) {}
+  ScopeMapping(Context& context, std::uint8_t node) : context_(&context), node_(node), record_(context, node) {}
   ScopeMapping(const ScopeMapping&) = delete;
   ScopeMapping& operator=(const ScopeMapping&) = delete;
   ~ScopeMapping() { end(); }
@@ -44,6 +45,7 @@ class ScopeMapping {
   session::Values before_;  ///< All PDOs of the node.
   canopen::Pdo pdo_;        ///< The one that is used.
   bool changed_ = false;    ///< It may not be as it was.
+  PdoRecord record_;
 };
 
 }  // namespace servoctl::commands

@@ -15,6 +15,7 @@
 #include "cli/prompt.hpp"
 #include "cli/shell.hpp"
 #include "cli/signals.hpp"
+#include "cli/state_folder.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -50,6 +51,7 @@ int run(const std::vector<std::string>& words, StandardConsole& console) {
   Shell::Options options;
   options.defaults = settings_from_environment();
   options.drive_folders = drive::drive_folders();
+  options.state_folder = state_folder();
   options.cancelled = interrupted;
   Shell shell(console, std::move(options));
   if (words.size() == 1 && words.front() == "--version") {

@@ -10,9 +10,9 @@
 #include <cstring>
 
 #include "cli/completer.hpp"
-#include "cli/history.hpp"
 #include "cli/line_runner.hpp"
 #include "cli/signals.hpp"
+#include "cli/state_folder.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -84,7 +84,7 @@ int Prompt::run() {
   rl_completer_word_break_characters = const_cast<char*>(" \t");  // NOLINT
   using_history();
   stifle_history(kHistoryLines);
-  history_ = history_file().string();
+  if (const auto folder = state_folder(); !folder.empty()) history_ = (folder / "history").string();
   if (!history_.empty()) read_history(history_.c_str());
   install();
   while (!done_ && !terminated()) {

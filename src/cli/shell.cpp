@@ -113,6 +113,7 @@ Result<Value> Shell::execute(Run& run, const commands::Arguments& arguments) {
   context.dry_run = run.settings.dry_run;
   context.read_only = run.settings.read_only;
   context.drive_folders = options_.drive_folders;
+  context.state_folder = options_.state_folder;
   context.confirm = [this, &run](std::string_view question) -> Result<void> {
     if (run.settings.yes) return {};
     if (!console_->can_ask())

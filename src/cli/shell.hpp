@@ -31,6 +31,7 @@ class Shell {
   struct Options {
     Settings defaults;
     std::vector<std::filesystem::path> drive_folders;
+    std::filesystem::path state_folder;  ///< As Context::state_folder.
     sim::SimBus::Clock clock = sim::SimBus::Clock::real_time;
     std::function<bool()> cancelled;
   };

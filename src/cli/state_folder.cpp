@@ -1,11 +1,11 @@
-#include "cli/history.hpp"
+#include "cli/state_folder.hpp"
 
 #include <cstdlib>
 #include <system_error>
 
 namespace servoctl::cli {
 
-std::filesystem::path history_file() {
+std::filesystem::path state_folder() {
   std::filesystem::path base;
   if (const char* state = std::getenv("XDG_STATE_HOME"); state != nullptr && *state != '\0')
     base = state;
@@ -15,7 +15,7 @@ std::filesystem::path history_file() {
     return {};
   std::error_code error;
   std::filesystem::create_directories(base / "servoctl", error);
-  return error ? std::filesystem::path() : base / "servoctl/history";
+  return error ? std::filesystem::path() : base / "servoctl";
 }
 
 }  // namespace servoctl::cli

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <filesystem>
+
+namespace servoctl::cli {
+
+/// `$XDG_STATE_HOME/servoctl` or `~/.local/state/servoctl`: history of the prompt, records of changes under
+/// way. The folder is made. Empty when there is no home.
+std::filesystem::path state_folder();
+
+}  // namespace servoctl::cli
