@@ -36,7 +36,7 @@ struct PdoView {
   std::string name;              ///< `TPDO1`
   std::vector<PdoField> fields;  ///< Without gaps.
 
-  std::uint32_t can_id() const { return pdo.cob_id & canopen::kPdoCobIdMask; }
+  std::uint32_t can_id() const { return pdo.can_id(); }
 };
 
 PdoView make_view(const drive::Profile* profile, bool chinese, std::uint8_t node, canopen::Pdo pdo);

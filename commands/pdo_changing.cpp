@@ -183,14 +183,26 @@ class Changing {
         session::change_pdos(*context_->session, context_->profile, job.present.node, job.present.values,
                              job.values, {.keep = how_.keep, .unlock = how_.unlock});
     for (const auto& notice : outcome.notices) context_->notices.push_back(notice);
-    if (!outcome.failure || outcome.all_written || (outcome.rolled_back && !undone_)) before.settle();
+    end(before, outcome);
     if (!outcome.failure) return record(job, "written, read back", kept(outcome));
     context_->errors.push_back(*outcome.failure);
     if (outcome.all_written) return record(job, "written, read back; keeping it failed", {});
     if (outcome.rolled_back) return record(job, "not changed: everything is as it was", {});
     add_astray(job, outcome);
-    if (auto notice = before.notice(); !notice.empty()) context_->notices.push_back(std::move(notice));
     return record(job, "failed; see the errors", {});
+  }
+
+  /// The record goes away when nothing is left to be put back by it.
+  void end(PdoRecord& before, const session::RestoreOutcome& outcome) {
+    bool settled = !outcome.failure || (!undone_ && (outcome.all_written || outcome.rolled_back));
+    // A trial leaves the switch of the memory at the RAM.
+    if (settled && undone_)
+      if (const auto back = put_means_back(*context_->session, undone_->journal); !back) {
+        context_->errors.push_back(back.error());
+        settled = false;
+      }
+    if (settled) return before.settle();
+    if (auto notice = before.notice(); !notice.empty()) context_->notices.push_back(std::move(notice));
   }
 
   void add_astray(const Job& job, const session::RestoreOutcome& outcome) {

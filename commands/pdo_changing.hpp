@@ -52,7 +52,8 @@ Result<report::Value> change_pdos(Context& context, const PdoEdit& edit, const P
 /// where the dictionary does not tell it (`0x2105:1/16`), or a gap in an RPDO (`gap8`). Errc::usage.
 Result<canopen::PdoEntry> parse_mapped(const drive::Profile& profile, std::string_view text);
 
-/// A COB-ID's CAN-ID: `0x181`, or `$NODEID+0x180`. Errc::usage above 0x7FF.
+/// A COB-ID's CAN-ID: `0x181`, or `$NODEID+0x180`; above 0x7FF, or in 8 hexadecimal digits, it has 29 bits
+/// and canopen::kPdoExtended. Errc::usage.
 Result<std::uint32_t> parse_can_id(std::string_view text, std::uint8_t node);
 
 /// Makes it valid, with a CAN-ID: the one it has, or that of the pre-defined connection set (CiA 301, 7.3.5).

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "commands/pdo_report.hpp"
 #include "drive/naming.hpp"
 
 namespace servoctl::commands {
@@ -14,6 +15,8 @@ using canopen::PdoEntry;
 
 /// Lengths of the data types 0001h to 0007h, which stand for gaps (CiA 301, 7.4.8.2).
 constexpr std::uint8_t kGapBits[] = {0, 1, 8, 16, 32, 8, 16, 32};
+/// Bits of a COB-ID that hold a CAN-ID of 11 bits.
+constexpr std::uint32_t kBasicCanId = 0x7FF;
 
 std::string name_of(const Pdo& pdo) { return canopen::name(pdo.direction, pdo.number); }
 
@@ -86,14 +89,26 @@ Result<void> check_type(const drive::Profile& profile, const Pdo& pdo) {
   return {};
 }
 
+Result<void> check_cob_id(const drive::Profile& profile, const Pdo& present, const Pdo& wanted) {
+  const auto may_change = profile.rules.pdo.cob_id_bits | canopen::kPdoInvalid;
+  if (((present.cob_id ^ wanted.cob_id) & ~may_change) == 0) return {};
+  const bool other_id = (may_change & kBasicCanId) != 0;
+  if (other_id && (wanted.cob_id & canopen::kPdoExtended) != 0)
+    return no(wanted,
+              fmt::format("the CAN-IDs of this drive have 11 bits, {} has 29", can_id_text(wanted.cob_id)),
+              "write one up to 0x7FF");
+  return no(wanted, fmt::format("this drive keeps its COB-ID {}", can_id_text(present.cob_id)),
+            "it can be enabled and disabled only");
+}
+
 Result<void> check_can_id(const Pdo& wanted, std::span<const Pdo> all) {
-  const auto can_id = wanted.cob_id & canopen::kPdoCobIdMask;
-  if (const auto service = canopen::service_of(can_id); !service.empty())
-    return no(wanted, fmt::format("CAN-ID 0x{:03X} is that of {}", can_id, service));
+  const auto text = can_id_text(wanted.cob_id);
+  if (const auto service = canopen::service_of(wanted.can_id()); !service.empty())
+    return no(wanted, fmt::format("CAN-ID {} is that of {}", text, service));
   for (const auto& other : all) {
     const bool same = other.direction == wanted.direction && other.number == wanted.number;
-    if (!same && other.is_valid() && (other.cob_id & canopen::kPdoCobIdMask) == can_id)
-      return no(wanted, fmt::format("CAN-ID 0x{:03X} is that of {} of the same node", can_id, name_of(other)),
+    if (!same && other.is_valid() && other.can_id() == wanted.can_id())
+      return no(wanted, fmt::format("CAN-ID {} is that of {} of the same node", text, name_of(other)),
                 fmt::format("`pdo disable {}` frees it", name_of(other)));
   }
   return {};
@@ -127,11 +142,7 @@ Result<void> check_mapping(const drive::Profile& profile, const Pdo& pdo) {
 
 Result<void> check_communication(const drive::Profile& profile, const Pdo& present, const Pdo& wanted,
                                  std::span<const Pdo> all) {
-  const auto may_change = profile.rules.pdo.cob_id_bits | canopen::kPdoInvalid;
-  if (((present.cob_id ^ wanted.cob_id) & ~may_change) != 0)
-    return no(wanted,
-              fmt::format("this drive keeps its COB-ID 0x{:03X}", present.cob_id & canopen::kPdoCobIdMask),
-              "it can be enabled and disabled only");
+  if (const auto may = check_cob_id(profile, present, wanted); !may) return may;
   if (wanted.is_valid() && wanted.cob_id != present.cob_id)
     if (const auto free = check_can_id(wanted, all); !free) return free;
   const auto missing = [&](bool now, bool then, std::string_view what) {

@@ -22,7 +22,7 @@ constexpr Parameter kParameters[] = {
     {.name = "--type", .help = "transmission type: 1 at every SYNC, 255 by event", .kind = Kind::number},
     {.name = "--inhibit", .help = "shortest time between two: 10ms", .kind = Kind::duration},
     {.name = "--event", .help = "longest time between two: 100ms", .kind = Kind::duration},
-    {.name = "--cob-id", .help = "CAN-ID: 0x181, or $NODEID+0x180", .kind = Kind::text},
+    {.name = "--cob-id", .help = "CAN-ID: 0x181, $NODEID+0x180; 29 bits: 0x1ABCDEF", .kind = Kind::text},
     {.name = "--sync-start", .help = "SYNC counter from which it is sent", .kind = Kind::number},
     kKeepOption,
     kUnlockOption,
@@ -114,7 +114,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
     if (!options->cob_id.empty()) {
       const auto can_id = parse_can_id(options->cob_id, present.node);
       if (!can_id) return tl::unexpected<Error>(can_id.error());
-      pdo->cob_id = (pdo->cob_id & ~canopen::kPdoCobIdMask) | *can_id;
+      pdo->set_can_id(*can_id);
     }
     if (linked)
       if (const auto on = switch_on(*pdo, present.node); !on) return tl::unexpected<Error>(on.error());

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "commands/pdo_report.hpp"
 #include "session/pdo_setup.hpp"
 
 namespace servoctl::commands {
@@ -45,7 +46,7 @@ Result<void> set_cob_id(const PdoRecipe& recipe, const PresentPdos& present, Pdo
   if (!recipe.cob_id.empty()) {
     const auto can_id = parse_can_id(recipe.cob_id, present.node);
     if (!can_id) return tl::unexpected<Error>(can_id.error());
-    pdo.cob_id = (pdo.cob_id & ~canopen::kPdoCobIdMask) | *can_id;
+    pdo.set_can_id(*can_id);
   }
   if (!recipe.valid) return {};
   if (*recipe.valid) return switch_on(pdo, present.node);
@@ -137,11 +138,11 @@ PdoRecipe recipe_of(const drive::Profile* profile, const PresentPdos& present, c
       out.valid = std::count(assigned.begin(), assigned.end(), pdo.mapping_index()) > 0;
     return out;
   }
-  const auto can_id = pdo.cob_id & canopen::kPdoCobIdMask;
+  const auto can_id = pdo.can_id();
   if (can_id > 0x7F && can_id <= 0x7FF && (can_id & 0x7FU) == present.node)
     out.cob_id = fmt::format("$NODEID+0x{:X}", can_id - present.node);
   else
-    out.cob_id = fmt::format("0x{:X}", can_id);
+    out.cob_id = can_id_text(can_id);
   out.valid = pdo.is_valid();
   if (holds(communication, 2)) out.type = pdo.type;
   if (pdo.inhibit) out.inhibit_us = *pdo.inhibit * 100U;

@@ -67,17 +67,23 @@ std::string mapped_name(const drive::Profile* profile, canopen::PdoEntry entry, 
   return name.empty() ? to_string(entry.object) : name;
 }
 
-std::string can_id_text(std::uint32_t cob_id, std::uint8_t node) {
+std::string can_id_text(std::uint32_t cob_id) {
   const auto can_id = cob_id & canopen::kPdoCobIdMask;
-  const auto base = base_of(can_id, node);
-  return base == 0 ? fmt::format("0x{:03X}", can_id) : fmt::format("0x{:03X} ($NODEID+0x{:X})", can_id, base);
+  return (cob_id & canopen::kPdoExtended) != 0 ? fmt::format("0x{:08X}", can_id)
+                                               : fmt::format("0x{:03X}", can_id);
+}
+
+std::string can_id_text(const Pdo& pdo, std::uint8_t node) {
+  const auto base = base_of(pdo.can_id(), node);
+  return base == 0 ? can_id_text(pdo.cob_id)
+                   : fmt::format("{} ($NODEID+0x{:X})", can_id_text(pdo.cob_id), base);
 }
 
 std::string inhibit_text(std::uint16_t inhibit) { return fmt::format("{:g} ms", inhibit_ms(inhibit)); }
 
 Record pdo_record(const drive::Profile* profile, const Pdo& pdo, std::uint8_t node, bool chinese) {
   const auto can_id = pdo.cob_id & canopen::kPdoCobIdMask;
-  const auto base = base_of(can_id, node);
+  const auto base = base_of(pdo.can_id(), node);
   report::List entries;
   for (const auto& entry : pdo.entries)
     entries.emplace_back(Record{{"index", entry.object.index},
@@ -107,9 +113,9 @@ std::vector<std::string> pdo_lines(const drive::Profile* profile, const Pdo& pdo
                                    bool chinese) {
   auto communication = fmt::format("no COB-ID, mapping 0x{:04X}", pdo.mapping_index());
   if (has_can_id(pdo)) {
-    communication = fmt::format("{} {}, {} (type {})", can_id_text(pdo.cob_id, node),
-                                pdo.is_valid() ? "valid" : "not valid",
-                                transmission_text(profile, pdo.direction, pdo.type), pdo.type);
+    communication =
+        fmt::format("{} {}, {} (type {})", can_id_text(pdo, node), pdo.is_valid() ? "valid" : "not valid",
+                    transmission_text(profile, pdo.direction, pdo.type), pdo.type);
     if (pdo.inhibit.value_or(0) != 0) communication += ", at most every " + inhibit_text(*pdo.inhibit);
     if (pdo.event.value_or(0) != 0) communication += fmt::format(", event timer {} ms", *pdo.event);
     if (pdo.sync_start.value_or(0) != 0) communication += fmt::format(", from SYNC {} on", *pdo.sync_start);

@@ -21,8 +21,11 @@ std::string transmission_text(const drive::Profile* profile, canopen::PdoDirecti
 /// Name of a mapped object, `gap` for a gap, the address when nothing is known of it.
 std::string mapped_name(const drive::Profile* profile, canopen::PdoEntry entry, bool chinese);
 
-/// `0x181 ($NODEID + 0x180)`; the CAN-ID alone where the node-ID is not in it.
-std::string can_id_text(std::uint32_t cob_id, std::uint8_t node);
+/// The CAN-ID of a COB-ID: `0x181`; in 8 digits one of 29 bits.
+std::string can_id_text(std::uint32_t cob_id);
+
+/// `0x181 ($NODEID+0x180)`; the CAN-ID alone where the node-ID is not in it.
+std::string can_id_text(const canopen::Pdo& pdo, std::uint8_t node);
 
 /// `10 ms`, `0.5 ms`: an inhibit time, which counts 100 µs.
 std::string inhibit_text(std::uint16_t inhibit);

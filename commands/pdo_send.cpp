@@ -33,7 +33,7 @@ Result<void> check_usable(const PdoView& view) {
   if (view.pdo.entries.empty())
     return fail(Errc::negative, fmt::format("node {}: {} maps nothing", view.node, view.name),
                 "`pdo map` gives it objects");
-  if ((view.pdo.cob_id & canopen::kPdoCobIdMask) > 0x7FF || view.pdo.bits() > 64)
+  if (view.can_id() > 0x7FF || view.pdo.bits() > 64)
     return fail(Errc::negative, fmt::format("node {}: {} is no PDO of classical CAN", view.node, view.name),
                 "`pdo show` tells its COB-ID and its length");
   return {};

@@ -64,7 +64,7 @@ std::vector<Difference> differences(const Context& context, const NodePdos& node
   };
   std::vector<Difference> out;
   if (other(1))
-    out.push_back({"cob_id", fmt::format("{} {}", can_id_text(factory.cob_id, node.node),
+    out.push_back({"cob_id", fmt::format("{} {}", can_id_text(factory, node.node),
                                          factory.is_valid() ? "valid" : "not valid")});
   if (other(2)) out.push_back({"type", fmt::format("type {}", factory.type)});
   if (other(3)) out.push_back({"inhibit_ms", "inhibit time " + inhibit_text(factory.inhibit.value_or(0))});
@@ -79,17 +79,16 @@ std::vector<Difference> differences(const Context& context, const NodePdos& node
 std::vector<std::string> conflicts(const NodePdos& mine, const Pdo& pdo, const std::vector<NodePdos>& all) {
   std::vector<std::string> out;
   if (!pdo.is_valid()) return out;
-  const auto can_id = pdo.cob_id & canopen::kPdoCobIdMask;
-  if (const auto service = canopen::service_of(can_id); !service.empty())
-    out.push_back(fmt::format("0x{:03X} is the CAN-ID of {}", can_id, service));
+  const auto text = can_id_text(pdo.cob_id);
+  if (const auto service = canopen::service_of(pdo.can_id()); !service.empty())
+    out.push_back(fmt::format("{} is the CAN-ID of {}", text, service));
   if (pdo.direction == PdoDirection::receive) return out;
   for (const auto& node : all)
     for (const auto& other : node.pdos)
-      if (other.direction == PdoDirection::transmit && other.is_valid() &&
-          (other.cob_id & canopen::kPdoCobIdMask) == can_id &&
+      if (other.direction == PdoDirection::transmit && other.is_valid() && other.can_id() == pdo.can_id() &&
           (node.node != mine.node || other.number != pdo.number))
-        out.push_back(fmt::format("{} of node {} is sent with 0x{:03X} as well",
-                                  canopen::name(other.direction, other.number), node.node, can_id));
+        out.push_back(fmt::format("{} of node {} is sent with {} as well",
+                                  canopen::name(other.direction, other.number), node.node, text));
   return out;
 }
 

@@ -60,10 +60,11 @@ Result<std::uint32_t> parse_can_id(std::string_view text, std::uint8_t node) {
   const auto number = parse_integer(plus_node ? text.substr(kNodeId.size()) : text);
   const auto value = number ? number->as_unsigned() : std::nullopt;
   const auto can_id = value.value_or(0) + (plus_node ? node : 0U);
-  if (!value || *value > 0x7FF || can_id > 0x7FF)
+  if (!value || *value > canopen::kPdoCobIdMask || can_id > canopen::kPdoCobIdMask)
     return fail(Errc::usage, fmt::format("'{}' is no CAN-ID of a PDO", text),
-                "a number up to 0x7FF, or $NODEID+0x180");
-  return static_cast<std::uint32_t>(can_id);
+                "a number up to 0x7FF, or $NODEID+0x180; one of 29 bits up to 0x1FFFFFFF");
+  const bool extended = can_id > 0x7FF || (starts_with_nocase(text, "0x") && text.size() == 10);
+  return static_cast<std::uint32_t>(can_id) | (extended ? canopen::kPdoExtended : 0U);
 }
 
 Result<void> switch_on(Pdo& pdo, std::uint8_t node) {

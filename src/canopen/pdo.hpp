@@ -48,6 +48,9 @@ struct Pdo {
   std::vector<PdoEntry> entries = {};
 
   bool is_valid() const { return (cob_id & kPdoInvalid) == 0; }
+  /// With kPdoExtended where it has 29 bits: two CAN-IDs are one when all of this is.
+  std::uint32_t can_id() const { return cob_id & (kPdoExtended | kPdoCobIdMask); }
+  void set_can_id(std::uint32_t can_id) { cob_id = (cob_id & ~(kPdoExtended | kPdoCobIdMask)) | can_id; }
   std::uint16_t communication_index() const;
   std::uint16_t mapping_index() const;
   std::size_t bits() const;

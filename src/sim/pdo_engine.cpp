@@ -66,7 +66,7 @@ void PdoEngine::on_frame(const can::Frame& frame, TimePoint now) {
   for (const auto& known : known_) {
     if (known.direction != PdoDirection::receive) continue;
     const auto pdo = read_pdo(known.direction, known.number);
-    if (pdo.is_valid() && (pdo.cob_id & canopen::kPdoCobIdMask) == frame.id) on_receive(pdo, frame);
+    if (pdo.is_valid() && pdo.can_id() == frame.id) on_receive(pdo, frame);
   }
 }
 
@@ -159,7 +159,9 @@ void PdoEngine::transmit(const Pdo& pdo, Bytes data, TimePoint now) {
   auto& state = work(pdo);
   state.syncs = 0;
   state.sent = now;
-  tx_.push_back(can::make_frame(pdo.cob_id & canopen::kPdoCobIdMask, data));
+  auto frame = can::make_frame(pdo.cob_id & canopen::kPdoCobIdMask, data);
+  frame.extended = (pdo.cob_id & canopen::kPdoExtended) != 0;
+  tx_.push_back(frame);
   state.data = std::move(data);
 }
 
