@@ -100,6 +100,7 @@ struct Context {
   bool chinese = false;                ///< Names in Chinese where there are any.
   bool read_only = false;              ///< Nothing in a drive may be changed.
   bool dry_run = false;                ///< Show what would be sent, send nothing.
+  bool stays_open = false;             ///< Other lines follow on the same session: a prompt, a batch file.
   /// Asks before something that stores, resets, re-addresses or moves; Errc::refused when the answer is no.
   std::function<Result<void>(std::string_view question)> confirm;
   /// Shows one sample of a command that goes on: the line in text, the record with `-o jsonl`. With `--json`

@@ -4,7 +4,7 @@
 #include "commands/command.hpp"
 #include "commands/listening.hpp"
 #include "commands/pdo_use.hpp"
-#include "commands/rhythm.hpp"
+#include "commands/rhythm_table.hpp"
 #include "commands/sample_writer.hpp"
 
 namespace servoctl::commands {
@@ -50,10 +50,10 @@ Result<std::vector<Watched>> pdos_of(Context& context, const Arguments& argument
 report::Table summary(std::span<const Watched> watched) {
   report::Table table;
   table.columns = {{"node"}, {"pdo"}};
-  for (auto& column : Rhythm::columns()) table.columns.push_back(std::move(column));
+  for (auto& column : rhythm_columns()) table.columns.push_back(std::move(column));
   for (const auto& entry : watched) {
     report::List row{entry.view.node, entry.view.name};
-    for (auto& cell : entry.rhythm.cells()) row.push_back(std::move(cell));
+    for (auto& cell : rhythm_cells(entry.rhythm)) row.push_back(std::move(cell));
     table.rows.push_back(std::move(row));
   }
   return table;

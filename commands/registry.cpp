@@ -60,6 +60,7 @@ extern const Command kTestAll;
 extern const Command kReport;
 extern const Command kSyncOnce;
 extern const Command kSyncStart;
+extern const Command kSyncStop;
 extern const Command kWatch;
 extern const Command kScope;
 extern const Command kMonitor;
@@ -168,6 +169,7 @@ std::span<const Command* const> registry() {
       &kReport,
       &kSyncOnce,
       &kSyncStart,
+      &kSyncStop,
       &kWatch,
       &kScope,
       &kMonitor,

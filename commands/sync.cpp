@@ -6,7 +6,7 @@
 #include "base/number.hpp"
 #include "commands/command.hpp"
 #include "commands/listening.hpp"
-#include "commands/rhythm.hpp"
+#include "commands/sync_end.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -31,8 +31,18 @@ Value planned_frame(std::optional<std::uint8_t> counter) {
   return report::Record{{"frame", can::to_string(canopen::sync_frame(counter))}};
 }
 
+/// One more in between would break the rhythm.
+Result<void> check_none(const Context& context) {
+  const auto* production = context.session->sync();
+  if (production == nullptr) return {};
+  return fail(Errc::refused,
+              fmt::format("SYNC is produced already, every {}", to_string(production->options.period)),
+              "`sync stop` ends it");
+}
+
 Result<Value> run_once(Context& context, const Arguments&) {
   if (context.dry_run) return planned_frame({});
+  if (const auto free = check_none(context); !free) return tl::unexpected<Error>(free.error());
   if (const auto sure = context.confirm(fmt::format("Send a SYNC? {}", kWarning)); !sure)
     return tl::unexpected<Error>(sure.error());
   if (const auto sent = context.session->send(canopen::sync_frame()); !sent)
@@ -64,31 +74,41 @@ Result<Value> run_start(Context& context, const Arguments& arguments) {
   if (!length) return tl::unexpected<Error>(length.error());
   if (context.dry_run)
     return planned_frame(options->last_counter == 0 ? std::nullopt : std::optional<std::uint8_t>(1));
+  if (const auto free = check_none(context); !free) return tl::unexpected<Error>(free.error());
   if (const auto sure =
           context.confirm(fmt::format("Send a SYNC every {}? {}", to_string(options->period), kWarning));
       !sure)
     return tl::unexpected<Error>(sure.error());
   auto& session = *context.session;
-  canopen::SyncProducer producer(*options, session.now());
-  Rhythm rhythm;
-  Listener listener;
-  listener.next = [&] { return producer.deadline(); };
-  listener.on_time = [&](TimePoint now) -> Result<void> {
-    producer.on_time(now);
-    const auto frame = producer.take_frame();
-    if (!frame) return {};
-    rhythm.add(session.now());
-    return session.send(*frame);
-  };
-  if (const auto ended = listen(session, *length, listener); !ended)
-    return tl::unexpected<Error>(ended.error());
-  report::Table table;
-  table.columns = Rhythm::columns();
-  table.columns.push_back({"missed"});
-  auto row = rhythm.cells();
-  row.emplace_back(producer.missed());
-  table.rows.push_back(std::move(row));
-  return Value(std::move(table));
+  session.produce_sync(*options);
+  if (context.stays_open && !length->has_value()) {
+    // The first one goes out now, not when the next line is waited for.
+    if (const auto heard = session.listen(); !heard) {
+      session.stop_sync();
+      return tl::unexpected<Error>(heard.error());
+    }
+    const std::chrono::duration<double, std::milli> period = options->period;
+    return Value(
+        report::Record{{"sync", "running"},
+                       {"period_ms", period.count(), report::Show::everywhere, "period (ms)"},
+                       {"counter", options->last_counter == 0 ? Value() : Value(options->last_counter)}});
+  }
+  const auto ended = listen(session, *length, {});
+  auto result = end_sync(session);
+  for (auto& warning : result.warnings) context.notices.push_back(std::move(warning));
+  if (!ended) return tl::unexpected<Error>(ended.error());
+  return Value(std::move(result.table));
+}
+
+Result<Value> run_stop(Context& context, const Arguments&) {
+  if (context.session->sync() == nullptr)
+    return fail(
+        Errc::usage, "no SYNC is produced here",
+        "`sync start` in the same prompt or batch file begins one; another process is ended by Ctrl-C");
+  if (context.dry_run) return Value(report::Record{{"sync", "would be ended"}});
+  auto result = end_sync(*context.session);
+  for (auto& warning : result.warnings) context.notices.push_back(std::move(warning));
+  return Value(std::move(result.table));
 }
 
 }  // namespace
@@ -110,17 +130,29 @@ const Command kSyncOnce{
 extern const Command kSyncStart;
 const Command kSyncStart{
     .path = "sync start",
-    .summary = "Produce SYNC in a steady period until Ctrl-C; asks first",
+    .summary = "Produce SYNC in a steady period; asks first",
     .details =
-        "Ends with --for or Ctrl-C (there is nothing left running to be stopped), and then tells the periods "
-        "that were "
-        "measured: mean, shortest, longest, standard deviation, and how many SYNCs were missed because the "
-        "computer "
+        "At the prompt and in a batch file it goes on while other lines run, until `sync stop` or the end of "
+        "them; alone, or with --for, it lasts until Ctrl-C and then tells the periods that were measured: "
+        "mean, shortest, longest, standard deviation, and how many SYNCs were missed because the computer "
         "was late. There must be no other producer of SYNC on the bus.",
     .parameters = kStartParameters,
     .needs = Needs::bus,
     .effect = Effect::moves,
     .run = run_start,
+};
+
+extern const Command kSyncStop;
+const Command kSyncStop{
+    .path = "sync stop",
+    .summary = "End the SYNC that `sync start` began",
+    .details =
+        "Tells the periods that were measured. Drives that were left energised in a mode that follows SYNC "
+        "(ip, csp, csv, cst) are named: disable them first.",
+    .parameters = {},
+    .needs = Needs::bus,
+    .effect = Effect::none,
+    .run = run_stop,
 };
 
 }  // namespace servoctl::commands

@@ -155,12 +155,16 @@ class BatchRun {
 }  // namespace
 
 int run_steps(Shell& shell, std::span<const Step> steps, const std::string& file) {
+  const bool produced = shell.session() != nullptr && shell.session()->sync() != nullptr;
+  const bool stayed = shell.stay_open(true);
   BatchRun run(shell, steps, file);
   for (const auto& step : steps)
     if (!run.take(step)) break;
   const int code = run.finish();
   // Nobody goes on with what the file began.
   if (code != 0) shell.let_go();
+  if (!produced) shell.stop_sync();
+  shell.stay_open(stayed);
   return code;
 }
 

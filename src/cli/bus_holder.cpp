@@ -1,10 +1,12 @@
 #include "cli/bus_holder.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <utility>
 
 #include "base/text.hpp"
 #include "can/socketcan.hpp"
+#include "commands/sync_end.hpp"
 #include "session/power.hpp"
 
 namespace servoctl::cli {
@@ -27,6 +29,7 @@ Result<session::Session*> BusHolder::open(const Settings& settings) {
   if (settings.bus.empty()) return fail(no_bus());
   if (session_ == nullptr || session_->url() != settings.bus || bus_options_.trace != settings.trace) {
     if (session_) stop_and_disable();
+    stop_sync();
     drop();
     bus_options_.trace = settings.trace;
     if (auto done = connect(settings.bus); !done) return tl::unexpected<Error>(done.error());
@@ -57,12 +60,15 @@ void BusHolder::drop() {
 void BusHolder::lose() {
   if (!session_) return;
   for (const auto node : session_->energised()) warn(node, session_->url() + " was lost");
+  if (session_->sync() != nullptr)
+    console_->err(fmt::format("notice: SYNC is no longer produced: {} was lost\n", session_->url()));
   drop();
 }
 
 void BusHolder::let_go() {
   const auto left = left_energised_;
   if (session_) stop_and_disable();
+  stop_sync();
   if (!left.empty()) drop();
   for (const auto& [url, nodes] : left) {
     if (const auto back = connect(url); !back) {
@@ -72,6 +78,21 @@ void BusHolder::let_go() {
     stop_and_disable();
     drop();
   }
+}
+
+void BusHolder::stop_sync() {
+  if (!session_ || session_->sync() == nullptr) return;
+  const auto count = session_->sync()->rhythm.count();
+  for (const auto& warning : commands::end_sync(*session_).warnings)
+    console_->err("warning: " + warning + "\n");
+  console_->err(fmt::format("notice: SYNC is no longer produced on {}, after {}\n", session_->url(), count));
+}
+
+Duration BusHolder::serve() {
+  if (!session_ || session_->sync() == nullptr) return Duration::max();
+  // What goes wrong is told to the next line.
+  (void)session_->listen();
+  return std::max(Duration::zero(), session_->next_event() - session_->now());
 }
 
 void BusHolder::stop_and_disable() {

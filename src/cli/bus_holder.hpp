@@ -19,13 +19,21 @@ class BusHolder {
  public:
   /// `session_options` hold for every bus that is opened, `bus_options.trace` is that of the settings.
   BusHolder(Console& console, session::BusOptions bus_options, session::Options session_options)
-      : console_(&console), bus_options_(std::move(bus_options)), options_(std::move(session_options)) {}
+      : console_(&console), bus_options_(std::move(bus_options)), options_(std::move(session_options)) {
+    console_->set_service([this] { return serve(); });
+  }
+  BusHolder(const BusHolder&) = delete;
+  BusHolder& operator=(const BusHolder&) = delete;
+  ~BusHolder() { console_->set_service({}); }
 
   /// The session on the bus of the settings; another bus that is open is let go first. Errors as open_bus(),
   /// Errc::usage when the settings name no bus.
   Result<session::Session*> open(const Settings& settings);
   /// The bus as it is open now; null when none is.
   session::Session* session() { return session_.get(); }
+
+  /// Ends the SYNC that is produced, and says so.
+  void stop_sync();
 
   /// The interface is gone. What was energised over it is told now, and is still known when the same bus is
   /// opened again.
@@ -34,6 +42,8 @@ class BusHolder {
   void let_go();
 
  private:
+  /// Does what is due on the bus while the user is waited for; the answer is how long it has time.
+  Duration serve();
   Result<void> connect(const std::string& url);
   void stop_and_disable();
   void drop();

@@ -4,10 +4,12 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <string>
 
+#include "base/timespec.hpp"
 #include "cli/signals.hpp"
 #include "cli/terminal_keys.hpp"
 
@@ -15,26 +17,28 @@ namespace servoctl::cli {
 namespace {
 
 /// How late Ctrl-C may be noticed when it comes just before the wait begins.
-constexpr int kSliceMs = 50;
+constexpr Duration kSlice = std::chrono::milliseconds(50);
+
+}  // namespace
 
 /// Waits until a line was typed; false after Ctrl-C.
-bool line_is_there() {
+bool StandardConsole::line_is_there() const {
   pollfd input{STDIN_FILENO, POLLIN, 0};
-  while (!interrupted())
-    if (::poll(&input, 1, kSliceMs) > 0) return true;
+  while (!interrupted()) {
+    const auto wait = to_timespec(std::min(serve(), kSlice));
+    if (::ppoll(&input, 1, &wait, nullptr) > 0) return true;
+  }
   return false;
 }
 
 /// Up to Enter, the end of the input, or a signal.
-std::string typed_line() {
+std::string StandardConsole::typed_line() const {
   std::string out;
   if (!line_is_there()) return out;
   for (int c = std::getchar(); c != EOF && c != '\n'; c = std::getchar()) out += static_cast<char>(c);
   if (std::feof(stdin) != 0 || std::ferror(stdin) != 0) std::clearerr(stdin);
   return out;
 }
-
-}  // namespace
 
 void StandardConsole::out(std::string_view text) {
   if (live_) return live_out_.offer(text);

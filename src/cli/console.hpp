@@ -1,9 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <string_view>
+#include <utility>
 
+#include "base/time.hpp"
 #include "cli/live_output.hpp"
 #include "commands/keys.hpp"
 
@@ -35,6 +38,15 @@ class Console {
   virtual void set_live(bool live) { (void)live; }
   /// How many texts of out() were left out since the last call, because their reader was too slow.
   virtual std::size_t take_left_out() { return 0; }
+
+  /// What is done while the user is waited for; it answers how long it can be left alone. May be empty.
+  void set_service(std::function<Duration()> service) { service_ = std::move(service); }
+
+ protected:
+  Duration serve() const { return service_ ? service_() : Duration::max(); }
+
+ private:
+  std::function<Duration()> service_;
 };
 
 /// Standard streams of the process.
@@ -56,6 +68,9 @@ class StandardConsole final : public Console {
   int write_error() const { return write_error_ != 0 ? write_error_ : live_out_.error(); }
 
  private:
+  bool line_is_there() const;
+  std::string typed_line() const;
+
   bool live_ = false;
   LiveOutput live_out_{1};
   LiveOutput live_err_{2};

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "base/timespec.hpp"
 #include "cli/completer.hpp"
 #include "cli/line_runner.hpp"
 #include "cli/signals.hpp"
@@ -18,10 +19,13 @@ namespace servoctl::cli {
 namespace {
 
 constexpr int kHistoryLines = 2000;
+constexpr Duration kLongestWait = std::chrono::minutes(1);
 
 class Prompt {
  public:
-  Prompt(Shell& shell, Console& console) : shell_(&shell), console_(&console), runner_(shell) {}
+  Prompt(Shell& shell, Console& console) : shell_(&shell), console_(&console), runner_(shell) {
+    shell.stay_open(true);
+  }
   Prompt(const Prompt&) = delete;
   Prompt& operator=(const Prompt&) = delete;
   ~Prompt() {
@@ -101,13 +105,12 @@ bool Prompt::wait_for_key() {
   auto* session = shell_->session();
   pollfd fds[2] = {{STDIN_FILENO, POLLIN, 0},
                    {session == nullptr ? -1 : session->bus().poll_fd(), POLLIN, 0}};
-  int wait = -1;
-  if (session != nullptr && session->next_event() != kNever) {
-    const auto left =
-        std::chrono::ceil<std::chrono::milliseconds>(session->next_event() - session->now()).count();
-    wait = static_cast<int>(std::clamp<long long>(left, 0, 60'000));
-  }
-  if (::poll(fds, 2, wait) < 0) return false;
+  timespec left{};
+  const bool timed = session != nullptr && session->next_event() != kNever;
+  if (timed)
+    left = to_timespec(
+        std::clamp<Duration>(session->next_event() - session->now(), Duration::zero(), kLongestWait));
+  if (::ppoll(fds, 2, timed ? &left : nullptr, nullptr) < 0) return false;
   if (session != nullptr)
     if (const auto heard = session->listen(); !heard && heard.error().code == Errc::bus) {
       console_->err("\r\033[K");

@@ -112,6 +112,7 @@ Result<Value> Shell::execute(Run& run, const commands::Arguments& arguments) {
   context.chinese = run.settings.chinese;
   context.dry_run = run.settings.dry_run;
   context.read_only = run.settings.read_only;
+  context.stays_open = stays_open_;
   context.drive_folders = options_.drive_folders;
   context.state_folder = options_.state_folder;
   context.confirm = [this, &run](std::string_view question) -> Result<void> {

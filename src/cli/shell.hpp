@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/bus_holder.hpp"
@@ -58,6 +59,11 @@ class Shell {
   session::Session* session() { return bus_.session(); }
   /// As BusHolder::lose().
   void lose_bus() { bus_.lose(); }
+  /// Whether other lines follow, so that what a line begins may go on behind it; the answer is what held
+  /// before.
+  bool stay_open(bool stays) { return std::exchange(stays_open_, stays); }
+  /// As BusHolder::stop_sync().
+  void stop_sync() { bus_.stop_sync(); }
   /// Stops and disables the drives that were left energised, and says so: for a prompt that ends, and a file
   /// that stops in the middle. A single `enable` is left as it is.
   void let_go() { bus_.let_go(); }
@@ -92,6 +98,7 @@ class Shell {
   Options options_;
   Progress progress_;
   BusHolder bus_;
+  bool stays_open_ = false;
   std::map<std::string, std::unique_ptr<drive::Profile>> profiles_;
 };
 

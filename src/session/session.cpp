@@ -45,7 +45,9 @@ Result<std::optional<can::Frame>> Session::receive(TimePoint deadline) {
     if (const auto sent = bus_->send(*question); !sent) return tl::unexpected<Error>(sent.error());
   const auto heartbeat = send_heartbeat();
   if (!heartbeat) return tl::unexpected<Error>(heartbeat.error());
-  auto frame = bus_->receive(std::min({deadline, watch_.deadline(), guard_.deadline(), *heartbeat}));
+  const auto sync = send_sync();
+  if (!sync) return tl::unexpected<Error>(sync.error());
+  auto frame = bus_->receive(std::min({deadline, watch_.deadline(), guard_.deadline(), *heartbeat, *sync}));
   if (!frame) return frame;
   received_at_ = *frame ? std::max(received_at_, bus_->arrived()) : now();
   if (*frame) watch_.on_frame(**frame, received_at_);
@@ -68,6 +70,16 @@ Result<TimePoint> Session::send_heartbeat() {
       !sent)
     return tl::unexpected<Error>(sent.error());
   return heartbeat_->next;
+}
+
+Result<TimePoint> Session::send_sync() {
+  if (!sync_) return kNever;
+  sync_->producer.on_time(now());
+  if (const auto frame = sync_->producer.take_frame()) {
+    if (const auto sent = bus_->send(*frame); !sent) return tl::unexpected<Error>(sent.error());
+    sync_->rhythm.add(now());
+  }
+  return sync_->producer.deadline();
 }
 
 Result<void> Session::on_report(can::ControllerReport report) {
@@ -120,8 +132,8 @@ void Session::stop_guarding() {
 }
 
 TimePoint Session::next_event() const {
-  return std::min(
-      {bus_->next_event(), watch_.deadline(), guard_.deadline(), heartbeat_ ? heartbeat_->next : kNever});
+  return std::min({bus_->next_event(), watch_.deadline(), guard_.deadline(),
+                   heartbeat_ ? heartbeat_->next : kNever, sync_ ? sync_->producer.deadline() : kNever});
 }
 
 }  // namespace servoctl::session

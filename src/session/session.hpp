@@ -19,6 +19,7 @@
 #include "canopen/node_guard.hpp"
 #include "canopen/node_watch.hpp"
 #include "canopen/sdo_client.hpp"
+#include "session/sync_production.hpp"
 
 namespace servoctl::session {
 
@@ -96,6 +97,14 @@ class Session {
   }
   void stop_heartbeat() { heartbeat_.reset(); }
 
+  /// servoctl as SYNC producer: the first one at once, in every wait from now on.
+  void produce_sync(const canopen::SyncProducer::Options& options) {
+    sync_ = SyncProduction{options, canopen::SyncProducer(options, now())};
+  }
+  void stop_sync() { sync_.reset(); }
+  /// Null where SYNC is not produced.
+  const SyncProduction* sync() const { return sync_ ? &*sync_ : nullptr; }
+
   TimePoint now() const { return bus_->now(); }
   /// Since then every frame is heard.
   TimePoint opened_at() const { return opened_at_; }
@@ -112,6 +121,8 @@ class Session {
   Result<void> on_report(can::ControllerReport report);
   /// Sends the heartbeat when it is due; the answer is when the next one is.
   Result<TimePoint> send_heartbeat();
+  /// The same for SYNC.
+  Result<TimePoint> send_sync();
 
   struct Heartbeat {
     std::uint8_t node;
@@ -126,6 +137,7 @@ class Session {
   canopen::NodeWatch watch_;
   canopen::NodeGuard guard_;
   std::optional<Heartbeat> heartbeat_;
+  std::optional<SyncProduction> sync_;
   std::vector<can::ControllerReport> reports_;
   std::optional<can::ControllerReport> last_report_;
   std::array<std::size_t, 128> flash_writes_{};

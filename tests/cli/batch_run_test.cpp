@@ -247,5 +247,48 @@ TEST_F(BatchTest, RunsFromThePromptButNotFromItsOwnInput) {
   std::filesystem::remove(path);
 }
 
+TEST_F(BatchTest, SyncGoesOnBehindTheLineThatStartsIt) {
+  EXPECT_EQ(run("use 1\nsync start --period 2ms --counter 10 -y\nwait 99ms\nread 0x6041\nsync stop"), 0)
+      << console.err_text;
+  EXPECT_TRUE(shown("running"));
+  EXPECT_TRUE(shown("   50 ")) << console.out_text;  // 0, 2, … 98 ms.
+  EXPECT_FALSE(told("no longer produced"));
+}
+
+TEST_F(BatchTest, SyncEndsWithTheFile) {
+  EXPECT_EQ(run("sync start -y\nwait 25ms"), 0);
+  EXPECT_TRUE(told("notice: SYNC is no longer produced on sim:gsd600@1,gsd600@2, after 3\n"))
+      << console.err_text;
+  EXPECT_EQ(run("sync start -y\nread 0x5FFF -n 1"), 5);
+  EXPECT_TRUE(told("SYNC is no longer produced"));
+  EXPECT_EQ(run("sync stop"), 2);
+  EXPECT_TRUE(told("no SYNC is produced here"));
+}
+
+TEST_F(BatchTest, ThereIsOneSyncAtATime) {
+  for (const auto* second : {"sync start -y", "sync once -y", "sync start --for 10ms -y"}) {
+    EXPECT_EQ(run(std::string("sync start --period 5ms -y\n") + second), 8);
+    EXPECT_TRUE(told("SYNC is produced already, every 5 ms"));
+  }
+  EXPECT_EQ(run("sync start --period 5ms -y\nsync stop\nsync once -y\nsync start --for 10ms -y"), 0);
+}
+
+TEST_F(BatchTest, SyncIsNotTakenFromADriveThatFollowsItWithoutAWord) {
+  const std::string up = "use 1\nnmt start -y\nwrite 0x6060 7\nenable -y\n";
+  for (const auto* end : {"sync stop", ""}) {
+    EXPECT_EQ(run(up + "sync start --period 2ms -y\nwait 50ms\n" + end), 0) << console.err_text;
+    EXPECT_TRUE(told("node 1 is energised in a mode that follows SYNC")) << console.err_text;
+    EXPECT_EQ(run("use 1\ndisable"), 0) << console.err_text;
+  }
+  EXPECT_EQ(run(up + "sync start --period 2ms -y\ndisable\nsync stop"), 0) << console.err_text;
+  EXPECT_FALSE(told("follows SYNC"));
+}
+
+TEST_F(BatchTest, SyncObeysReadOnlyAndDryRun) {
+  EXPECT_EQ(run("sync start -y", {"--read-only"}), 8);
+  EXPECT_EQ(run("sync start -y", {"--dry-run"}), 0);
+  EXPECT_FALSE(told("no longer produced"));
+}
+
 }  // namespace
 }  // namespace servoctl::cli

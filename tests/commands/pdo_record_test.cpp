@@ -32,7 +32,9 @@ struct Case {
 class World {
  public:
   explicit World(const Case& c)
-      : case_(c), profile_(drive::load_profile(c.family, kFolders).value()), drive_(profile_, 1, memory_, "1") {
+      : case_(c),
+        profile_(drive::load_profile(c.family, kFolders).value()),
+        drive_(profile_, 1, memory_, "1") {
     bus_.attach(drive_);
     session::Session quiet(std::make_unique<TroubledBus>(bus_, drive_, Trouble{}, 1), "can0", {});
     (void)quiet.wait([] { return false; }, quiet.now() + 1s);
@@ -157,13 +159,13 @@ TEST_P(KilledChange, IsPutBackFromAnyStepByItsRecord) {
   EXPECT_GT(cut_off, 5);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Families, KilledChange,
-    testing::Values(Case{"gsd600", "TPDO1", {"0x6064", "0x6041"}, true},
-                    Case{"dm", "TPDO3", {"0x6064", "0x6041"}, false, "0x3A5"},
-                    Case{"da200", "TPDO1", {"0x6064", "0x6041"}},
-                    Case{"ts", "RPDO2", {"0x6040", "0x607A"}, true}, Case{"sv2", "RPDO1", {"0x6040", "0x607A"}}),
-    [](const auto& each) { return std::string(each.param.family); });
+INSTANTIATE_TEST_SUITE_P(Families, KilledChange,
+                         testing::Values(Case{"gsd600", "TPDO1", {"0x6064", "0x6041"}, true},
+                                         Case{"dm", "TPDO3", {"0x6064", "0x6041"}, false, "0x3A5"},
+                                         Case{"da200", "TPDO1", {"0x6064", "0x6041"}},
+                                         Case{"ts", "RPDO2", {"0x6040", "0x607A"}, true},
+                                         Case{"sv2", "RPDO1", {"0x6040", "0x607A"}}),
+                         [](const auto& each) { return std::string(each.param.family); });
 
 const Case kTs{"ts", "RPDO2", {"0x6040", "0x607A"}};
 

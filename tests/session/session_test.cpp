@@ -223,5 +223,29 @@ TEST_F(SessionTest, GuessesTheFamilyAndSaysThatItIsAGuess) {
   EXPECT_TRUE(guess_families(other, drive::find_families(kFolders)).empty());
 }
 
+TEST_F(SessionTest, ProducesSyncInEveryWaitWithItsCounterAndItsPeriod) {
+  open("gsd600@1");
+  const auto begin = session->now();
+  session->produce_sync({.period = 2ms, .last_counter = 3});
+  EXPECT_EQ(session->next_event(), begin);
+  // The waits are of any kind: for time, for an answer, for a key.
+  ASSERT_TRUE(session->wait([] { return false; }, begin + 5ms));
+  ASSERT_TRUE(session->upload(1, {0x1000, 0}));
+  while (session->now() < begin + 9ms)
+    ASSERT_TRUE(session->receive(std::min(session->next_event(), begin + 9ms)));
+  std::vector<std::string> syncs;
+  for (const auto& frame : bench->sent)
+    if (frame.starts_with("080#")) syncs.push_back(frame);
+  EXPECT_EQ(syncs, (std::vector<std::string>{"080#01", "080#02", "080#03", "080#01", "080#02"}));
+  const auto& rhythm = session->sync()->rhythm;
+  EXPECT_EQ(rhythm.count(), 5U);
+  EXPECT_NEAR(rhythm.intervals().mean(), 2, 0.07);
+  EXPECT_EQ(session->sync()->producer.missed(), 0U);
+  session->stop_sync();
+  ASSERT_TRUE(session->wait([] { return false; }, session->now() + 50ms));
+  EXPECT_EQ(session->sync(), nullptr);
+  EXPECT_EQ(std::count(bench->sent.begin(), bench->sent.end(), "080#03"), 1);
+}
+
 }  // namespace
 }  // namespace servoctl::session
