@@ -69,7 +69,9 @@ void write_value(const PdoField& field, const od::Value& value, report::JsonWrit
   json.end_record();
 }
 
-bool fits_frame(const PdoView& view, ByteSpan data) { return view.pdo.bits() <= data.size() * 8; }
+bool fits_frame(const PdoView& view, ByteSpan data) {
+  return view.assumed ? (view.pdo.bits() + 7) / 8 == data.size() : view.pdo.bits() <= data.size() * 8;
+}
 
 }  // namespace
 
@@ -158,18 +160,22 @@ void PdoBook::set(std::uint8_t id, session::Values values) {
   auto& place = nodes_[id];
   place.at_start = std::move(values);
   place.now = place.at_start;
+  for (const auto& value : place.now) place.told.insert(value.first);
   rebuild(id);
 }
 
 void PdoBook::learn(std::uint8_t id, ObjectAddress object, ByteSpan data) {
   if (!canopen::pdo_at(object.index)) return;
-  node(id).now[object] = Bytes(data.begin(), data.end());
+  auto& place = node(id);
+  place.now[object] = Bytes(data.begin(), data.end());
+  place.told.insert(object);
   rebuild(id);
 }
 
 void PdoBook::forget(std::uint8_t id) {
   const auto known = nodes_.find(id);
-  if (known == nodes_.end() || known->second.now == known->second.at_start) return;
+  if (known == nodes_.end()) return;
+  known->second.told.clear();
   known->second.now = known->second.at_start;
   rebuild(id);
 }
@@ -179,7 +185,9 @@ void PdoBook::rebuild(std::uint8_t id) {
   place.views.clear();
   for (auto& pdo : session::pdos_of(place.now)) {
     if (place.now.count({pdo.communication_index(), 1}) == 0) pdo.cob_id = predefined_cob_id(pdo, id);
+    const bool assumed = place.told.count({pdo.mapping_index(), 0}) == 0;
     place.views.push_back(make_view(profile_, chinese_, id, std::move(pdo)));
+    place.views.back().assumed = assumed;
   }
   index();
 }

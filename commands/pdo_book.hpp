@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <set>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,6 +36,7 @@ struct PdoView {
   canopen::Pdo pdo;
   std::string name;              ///< `TPDO1`
   std::vector<PdoField> fields;  ///< Without gaps.
+  bool assumed = false;          ///< Its mapping is that of the factory; the drive has not told it.
 
   std::uint32_t can_id() const { return pdo.can_id(); }
 };
@@ -45,11 +47,11 @@ PdoView make_view(const drive::Profile* profile, bool chinese, std::uint8_t node
 /// the statusword.
 void append_value(const PdoField& field, const od::Value& value, bool chinese, std::string& out);
 
-/// Appends `Statusword 0x0237 …, Position actual value 1200 inc`; raw bytes where nothing is mapped or the
-/// frame is too short.
+/// Appends `Statusword 0x0237 …, Position actual value 1200 inc`; raw bytes where nothing is mapped, the frame is
+/// too short, or the mapping is assumed and has another length.
 void append_values(const PdoView& view, ByteSpan data, bool chinese, std::string& out);
 
-/// Writes the values as a list of records; an empty one where the frame is too short.
+/// Writes the values as a list of records; an empty one where append_values() shows raw bytes.
 void write_values(const PdoView& view, ByteSpan data, report::JsonWriter& json);
 
 /// Which PDO a CAN-ID belongs to, on a bus with many nodes. Of a node nothing is known of, the PDOs are those
@@ -73,6 +75,7 @@ class PdoBook {
   struct Node {
     session::Values at_start;
     session::Values now;
+    std::set<ObjectAddress> told;  ///< By the drive, since it started.
     std::vector<PdoView> views;
   };
   Node& node(std::uint8_t id);

@@ -6,6 +6,7 @@
 #include "canopen/nmt.hpp"
 #include "commands/change.hpp"
 #include "commands/pdo_check.hpp"
+#include "commands/pdo_neighbours.hpp"
 #include "commands/pdo_record.hpp"
 #include "commands/pdo_report.hpp"
 #include "session/pdo_change.hpp"
@@ -93,7 +94,17 @@ class Changing {
       if (const auto planned = plan(job); !planned) return planned;
       jobs_.push_back(std::move(job));
     }
-    return {};
+    return undone_ ? Result<void>() : check_bus();
+  }
+
+  Result<void> check_bus() const {
+    std::vector<PdoNeighbour> nodes;
+    for (const auto& job : jobs_) {
+      auto after = job.present.values;
+      for (const auto& [object, data] : job.values) after[object] = data;
+      nodes.push_back({job.present.node, job.present.pdos, session::pdos_of(after)});
+    }
+    return check_neighbours(*context_, nodes);
   }
 
   Result<void> check(const Job& job) const {

@@ -82,13 +82,19 @@ std::vector<std::string> conflicts(const NodePdos& mine, const Pdo& pdo, const s
   const auto text = can_id_text(pdo.cob_id);
   if (const auto service = canopen::service_of(pdo.can_id()); !service.empty())
     out.push_back(fmt::format("{} is the CAN-ID of {}", text, service));
-  if (pdo.direction == PdoDirection::receive) return out;
+  const bool sent = pdo.direction == PdoDirection::transmit;
   for (const auto& node : all)
-    for (const auto& other : node.pdos)
-      if (other.direction == PdoDirection::transmit && other.is_valid() && other.can_id() == pdo.can_id() &&
-          (node.node != mine.node || other.number != pdo.number))
-        out.push_back(fmt::format("{} of node {} is sent with {} as well",
-                                  canopen::name(other.direction, other.number), node.node, text));
+    for (const auto& other : node.pdos) {
+      const bool same = node.node == mine.node && other.direction == pdo.direction && other.number == pdo.number;
+      if (same || !other.is_valid() || other.can_id() != pdo.can_id()) continue;
+      const auto name = canopen::name(other.direction, other.number);
+      if (sent && other.direction == PdoDirection::transmit)
+        out.push_back(fmt::format("{} of node {} is sent with {} as well", name, node.node, text));
+      if (sent && other.direction == PdoDirection::receive)
+        out.push_back(fmt::format("{} of node {} takes it for its own", name, node.node));
+      if (!sent && other.direction == PdoDirection::receive)
+        out.push_back(fmt::format("{} of node {} takes {} as well", name, node.node, text));
+    }
   return out;
 }
 

@@ -7,6 +7,7 @@
 #include "commands/command.hpp"
 #include "commands/listening.hpp"
 #include "commands/sync_end.hpp"
+#include "session/hearing.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -24,6 +25,9 @@ constexpr Parameter kStartParameters[] = {
     kForOption,
 };
 
+/// So long is listened for another producer; few have a longer period.
+constexpr Duration kListening = std::chrono::milliseconds(200);
+
 constexpr std::string_view kWarning =
     "Drives take over what RPDOs brought at SYNC: one that is enabled may move.";
 
@@ -38,6 +42,19 @@ Result<void> check_none(const Context& context) {
   return fail(Errc::refused,
               fmt::format("SYNC is produced already, every {}", to_string(production->options.period)),
               "`sync stop` ends it");
+}
+
+/// Drives would execute at the periods of both.
+Result<void> check_quiet(session::Session& session) {
+  bool heard = false;
+  const session::Hearing hearing(session, [&](const can::Frame& frame, TimePoint) {
+    heard = heard || (frame.id == canopen::kSync && !frame.extended && !frame.error);
+  });
+  const auto waited = session.wait([&] { return heard; }, session.now() + kListening);
+  if (!waited) return tl::unexpected<Error>(waited.error());
+  if (!*waited) return {};
+  return fail(Errc::refused, "somebody else on this bus produces SYNC already",
+              "end that one first: a PLC, another `sync start`, or a drive whose 1005h has bit 30 set");
 }
 
 Result<Value> run_once(Context& context, const Arguments&) {
@@ -80,6 +97,7 @@ Result<Value> run_start(Context& context, const Arguments& arguments) {
       !sure)
     return tl::unexpected<Error>(sure.error());
   auto& session = *context.session;
+  if (const auto quiet = check_quiet(session); !quiet) return tl::unexpected<Error>(quiet.error());
   session.produce_sync(*options);
   if (context.stays_open && !length->has_value()) {
     // The first one goes out now, not when the next line is waited for.

@@ -177,9 +177,15 @@ Pdo pdo_of(const Values& values, PdoDirection direction, std::uint16_t pdo_numbe
   out.event = number_as<std::uint16_t>(values, {communication, 5});
   out.sync_start = number_as<std::uint8_t>(values, {communication, 6});
   const auto count = number(values, {mapping, 0}).value_or(0);
-  for (std::uint8_t sub = 1; sub <= count && count <= kMostEntries; ++sub)
-    if (const auto entry = number(values, {mapping, sub}))
-      out.entries.push_back(canopen::parse_pdo_entry(*entry));
+  for (std::uint8_t sub = 1; sub <= count && count <= kMostEntries; ++sub) {
+    const auto entry = number(values, {mapping, sub});
+    // Without one of them the others stand at bits nobody knows.
+    if (!entry) {
+      out.entries.clear();
+      return out;
+    }
+    out.entries.push_back(canopen::parse_pdo_entry(*entry));
+  }
   return out;
 }
 

@@ -52,6 +52,7 @@ Result<std::optional<can::Frame>> Session::receive(TimePoint deadline) {
   received_at_ = *frame ? std::max(received_at_, bus_->arrived()) : now();
   if (*frame) watch_.on_frame(**frame, received_at_);
   if (*frame) guard_.on_frame(**frame, received_at_);
+  if (*frame && sync_ && !(*frame)->extended && (*frame)->id == sync_->options.can_id) ++sync_->foreign;
   if (*frame && options_.heard) options_.heard(**frame, received_at_);
   watch_.on_time(received_at_);
   guard_.on_time(received_at_);

@@ -10,6 +10,7 @@ struct SyncProduction {
   canopen::SyncProducer::Options options;
   canopen::SyncProducer producer;
   Rhythm rhythm = {};
+  std::uint64_t foreign = 0;  ///< SYNCs that somebody else sent meanwhile.
 };
 
 }  // namespace servoctl::session

@@ -215,6 +215,8 @@ TEST_F(PdoSetup, FromTheFactoryIsWhatTheSimulatedDriveStartsWith) {
 TEST(PdosOf, TakesACountThatIsNoneForNoEntries) {
   EXPECT_TRUE(pdos_of({{{0x1600, 0}, {0xFE}}, {{0x1600, 1}, {0x10, 0, 0x40, 0x60}}}).front().entries.empty());
   EXPECT_TRUE(pdos_of({{{0x1600, 0}, Bytes(20, 0xFF)}}).front().entries.empty());
+  // One that is missing in the middle: nobody knows where the others stand.
+  EXPECT_TRUE(pdos_of({{{0x1A00, 0}, {2}}, {{0x1A00, 2}, {0x20, 0, 0x6C, 0x60}}}).front().entries.empty());
   EXPECT_TRUE(pdos_of({{{0x1018, 1}, {1}}}).empty());
 }
 
