@@ -57,7 +57,7 @@ TEST_F(MotionTrouble, ARunawayInTheRightDirectionIsStopped) {
 }
 
 TEST_F(MotionTrouble, TheWatchdogIsLeftAloneWithADriveThatDoesNotAnswer) {
-  const auto silent = bench.session->now() + 700ms;
+  const auto silent = bench.session->now() + kListening + 700ms;
   bench.drive().fall_silent_at(silent);
   const auto done = bench.jog(kJog);
   ASSERT_EQ(done.watchdog.kind, WatchdogPlan::Kind::heartbeat);
