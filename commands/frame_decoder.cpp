@@ -173,13 +173,14 @@ void FrameDecoder::decode_pdo(const can::Frame& frame, std::uint8_t node, const 
     return;
   }
   out_.text += view->name;
-  if (view->assumed) out_.text += options_.chinese ? "（出厂映射）" : " (factory mapping)";
+  const bool assumed = view->assumed && shows_values(*view, data);
+  if (assumed) out_.text += options_.chinese ? "（出厂映射）" : " (factory mapping)";
   out_.text += ' ';
   append_values(*view, data, options_.chinese, out_.text);
   for (const auto& field : view->fields) out_.objects.push_back(field.entry.object);
   if (!options_.fields) return;
   fields_.member("pdo", view->name);
-  if (view->assumed) fields_.member("mapping", "factory");
+  if (assumed) fields_.member("mapping", "factory");
   fields_.key("values");
   write_values(*view, data, fields_);
 }

@@ -124,10 +124,16 @@ void append_value(const PdoField& field, const od::Value& value, bool chinese, s
     (out += ' ') += chinese && !label->label_zh.empty() ? label->label_zh : label->label;
 }
 
+bool shows_values(const PdoView& view, ByteSpan data) {
+  return !view.fields.empty() && fits_frame(view, data);
+}
+
 void append_values(const PdoView& view, ByteSpan data, bool chinese, std::string& out) {
-  if (!fits_frame(view, data) || view.fields.empty()) {
+  if (!shows_values(view, data)) {
     out += to_hex(data);
-    out += view.fields.empty() ? " (mapping not known)" : " (shorter than its mapping)";
+    out += view.fields.empty() ? " (mapping not known)"
+           : view.assumed      ? " (not as long as its factory mapping)"
+                               : " (shorter than its mapping)";
     return;
   }
   bool first = true;

@@ -3,8 +3,8 @@
 #include <array>
 #include <cstdint>
 #include <map>
-#include <set>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -47,8 +47,11 @@ PdoView make_view(const drive::Profile* profile, bool chinese, std::uint8_t node
 /// the statusword.
 void append_value(const PdoField& field, const od::Value& value, bool chinese, std::string& out);
 
-/// Appends `Statusword 0x0237 …, Position actual value 1200 inc`; raw bytes where nothing is mapped, the frame is
-/// too short, or the mapping is assumed and has another length.
+/// Whether the values can be told from a frame: something is mapped, and it is as long as that.
+bool shows_values(const PdoView& view, ByteSpan data);
+
+/// Appends `Statusword 0x0237 …, Position actual value 1200 inc`; raw bytes where nothing is mapped, the
+/// frame is too short, or the mapping is assumed and has another length.
 void append_values(const PdoView& view, ByteSpan data, bool chinese, std::string& out);
 
 /// Writes the values as a list of records; an empty one where append_values() shows raw bytes.

@@ -85,7 +85,8 @@ std::vector<std::string> conflicts(const NodePdos& mine, const Pdo& pdo, const s
   const bool sent = pdo.direction == PdoDirection::transmit;
   for (const auto& node : all)
     for (const auto& other : node.pdos) {
-      const bool same = node.node == mine.node && other.direction == pdo.direction && other.number == pdo.number;
+      const bool same =
+          node.node == mine.node && other.direction == pdo.direction && other.number == pdo.number;
       if (same || !other.is_valid() || other.can_id() != pdo.can_id()) continue;
       const auto name = canopen::name(other.direction, other.number);
       if (sent && other.direction == PdoDirection::transmit)

@@ -14,7 +14,8 @@ namespace servoctl::commands {
 /// Puts objects of one node into a TPDO that is not in use, for as long as it lives.
 class ScopeMapping {
  public:
-  ScopeMapping(Context& context, std::uint8_t node) : context_(&context), node_(node), record_(context, node) {}
+  ScopeMapping(Context& context, std::uint8_t node)
+      : context_(&context), node_(node), record_(context, node) {}
   ScopeMapping(const ScopeMapping&) = delete;
   ScopeMapping& operator=(const ScopeMapping&) = delete;
   ~ScopeMapping() { end(); }

@@ -34,9 +34,8 @@ SyncEnd end_sync(session::Session& session) {
     if (auto text = warning(session, node); !text.empty()) out.warnings.push_back(std::move(text));
   const auto& production = *session.sync();
   if (production.foreign > 0)
-    out.warnings.push_back(
-        fmt::format("somebody else sent {} SYNCs meanwhile: drives took both, in no steady period",
-                    production.foreign));
+    out.warnings.push_back(fmt::format(
+        "somebody else sent {} SYNCs meanwhile: drives took both, in no steady period", production.foreign));
   out.table.columns = rhythm_columns();
   out.table.columns.push_back({"missed"});
   auto row = rhythm_cells(production.rhythm);

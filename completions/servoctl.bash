@@ -9,7 +9,7 @@ _servoctl_scan() {
       continue
     fi
     case $word in
-      --bus|-b|--node|-n|--drive|-d|--timeout|--retries|--output|-o|--lang|--trace|--type|--to|--transfer|--from|--format|--only|--turn|--for|--turns|--limit|--accel|--max-torque|--max-following-error|--window|--master-node|--csv|--speed|--search|--offset|--within|--guard|--life|--inhibit|--event|--cob-id|--sync-start|--count|--longest|--junit|--expect|--tolerance|--stop-within|--repeat|--spread|--title|--tests|--period|--counter|--every|--svg|--service|--object|--bitrate|--var) skip=$word ;;
+      --bus|-b|--node|-n|--drive|-d|--timeout|--retries|--output|-o|--lang|--trace|--type|--to|--transfer|--from|--format|--only|--turn|--for|--turns|--accel|--csv|--limit|--max-torque|--max-following-error|--window|--master-node|--speed|--search|--offset|--within|--guard|--life|--inhibit|--event|--cob-id|--sync-start|--count|--longest|--junit|--expect|--tolerance|--stop-within|--repeat|--spread|--title|--tests|--period|--counter|--every|--svg|--service|--object|--bitrate|--var) skip=$word ;;
       -*) ;;
       *)
         case $command in
@@ -37,13 +37,13 @@ _servoctl_scan() {
       --turn) source='none' ;;
       --for) source='none' ;;
       --turns) source='none' ;;
-      --limit) source='none' ;;
       --accel) source='none' ;;
+      --csv) source='files' ;;
+      --limit) source='none' ;;
       --max-torque) source='none' ;;
       --max-following-error) source='none' ;;
       --window) source='none' ;;
       --master-node) source='none' ;;
-      --csv) source='files' ;;
       --speed) source='none' ;;
       --search) source='none' ;;
       --offset) source='none' ;;
@@ -82,7 +82,7 @@ _servoctl_scan() {
     nmt) source='=start stop preop reset reset-comm watch' ;;
     pdo) source='=show map enable disable clear preset apply save watch send' ;;
     test) source='=comm io jog home all' ;;
-    sync) source='=once start' ;;
+    sync) source='=once start stop' ;;
     eds) source='=check' ;;
     'read') source='objects' ;;
     'write') source='objects' ;;
@@ -137,10 +137,10 @@ _servoctl_scan() {
     'restore') options+=' --only --with-address --no-rollback --force --keep --unlock --resume' ;;
     'clone') options+=' --from --to --force --keep --unlock --resume' ;;
     'enable') options+=' --turn' ;;
-    'jog') options+=' --for --turns --until-key --limit --accel --max-torque --max-following-error --window --turn --master-node --csv --plot' ;;
-    'move') options+=' --relative --speed --limit --accel --max-torque --max-following-error --window --turn --master-node --csv --plot' ;;
-    'home') options+=' --speed --search --offset --within --limit --max-torque --max-following-error --window --turn --master-node --csv --plot' ;;
-    'torque') options+=' --for --limit --max-torque --max-following-error --window --turn --master-node --csv --plot' ;;
+    'jog') options+=' --for --turns --until-key --accel --csv --limit --max-torque --max-following-error --window --turn --master-node --plot' ;;
+    'move') options+=' --relative --speed --accel --csv --limit --max-torque --max-following-error --window --turn --master-node --plot' ;;
+    'home') options+=' --speed --search --offset --within --csv --limit --max-torque --max-following-error --window --turn --master-node --plot' ;;
+    'torque') options+=' --for --csv --limit --max-torque --max-following-error --window --turn --master-node --plot' ;;
     'nmt start') options+=' --wait' ;;
     'nmt stop') options+=' --wait' ;;
     'nmt preop') options+=' --wait' ;;
@@ -156,10 +156,10 @@ _servoctl_scan() {
     'pdo watch') options+=' --for' ;;
     'test comm') options+=' --count --longest --junit' ;;
     'test io') options+=' --expect --for --junit' ;;
-    'test jog') options+=' --for --tolerance --stop-within --limit --accel --max-torque --max-following-error --window --turn --master-node --csv --plot --junit' ;;
-    'test home') options+=' --repeat --spread --limit --accel --max-torque --max-following-error --window --turn --master-node --csv --plot --junit' ;;
-    'test all') options+=' --expect --for --tolerance --stop-within --no-home --repeat --spread --limit --accel --max-torque --max-following-error --window --turn --master-node --plot --junit' ;;
-    'report') options+=' --title --tests' ;;
+    'test jog') options+=' --for --tolerance --stop-within --accel --csv --junit --limit --max-torque --max-following-error --window --turn --master-node --plot' ;;
+    'test home') options+=' --repeat --spread --csv --junit --limit --max-torque --max-following-error --window --turn --master-node --plot' ;;
+    'test all') options+=' --expect --for --tolerance --stop-within --no-home --repeat --spread --accel --junit --limit --max-torque --max-following-error --window --turn --master-node --plot' ;;
+    'report') options+=' --output --title --tests' ;;
     'sync start') options+=' --period --counter --for' ;;
     'watch') options+=' --every --for --changes --plot' ;;
     'scope') options+=' --for --map --every --csv --svg --plot' ;;

@@ -11,6 +11,7 @@ MotionUnits::MotionUnits(Session& session, const drive::Profile& profile, std::u
                          std::optional<double> turn)
     : profile_(&profile), node_(node) {
   const MeasureQuestion questions[] = {{node, drive::Measure::increments_per_turn},
+                                       {node, drive::Measure::pulses_per_turn},
                                        {node, drive::Measure::rated_torque}};
   const auto answers = read_measures(session, profile, questions);
   for (std::size_t i = 0; i < answers.size(); ++i)

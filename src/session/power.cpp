@@ -184,12 +184,18 @@ Result<void> Power::quick_stop() {
   (void)has_stopped(fastest);
   if (const auto told = command(kQuickStop); !told) return told;
   const auto end = session_->now() + kQuickStopPatience;
+  std::optional<TimePoint> standing_since;
   for (;;) {
     const auto now_in = state();
     if (!now_in) return tl::unexpected<Error>(now_in.error());
     if (!drive::is_energised(*now_in)) return {};
     const bool followed = *now_in == DriveState::quick_stop_active;
-    if (followed && has_stopped(fastest)) return {};
+    if (!followed || !has_stopped(fastest))
+      standing_since.reset();
+    else if (!standing_since)
+      standing_since = session_->now();
+    // Most lose their power then by themselves; by 605Ah some stay.
+    if (standing_since && session_->now() - *standing_since >= kPatience) return {};
     if (session_->now() >= end)
       return fail(drive_error(
           Errc::negative, node_,

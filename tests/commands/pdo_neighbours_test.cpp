@@ -35,7 +35,8 @@ TEST_F(Neighbours, TwoTpdosDoNotGetOneCanId) {
 }
 
 TEST_F(Neighbours, ATpdoDoesNotCommandAnotherDrive) {
-  expect_refused("TPDO1", "statusword", "0x202", "RPDO1 of node 2: what the one sends would command the other");
+  expect_refused("TPDO1", "statusword", "0x202",
+                 "RPDO1 of node 2: what the one sends would command the other");
 }
 
 TEST_F(Neighbours, TwoDrivesAreNotCommandedByOneFrame) {
