@@ -180,7 +180,7 @@ check "frames the monitor has counted" 20000 "$(tail -1 "$work/full.jsonl" | jq 
 check "frames it has shown, in their order" "$(awk '{ print $3 }' "$work/full.log" | md5sum)" "$(jq -r 'select(.frame) | .frame' "$work/full.jsonl" | md5sum)"
 
 # 11. A recording is sent again as it was.
-candump -L vcan0 >"$work/again" &
+candump -L vcan0,180:7F0 >"$work/again" &  # Not what replay asks the drives before.
 sleep 0.3
 head -200 "$work/full.log" >"$work/part.log"
 "$servoctl" replay "$work/part.log" -y >/dev/null
