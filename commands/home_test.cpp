@@ -13,12 +13,10 @@ using report::Record;
 using report::TestResult;
 using session::Channel;
 
-/// Encoder counts that homing does not set to zero (CiA 402-2, 6063h).
-
 /// Where one homing ended.
 struct Found {
   std::optional<double> position;  ///< 6064h at rest.
-  std::optional<double> encoder;   ///< 6063h less 6064h: home in counts of the encoder.
+  std::optional<double> encoder;   ///< What the encoder counts less 6064h: home as the encoder sees it.
   double seconds = 0;
 };
 
@@ -68,13 +66,14 @@ class Homings {
     out.seconds = seconds_of(time);
     if (!done.samples.empty()) out.position = done.samples.back()[Channel::position];
     const auto& units = motion.units();
-    if (!out.position || !units.has(objects::kInternalPosition) ||
-        units.unit(objects::kInternalPosition) != units.unit(objects::kPositionActual))
+    const auto counter = units.object(motion.rules().encoder);
+    if (!out.position || !counter || !units.has(*counter) ||
+        units.unit(*counter) != units.unit(objects::kPositionActual))
       return out;
-    const auto counts = motion.session().upload(motion.node(), objects::kInternalPosition);
+    const auto counts = motion.session().upload(motion.node(), *counter);
     const auto now = motion.session().upload(motion.node(), objects::kPositionActual);
     if (!counts || !now) return out;
-    const auto encoder = units.physical(objects::kInternalPosition, *counts);
+    const auto encoder = units.physical(*counter, *counts);
     const auto position = units.physical(objects::kPositionActual, *now);
     if (encoder && position) out.encoder = encoder->value - position->value;
     return out;
@@ -86,11 +85,11 @@ class Homings {
     for (const auto& found : found_)
       if (found.*member) values.push_back(*(found.*member));
     if (values.size() < 2) {
-      out.criteria.push_back(
-          report::skipped(std::move(id), std::move(name),
-                          found_.size() < 2 ? say("fewer than two homings", "回零少于两次")
-                                            : say("the drive does not tell it in the unit of the position",
-                                                  "驱动器未以位置单位提供该数据")));
+      out.criteria.push_back(report::skipped(
+          std::move(id), std::move(name),
+          found_.size() < 2 ? say("fewer than two homings", "回零少于两次")
+                            : say("not told in the unit of the position; --encoder COUNTS may help",
+                                  "驱动器未以位置单位提供该数据，可试 --encoder")));
       return;
     }
     const auto [least, greatest] = std::minmax_element(values.begin(), values.end());

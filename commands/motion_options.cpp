@@ -96,12 +96,13 @@ Result<session::MotionOptions> motion_options(const Context& context, const Argu
   out.max_following_error = arguments.text("--max-following-error");
   out.window = arguments.text("--window");
   out.unheard = context.output_lost;
-  if (arguments.has("--turn")) {
-    const auto counts = number(arguments, "--turn");
+  for (const auto& [name, place] : {std::pair("--turn", &out.turn), std::pair("--encoder", &out.encoder)}) {
+    if (!arguments.has(name)) continue;
+    const auto counts = number(arguments, name);
     if (!counts || *counts == 0)
-      return fail(Errc::usage, fmt::format("'{}' is no number of counts", arguments.text("--turn")),
+      return fail(Errc::usage, fmt::format("'{}' is no number of counts", arguments.text(name)),
                   "such as 131072 for 17 bits");
-    out.turn = static_cast<double>(*counts);
+    *place = static_cast<double>(*counts);
   }
   if (!arguments.has("--master-node")) return out;
   const auto id = number(arguments, "--master-node");

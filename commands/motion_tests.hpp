@@ -32,6 +32,11 @@ Result<JogTest> parse_jog_test(const Arguments& arguments, std::string_view spee
 /// Turns the motor one way and then the other.
 Result<MotionTest> test_jog(Context& context, const Arguments& arguments, const JogTest& test);
 
+inline constexpr Parameter kEncoderOption{
+    .name = "--encoder",
+    .help = "counts of the encoder in one turn of the motor, if the drive does not tell",
+    .kind = Kind::number};
+
 /// What `test home` looks at.
 struct HomeTest {
   std::string method;  ///< Of 6098h; empty: the drive's present one.

@@ -20,6 +20,7 @@ constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
     {.name = "--no-home", .help = "leave the test home out", .kind = Kind::flag},
     {.name = "--repeat", .help = "homings (default 5)", .kind = Kind::number},
     {.name = "--spread", .help = "greatest spread of home (default 1)", .kind = Kind::number},
+    kEncoderOption,
     kAccelerationOption,
     kJunitOption,
 }));

@@ -11,6 +11,7 @@ constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
     {.name = "--spread",
      .help = "greatest spread that passes, in the unit of the position (default 1)",
      .kind = Kind::number},
+    kEncoderOption,
     kCsvOption,
     kJunitOption,
 }));
@@ -32,9 +33,11 @@ const Command kTestHome{
     .summary = "Home an axis several times, with a verdict",
     .details =
         "Looks, asks, moves and ends as `home` does, --repeat times. Passes when each found home, and when "
-        "neither the position at rest nor, where the drive has 6063h, home against the encoder's own count "
-        "spreads by more than --spread. A drive that sets 6063h to zero as well shows no spread there. Exit "
-        "code 1 when it fails. Example: `test home 33 --repeat 5 --spread 0.5 -n 1 -d gsd600 --yes`.",
+        "neither the position at rest nor home against the encoder's own count (6063h, or what the family "
+        "has) "
+        "spreads by more than --spread. Where the drive does not tell how many counts its encoder has in a "
+        "turn, --encoder does; one that sets that count to zero as well shows no spread there. Exit code 1 "
+        "when it fails. Example: `test home 33 --repeat 5 --spread 0.5 -n 1 -d gsd600 --yes`.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,

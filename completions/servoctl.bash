@@ -9,7 +9,7 @@ _servoctl_scan() {
       continue
     fi
     case $word in
-      --bus|-b|--node|-n|--drive|-d|--timeout|--retries|--output|-o|--lang|--trace|--type|--to|--transfer|--from|--format|--only|--turn|--for|--turns|--accel|--csv|--limit|--max-torque|--max-following-error|--window|--master-node|--speed|--search|--offset|--within|--guard|--life|--inhibit|--event|--cob-id|--sync-start|--count|--longest|--junit|--expect|--tolerance|--stop-within|--repeat|--spread|--title|--tests|--period|--counter|--every|--svg|--service|--object|--bitrate|--var) skip=$word ;;
+      --bus|-b|--node|-n|--drive|-d|--timeout|--retries|--output|-o|--lang|--trace|--type|--to|--transfer|--from|--format|--only|--turn|--for|--turns|--accel|--csv|--limit|--max-torque|--max-following-error|--window|--master-node|--speed|--search|--offset|--within|--guard|--life|--inhibit|--event|--cob-id|--sync-start|--count|--longest|--junit|--expect|--tolerance|--stop-within|--repeat|--spread|--encoder|--title|--tests|--period|--counter|--every|--svg|--service|--object|--bitrate|--var) skip=$word ;;
       -*) ;;
       *)
         case $command in
@@ -62,6 +62,7 @@ _servoctl_scan() {
       --stop-within) source='none' ;;
       --repeat) source='none' ;;
       --spread) source='none' ;;
+      --encoder) source='none' ;;
       --title) source='none' ;;
       --tests) source='files' ;;
       --period) source='none' ;;
@@ -157,8 +158,8 @@ _servoctl_scan() {
     'test comm') options+=' --count --longest --junit' ;;
     'test io') options+=' --expect --for --junit' ;;
     'test jog') options+=' --for --tolerance --stop-within --accel --csv --junit --limit --max-torque --max-following-error --window --turn --master-node --plot' ;;
-    'test home') options+=' --repeat --spread --csv --junit --limit --max-torque --max-following-error --window --turn --master-node --plot' ;;
-    'test all') options+=' --expect --for --tolerance --stop-within --no-home --repeat --spread --accel --junit --limit --max-torque --max-following-error --window --turn --master-node --plot' ;;
+    'test home') options+=' --repeat --spread --encoder --csv --junit --limit --max-torque --max-following-error --window --turn --master-node --plot' ;;
+    'test all') options+=' --expect --for --tolerance --stop-within --no-home --repeat --spread --encoder --accel --junit --limit --max-torque --max-following-error --window --turn --master-node --plot' ;;
     'report') options+=' --output --title --tests' ;;
     'sync start') options+=' --period --counter --for' ;;
     'watch') options+=' --every --for --changes --plot' ;;

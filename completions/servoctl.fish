@@ -16,7 +16,7 @@ function __servoctl_path # the words that are neither options nor their values
     for word in (commandline -opc)[2..]
         if test $skip = 1
             set skip 0
-        else if contains -- $word --bus -b --node -n --drive -d --timeout --retries --output -o --lang --trace --type --to --transfer --from --format --only --turn --for --turns --accel --csv --limit --max-torque --max-following-error --window --master-node --speed --search --offset --within --guard --life --inhibit --event --cob-id --sync-start --count --longest --junit --expect --tolerance --stop-within --repeat --spread --title --tests --period --counter --every --svg --service --object --bitrate --var
+        else if contains -- $word --bus -b --node -n --drive -d --timeout --retries --output -o --lang --trace --type --to --transfer --from --format --only --turn --for --turns --accel --csv --limit --max-torque --max-following-error --window --master-node --speed --search --offset --within --guard --life --inhibit --event --cob-id --sync-start --count --longest --junit --expect --tolerance --stop-within --repeat --spread --encoder --title --tests --period --counter --every --svg --service --object --bitrate --var
             set skip 1
         else if not string match -q -- '-*' $word
             set path $path $word
@@ -246,6 +246,7 @@ complete -c servoctl -n '__servoctl_in test jog' -l plot -d 'draw the samples ov
 complete -c servoctl -n '__servoctl_at test' -a home -d 'Home an axis several times, with a verdict'
 complete -c servoctl -n '__servoctl_in test home' -l repeat -x -d 'how often (default 5)'
 complete -c servoctl -n '__servoctl_in test home' -l spread -x -d 'greatest spread that passes, in the unit of the position (default 1)'
+complete -c servoctl -n '__servoctl_in test home' -l encoder -x -d 'counts of the encoder in one turn of the motor, if the drive does not tell'
 complete -c servoctl -n '__servoctl_in test home' -l csv -r -F -d 'write the samples to this file'
 complete -c servoctl -n '__servoctl_in test home' -l junit -r -F -d 'write the verdicts into a file as JUnit XML'
 complete -c servoctl -n '__servoctl_in test home' -l limit -x -d 'greatest speed; raises the safe one knowingly'
@@ -263,6 +264,7 @@ complete -c servoctl -n '__servoctl_in test all' -l stop-within -x -d 'longest t
 complete -c servoctl -n '__servoctl_in test all' -l no-home -d 'leave the test home out'
 complete -c servoctl -n '__servoctl_in test all' -l repeat -x -d 'homings (default 5)'
 complete -c servoctl -n '__servoctl_in test all' -l spread -x -d 'greatest spread of home (default 1)'
+complete -c servoctl -n '__servoctl_in test all' -l encoder -x -d 'counts of the encoder in one turn of the motor, if the drive does not tell'
 complete -c servoctl -n '__servoctl_in test all' -l accel -x -d 'ramps (6083h, 6084h) instead of half a second'
 complete -c servoctl -n '__servoctl_in test all' -l junit -r -F -d 'write the verdicts into a file as JUnit XML'
 complete -c servoctl -n '__servoctl_in test all' -l limit -x -d 'greatest speed; raises the safe one knowingly'

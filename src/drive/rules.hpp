@@ -128,9 +128,10 @@ struct MotionRules {
   std::uint16_t homing_done_mask = 0x3400;  ///< Bits 10, 12, 13 of the statusword.
   std::uint16_t homing_done = 0x1400;
   std::uint16_t homing_error = 0x2000;
-  bool homed_bit = false;  ///< Bit 15 of the statusword says that the axis is homed.
-  bool halt = true;        ///< Bit 8 of the controlword.
-  bool handshake = true;   ///< Bit 4 of the controlword takes a target; false: 607Ah is followed at once.
+  std::string encoder = "0x6063";  ///< Counts of the motor's encoder, which homing leaves alone.
+  bool homed_bit = false;          ///< Bit 15 of the statusword says that the axis is homed.
+  bool halt = true;                ///< Bit 8 of the controlword.
+  bool handshake = true;  ///< Bit 4 of the controlword takes a target; false: 607Ah is followed at once.
   std::string position_speed = "0x6081";  ///< Object that holds the speed of a move to a position.
   std::string rated_speed;                ///< Object or parameter that holds the rated speed of the motor.
   std::vector<std::uint8_t> inputs{0, 1, 2};  ///< Bits of 60FDh: negative limit, positive limit, home.

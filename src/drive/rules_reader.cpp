@@ -223,6 +223,7 @@ Result<void> read_motion(const TableReader& reader, Rules& rules) {
        {"homing_done_mask", into(out.homing_done_mask)},
        {"homing_done", into(out.homing_done)},
        {"homing_error", into(out.homing_error)},
+       {"encoder", into(out.encoder)},
        {"homed_bit", into(out.homed_bit)},
        {"halt", into(out.halt)},
        {"handshake", into(out.handshake)},

@@ -31,7 +31,7 @@ Motion::Motion(Session& session, const drive::Profile& profile, std::uint8_t nod
 
 Result<void> Motion::prepare() {
   if (const auto alive = power_.statusword(); !alive) return tl::unexpected<Error>(alive.error());
-  units_ = std::make_unique<MotionUnits>(*session_, *profile_, node_, options_.turn);
+  units_ = std::make_unique<MotionUnits>(*session_, *profile_, node_, options_.turn, options_.encoder);
   monitor_ = std::make_unique<MotionMonitor>(*session_, *units_, node_);
   if (const auto done = read_limits(); !done) return done;
   speed_cap_ = find_speed_cap();

@@ -18,6 +18,7 @@ namespace servoctl::session {
 struct MotionOptions {
   std::optional<std::uint8_t> producer;  ///< servoctl's own node-ID for the watchdog.
   std::optional<double> turn;            ///< Increments in one turn, where the drive does not tell.
+  std::optional<double> encoder;         ///< Encoder counts in one turn, where the drive does not tell.
   std::string speed_limit;               ///< Of 60FFh.
   std::string acceleration;              ///< Of 6083h.
   std::string max_torque;                ///< Of 6077h.

@@ -8,7 +8,7 @@
 namespace servoctl::session {
 
 MotionUnits::MotionUnits(Session& session, const drive::Profile& profile, std::uint8_t node,
-                         std::optional<double> turn)
+                         std::optional<double> turn, std::optional<double> encoder)
     : profile_(&profile), node_(node) {
   const MeasureQuestion questions[] = {{node, drive::Measure::increments_per_turn},
                                        {node, drive::Measure::pulses_per_turn},
@@ -17,6 +17,7 @@ MotionUnits::MotionUnits(Session& session, const drive::Profile& profile, std::u
   for (std::size_t i = 0; i < answers.size(); ++i)
     if (answers[i]) measures_[questions[i].measure] = *answers[i];
   if (turn) measures_[drive::Measure::increments_per_turn] = *turn;
+  if (encoder) measures_[drive::Measure::pulses_per_turn] = *encoder;
 }
 
 bool MotionUnits::has(ObjectAddress object) const { return profile_->dictionary.find(object) != nullptr; }

@@ -23,8 +23,10 @@ struct Physical {
 /// What the objects of one drive mean, with its gear and ratings, which are read once.
 class MotionUnits {
  public:
-  /// `turn`: increments in one turn of the motor, where the user tells it and the drive does not.
-  MotionUnits(Session& session, const drive::Profile& profile, std::uint8_t node, std::optional<double> turn);
+  /// `turn`: increments in one turn of the motor, `encoder`: counts of its encoder, where the user tells them
+  /// and the drive does not.
+  MotionUnits(Session& session, const drive::Profile& profile, std::uint8_t node, std::optional<double> turn,
+              std::optional<double> encoder = {});
 
   bool has(ObjectAddress object) const;
   drive::Meaning meaning(ObjectAddress object) const;

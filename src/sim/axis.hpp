@@ -25,7 +25,8 @@ struct AxisFaults {
 /// switches of its track. Positions are in units of 6064h, speeds in those units a second.
 class Axis {
  public:
-  Axis(const drive::Profile& profile, ObjectValues& values) : profile_(&profile), values_(&values) {}
+  Axis(const drive::Profile& profile, ObjectValues& values)
+      : profile_(&profile), values_(&values), encoder_(find_encoder()) {}
 
   /// Power-on: at rest, nothing homed, no set-point.
   void reset(TimePoint now);
@@ -79,6 +80,7 @@ class Axis {
   double read(ObjectAddress object) const;
   /// Where the axis stands on its track.
   double place() const { return (position_ - origin_) / units_per_turn(); }
+  ObjectAddress find_encoder() const;
   double per_turn(drive::Measure measure) const;
   double units_per_turn() const;
   double fastest_by_torque() const;                 ///< What the family's limits leave in torque mode.
@@ -95,6 +97,7 @@ class Axis {
 
   const drive::Profile* profile_;
   ObjectValues* values_;
+  ObjectAddress encoder_;
   TimePoint time_{};
   std::uint16_t controlword_ = 0;
   double position_ = 0;

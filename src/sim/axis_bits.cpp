@@ -79,7 +79,7 @@ double Axis::turning() const { return faults_.stalled ? 0 : faults_.reversed ? -
 void Axis::publish() {
   write(objects::kPositionActual, position_);
   const double here = place();
-  write(objects::kInternalPosition, here * per_turn(drive::Measure::pulses_per_turn));
+  write(encoder_, here * per_turn(drive::Measure::pulses_per_turn));
   std::uint32_t inputs = 0;
   for (const auto input : {Input::negative_limit, Input::positive_limit, Input::home})
     if (track_.is_pressed(input, here))

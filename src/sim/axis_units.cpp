@@ -53,6 +53,11 @@ ObjectAddress Axis::speed_object() const {
   return target ? target->address : objects::kProfileVelocity;
 }
 
+ObjectAddress Axis::find_encoder() const {
+  const auto target = drive::resolve(profile_, profile_->rules.motion.encoder);
+  return target ? target->address : objects::kInternalPosition;
+}
+
 double Axis::units_per_turn() const {
   if (drive::meaning(drive::target_at(profile_, objects::kPositionActual), 0).unit == "rad") return 2 * kPi;
   return per_turn(drive::Measure::increments_per_turn);

@@ -144,6 +144,22 @@ TEST_F(MotionTests, HomeIsMeasuredAgainstTheEncoderWhichAnIndexPulseFollowsAndAS
   EXPECT_EQ(criterion(by_index, "encoder_spread"), "passed 0");
 }
 
+/// A family whose counter is a parameter of its own, in counts that the user tells.
+TEST_F(MotionTests, HomeIsMeasuredAgainstTheEncoderOfThePanel) {
+  build("gsd600@1", "gsd600");
+  for (const auto& [object, value] :
+       {std::pair(ObjectAddress{0x6099, 1}, 65536U), {ObjectAddress{0x6099, 2}, 65536U}})
+    ASSERT_TRUE(session->download(1, object, store_le(value, 4)));
+  drive().track().scatter = 0.1;
+  const auto home = [&](const std::string& counts) {
+    const Words words{{"method", "23"}, {"--repeat", "3"}, {"--turn", "131072"}, {"--encoder", counts}};
+    return criterion(run("test home", words), "encoder_spread");
+  };
+  EXPECT_TRUE(home("10000").starts_with("failed 3")) << home("10000");
+  EXPECT_EQ(criterion(run("test home", {{"method", "23"}, {"--turn", "131072"}}), "encoder_spread"),
+            "skipped null");
+}
+
 TEST_F(MotionTests, HomeStopsAtTheFirstThatFails) {
   build("sv2@1", "sv2");
   drive().track().negative_limit.stuck = true;
