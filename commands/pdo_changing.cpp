@@ -90,7 +90,12 @@ class Changing {
       const auto wanted = (*edit_)(job.present);
       if (!wanted) return tl::unexpected<Error>(wanted.error());
       job.wanted = *wanted;
-      if (const auto fits = check(job); !fits) return fits;
+      if (const auto fits = check(job); !fits) {
+        auto error = fits.error();
+        error.node = job.present.node;
+        error.message = fmt::format("node {}, {}", job.present.node, error.message);
+        return fail(std::move(error));
+      }
       if (const auto planned = plan(job); !planned) return planned;
       jobs_.push_back(std::move(job));
     }
