@@ -20,7 +20,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   home.fast = arguments.text("--speed");
   home.slow = arguments.text("--search");
   home.offset = arguments.text("--offset");
-  const auto longest = time_option(arguments, "--within");
+  const auto longest = duration_option(arguments, "--within");
   if (!longest) return tl::unexpected<Error>(longest.error());
   home.longest = *longest;
   return run_motion(context, arguments, motion_run(home, session::plan_home, session::run_home));

@@ -55,7 +55,7 @@ class HeldKey {
 Result<session::Jog> parse_jog(const Arguments& arguments) {
   session::Jog jog;
   jog.speed = arguments.text("speed");
-  const auto length = time_option(arguments, "--for");
+  const auto length = duration_option(arguments, "--for");
   if (!length) return tl::unexpected<Error>(length.error());
   jog.length = *length;
   if (arguments.has("--turns")) {

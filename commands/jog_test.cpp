@@ -209,12 +209,12 @@ constexpr Duration kShortest = std::chrono::seconds(1);
 Result<JogTest> parse_jog_test(const Arguments& arguments, std::string_view speed) {
   JogTest out;
   out.speed = speed;
-  const auto length = time_option(arguments, "--for");
+  const auto length = duration_option(arguments, "--for");
   if (!length) return tl::unexpected<Error>(length.error());
   out.length = length->value_or(out.length);
   if (out.length < kShortest)
     return fail(Errc::usage, "--for is too short to reach the speed", "at least 1s");
-  const auto stop = time_option(arguments, "--stop-within");
+  const auto stop = duration_option(arguments, "--stop-within");
   if (!stop) return tl::unexpected<Error>(stop.error());
   out.longest_stop = stop->value_or(out.longest_stop);
   const auto tolerance = number_option(arguments, "--tolerance", out.tolerance);

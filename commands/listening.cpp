@@ -1,9 +1,6 @@
 #include "commands/listening.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
-
-#include "base/duration.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -12,15 +9,6 @@ namespace {
 constexpr Duration kSlice = std::chrono::milliseconds(50);
 
 }  // namespace
-
-Result<std::optional<Duration>> duration_option(const Arguments& arguments, std::string_view name) {
-  if (!arguments.has(name)) return std::optional<Duration>();
-  const auto time = parse_duration(arguments.text(name));
-  if (!time || *time == Duration::zero())
-    return fail(Errc::usage, fmt::format("'{}' is no time for {}", arguments.text(name), name),
-                "write 500ms or 10s");
-  return std::optional(*time);
-}
 
 Result<void> listen(session::Session& session, std::optional<Duration> length, const Listener& listener) {
   const auto end = length ? session.now() + *length : kNever;

@@ -3,16 +3,13 @@
 #include <functional>
 #include <optional>
 
-#include "commands/command.hpp"
+#include "commands/duration_option.hpp"
 
 /// What commands that listen to the bus have in common.
 namespace servoctl::commands {
 
 inline constexpr Parameter kForOption{
     .name = "--for", .help = "how long; until Ctrl-C unless said", .kind = Kind::duration};
-
-/// The time of an option; empty when it was not given. Errc::usage when it is no time, or zero.
-Result<std::optional<Duration>> duration_option(const Arguments& arguments, std::string_view name);
 
 /// What is done while listening; any of them may be empty.
 struct Listener {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "base/duration.hpp"
 #include "base/file.hpp"
 #include "base/number.hpp"
 #include "canopen/cob_id.hpp"
@@ -77,15 +76,6 @@ std::optional<std::uint64_t> number(const Arguments& arguments, std::string_view
 Result<std::uint8_t> one_node(const Context& context) {
   if (context.nodes.size() == 1 && context.nodes.front() != 0) return context.nodes.front();
   return fail(Errc::usage, "one motor at a time: this command takes one node", "-n 1");
-}
-
-Result<std::optional<Duration>> time_option(const Arguments& arguments, std::string_view name) {
-  if (!arguments.has(name)) return std::optional<Duration>();
-  const auto time = parse_duration(arguments.text(name));
-  if (!time || *time == Duration::zero())
-    return fail(Errc::usage, fmt::format("'{}' is no time for {}", arguments.text(name), name),
-                "write 500ms or 10s");
-  return std::optional(*time);
 }
 
 Result<session::MotionOptions> motion_options(const Context& context, const Arguments& arguments) {

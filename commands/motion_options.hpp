@@ -4,7 +4,7 @@
 #include <array>
 #include <functional>
 
-#include "commands/command.hpp"
+#include "commands/duration_option.hpp"
 #include "session/motion_kinds.hpp"
 
 /// What jog, move, home and torque have in common on the command line, and how they run.
@@ -45,9 +45,6 @@ Result<session::MotionOptions> motion_options(const Context& context, const Argu
 
 /// The one node that a motion may have. Errc::usage for several: one motor at a time.
 Result<std::uint8_t> one_node(const Context& context);
-
-/// A time that an option gives; empty when it is not given.
-Result<std::optional<Duration>> time_option(const Arguments& arguments, std::string_view name);
 
 /// What a command does between the looks and the answer.
 struct MotionRun {

@@ -48,8 +48,8 @@ Result<std::optional<std::uint8_t>> byte_option(const Arguments& arguments, std:
 }
 
 /// A time in steps, exact, in 16 bits.
-Result<std::optional<std::uint16_t>> time_option(const Arguments& arguments, std::string_view name,
-                                                 Duration step) {
+Result<std::optional<std::uint16_t>> steps_option(const Arguments& arguments, std::string_view name,
+                                                  Duration step) {
   if (!arguments.has(name)) return std::optional<std::uint16_t>();
   const auto time = parse_duration(arguments.text(name));
   const auto most = std::chrono::duration<double, std::milli>(step * 0xFFFF);
@@ -68,8 +68,8 @@ Result<Options> parse_options(const drive::Profile& profile, const Arguments& ar
   }
   const auto type = byte_option(arguments, "--type");
   const auto sync_start = byte_option(arguments, "--sync-start");
-  const auto inhibit = time_option(arguments, "--inhibit", std::chrono::microseconds(100));
-  const auto event = time_option(arguments, "--event", std::chrono::milliseconds(1));
+  const auto inhibit = steps_option(arguments, "--inhibit", std::chrono::microseconds(100));
+  const auto event = steps_option(arguments, "--event", std::chrono::milliseconds(1));
   if (!type) return tl::unexpected<Error>(type.error());
   if (!sync_start) return tl::unexpected<Error>(sync_start.error());
   if (!inhibit) return tl::unexpected<Error>(inhibit.error());

@@ -15,7 +15,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   CommTest test;
   const auto count = count_option(arguments, "--count", 1, 1'000'000, test.count);
   if (!count) return tl::unexpected<Error>(count.error());
-  const auto longest = time_option(arguments, "--longest");
+  const auto longest = duration_option(arguments, "--longest");
   if (!longest) return tl::unexpected<Error>(longest.error());
   test = {*count, longest->value_or(test.longest)};
   std::vector<report::TestResult> results;

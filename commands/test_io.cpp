@@ -19,7 +19,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   auto expected = parse_inputs(context, arguments.text("--expect"));
   if (!expected) return tl::unexpected<Error>(expected.error());
   test.expected = std::move(*expected);
-  const auto length = time_option(arguments, "--for");
+  const auto length = duration_option(arguments, "--for");
   if (!length) return tl::unexpected<Error>(length.error());
   test.length = length->value_or(test.length);
   auto result = test_inputs(context, context.nodes.front(), test);

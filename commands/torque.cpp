@@ -15,7 +15,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
                 "add --limit 60rpm");
   session::Torque torque;
   torque.torque = arguments.text("torque");
-  const auto length = time_option(arguments, "--for");
+  const auto length = duration_option(arguments, "--for");
   if (!length) return tl::unexpected<Error>(length.error());
   if (!*length) return fail(Errc::usage, "how long?", "add --for 1s");
   torque.length = **length;

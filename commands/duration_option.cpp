@@ -1,0 +1,18 @@
+#include "commands/duration_option.hpp"
+
+#include <fmt/format.h>
+
+#include "base/duration.hpp"
+
+namespace servoctl::commands {
+
+Result<std::optional<Duration>> duration_option(const Arguments& arguments, std::string_view name) {
+  if (!arguments.has(name)) return std::optional<Duration>();
+  const auto time = parse_duration(arguments.text(name));
+  if (!time || *time == Duration::zero())
+    return fail(Errc::usage, fmt::format("'{}' is no time for {}", arguments.text(name), name),
+                "write 500ms or 10s");
+  return std::optional(*time);
+}
+
+}  // namespace servoctl::commands

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <optional>
+
+#include "commands/command.hpp"
+
+namespace servoctl::commands {
+
+/// The time of an option; empty when it was not given. Errc::usage when it is no time, or zero.
+Result<std::optional<Duration>> duration_option(const Arguments& arguments, std::string_view name);
+
+}  // namespace servoctl::commands
