@@ -59,7 +59,7 @@ TEST_F(Neighbours, WhereNobodyIsNothingIsInTheWay) {
 
 TEST_F(Neighbours, SeveralNodesAreNotGivenOneCanIdByAFile) {
   context.nodes = {1, 2};
-  const auto file = std::filesystem::path(testing::TempDir()) / "shared.toml";
+  const std::filesystem::path file = own_file("shared.toml");
   std::ofstream(file) << "format = 1\n[[pdo]]\npdo = \"RPDO1\"\ncob_id = \"0x205\"\nvalid = true\n";
   const auto result = run("pdo apply", {{"file", file.string()}});
   ASSERT_FALSE(result);

@@ -22,7 +22,7 @@ constexpr std::string_view kEnable =
 class Replay : public TestedDrive {
  protected:
   Result<report::Value> replay(std::string_view log, Words words = {}) {
-    const auto path = testing::TempDir() + "replay_test.log";
+    const auto path = own_file("replay_test.log");
     std::ofstream(path) << log;
     words.emplace_back("file", path);
     return run("replay", words);

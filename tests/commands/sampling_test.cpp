@@ -135,7 +135,7 @@ TEST_F(Sampling, EachValueHasTheTimeOfItsOwnFrame) {
     if (frame.id == 0x181 || frame.id == 0x182)
       seen.push_back(std::chrono::duration<double>(session->now().time_since_epoch()).count());
   };
-  const auto path = testing::TempDir() + "sampling_test.csv";
+  const auto path = own_file("sampling_test.csv");
   ASSERT_TRUE(run("scope", {{"object", "0x6041"}, {"--for", "2500ms"}, {"--csv", path}}));
   ASSERT_GE(seen.size(), 4U);
   const auto table = csv_lines(path);
@@ -184,7 +184,7 @@ TEST_F(Sampling, AGapInTheMiddleIsNoError) {
 TEST_F(Sampling, WhatIsNoNumberIsRefusedBeforeAnythingIsMapped) {
   build("gsd600@1", "gsd600");
   start_node();
-  const auto path = testing::TempDir() + "none.svg";
+  const auto path = own_file("none.svg");
   std::filesystem::remove(path);
   const auto result =
       run("scope", {{"object", "0x6041"}, {"object", "0x1008"}, {"--map", "true"}, {"--svg", path}});

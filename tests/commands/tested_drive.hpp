@@ -1,6 +1,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <functional>
@@ -13,6 +14,11 @@
 #include "sim/cell.hpp"
 
 namespace servoctl::commands {
+
+/// A file of this process: tests run beside each other.
+inline std::string own_file(std::string_view name) {
+  return testing::TempDir() + std::to_string(::getpid()) + "-" + std::string(name);
+}
 
 /// A bus that lets a test see and change what a drive says, and act at a time.
 class TouchedBus final : public can::Bus {
