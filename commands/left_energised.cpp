@@ -12,6 +12,14 @@ std::string energised_notice(std::uint8_t node) {
                      node, node);
 }
 
+std::string disabled_notice(std::uint8_t node) {
+  return fmt::format("node {} was left energised; it is stopped and disabled now", node);
+}
+
+std::string power_warning(std::uint8_t node, std::string_view why) {
+  return fmt::format("NODE {} MAY STILL BE ENERGISED: TAKE THE POWER AWAY: {}", node, why);
+}
+
 void tell_left_energised(Context& context) {
   const drive::Profile plain;
   for (const auto node : std::set(context.session->energised())) {
@@ -28,13 +36,11 @@ void tell_left_energised(Context& context) {
 void stop_left_energised(Context& context) {
   for (const auto& [node, done] : session::de_energise(*context.session)) {
     if (done) {
-      context.notices.push_back(
-          fmt::format("node {} was left energised; it is stopped and disabled now", node));
+      context.notices.push_back(disabled_notice(node));
       continue;
     }
     auto error = done.error();
-    error.message =
-        fmt::format("NODE {} MAY STILL BE ENERGISED: TAKE THE POWER AWAY: {}", node, error.message);
+    error.message = power_warning(node, error.message);
     context.errors.push_back(std::move(error));
   }
 }

@@ -11,6 +11,12 @@ namespace servoctl::commands {
 /// What a user has to know of one.
 std::string energised_notice(std::uint8_t node);
 
+/// Of one that was left energised: `node 1 was left energised; it is stopped and disabled now`.
+std::string disabled_notice(std::uint8_t node);
+
+/// Of one whose power could not be taken away: what the user has to do, and why.
+std::string power_warning(std::uint8_t node, std::string_view why);
+
 /// Looks whether the drives that were energised through this session still are, and says so of each: in the
 /// notices, also where one does not tell.
 void tell_left_energised(Context& context);

@@ -6,6 +6,7 @@
 
 #include "base/text.hpp"
 #include "can/socketcan.hpp"
+#include "commands/left_energised.hpp"
 #include "commands/sync_end.hpp"
 #include "session/power.hpp"
 
@@ -98,15 +99,14 @@ Duration BusHolder::serve() {
 void BusHolder::stop_and_disable() {
   for (const auto& [node, done] : session::de_energise(*session_)) {
     if (done)
-      console_->err(
-          fmt::format("notice: node {} was left energised; it is stopped and disabled now\n", node));
+      console_->err("notice: " + commands::disabled_notice(node) + "\n");
     else
       warn(node, done.error().message);
   }
 }
 
-void BusHolder::warn(unsigned node, std::string_view why) {
-  console_->err(fmt::format("error: NODE {} MAY STILL BE ENERGISED: TAKE THE POWER AWAY: {}\n", node, why));
+void BusHolder::warn(std::uint8_t node, std::string_view why) {
+  console_->err("error: " + commands::power_warning(node, why) + "\n");
 }
 
 }  // namespace servoctl::cli

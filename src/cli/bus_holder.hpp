@@ -47,7 +47,7 @@ class BusHolder {
   Result<void> connect(const std::string& url);
   void stop_and_disable();
   void drop();
-  void warn(unsigned node, std::string_view why);
+  void warn(std::uint8_t node, std::string_view why);
 
   Console* console_;
   session::BusOptions bus_options_;

@@ -177,8 +177,8 @@ Result<void> Motion::look_again() {
 
 Result<void> Motion::begin(std::int8_t mode, const std::vector<MotionSetting>& settings,
                            std::optional<ObjectAddress> kept_target) {
-  monitor_->find_tpdos();
   if (const auto ready = look_again(); !ready) return ready;
+  monitor_->find_tpdos();
   guard_ = std::make_unique<MotionGuard>(*session_, *units_, node_);
   guard_->set_standstill(standstill_);
   if (const auto done = guard_->spare_flash(); !done) return done;

@@ -10,9 +10,6 @@
 
 namespace servoctl::session {
 
-/// Objects in which drives tell how they move (CiA 402-2).
-/// Objects in which they are told where to go.
-
 /// A number with the unit people think in (`rpm`, `deg`, `%`), or the drive's own where nothing better is
 /// known (`inc/s`).
 struct Physical {

@@ -20,11 +20,10 @@ namespace servoctl::session {
 std::vector<Result<Values>> read_pdo_values(Session& session, const drive::Profile* profile,
                                             std::span<const std::uint8_t> nodes);
 
-/// A mapping of which an entry is missing is taken as not known: empty.
-///
 /// The PDOs these values describe, by communication index: RPDOs first, the numbers with whatever holes they
 /// have. A PDO without COB-ID (a family that assigns fixed PDOs by 1C12h and 1C13h) stays invalid: it has no
-/// CAN-ID, and may be longer than a frame.
+/// CAN-ID, and may be longer than a frame. A mapping of which an entry is missing is taken as not known:
+/// empty.
 std::vector<canopen::Pdo> pdos_of(const Values& values);
 
 /// All PDOs of the nodes; errors as in read_pdo_values().

@@ -2,7 +2,6 @@
 """jog by arrow keys on a terminal: it turns while a key is repeated, stops when it is let go, ends at any other key,
 at Ctrl-C and when the terminal goes away; nothing is left energised, and the terminal is as it was.
 usage: keys_test.py SERVOCTL"""
-import json
 import os
 import pty
 import select
@@ -11,23 +10,17 @@ import sys
 import termios
 import time
 
+import checks
+from checks import check
+
 servoctl = sys.argv[1]
 bus = f"local:keys-{os.getpid()}"
 env = dict(os.environ, SERVOCTL_BUS=bus, SERVOCTL_NODE="1", SERVOCTL_DRIVE="gsd600")
 right, left = b"\x1b[C", b"\x1b[D"
-failures = 0
-
-
-def check(what, condition):
-    global failures
-    if not condition:
-        failures += 1
-        print("FAILED", what)
 
 
 def status():
-    answer = subprocess.run([servoctl, "status", "--json"], env=env, capture_output=True)
-    return json.loads(answer.stdout)["result"][0] if answer.returncode == 0 else None
+    return checks.status(servoctl, env)
 
 
 class Jog:
@@ -123,5 +116,4 @@ try:
 finally:
     drive.terminate()
     drive.wait()
-print("failures:", failures)
-sys.exit(1 if failures else 0)
+checks.finish()

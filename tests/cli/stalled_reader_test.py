@@ -12,24 +12,19 @@ import sys
 import termios
 import time
 
+import checks
+from checks import check
+
 servoctl = sys.argv[1]
 bus = f"local:stalled-{os.getpid()}"
 env = dict(os.environ, SERVOCTL_BUS=bus, SERVOCTL_NODE="1", SERVOCTL_DRIVE="da200")
 # Without a watchdog in the drive, only servoctl itself ends the motion.
 jog = [servoctl, "jog", "60rpm", "--for", "1s", "--turn", "10000", "--yes"]
-failures = 0
-
-
-def check(what, condition):
-    global failures
-    if not condition:
-        failures += 1
-        print("FAILED", what)
 
 
 def energised():
-    answer = subprocess.run([servoctl, "status", "--json"], env=env, capture_output=True)
-    return json.loads(answer.stdout)["result"][0]["energised"] if answer.returncode == 0 else None
+    found = checks.status(servoctl, env)
+    return found["energised"] if found else None
 
 
 def wait_until(state, seconds):
@@ -91,5 +86,4 @@ try:
 finally:
     drive.terminate()
     drive.wait()
-print("failures:", failures)
-sys.exit(1 if failures else 0)
+checks.finish()

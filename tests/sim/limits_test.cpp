@@ -121,19 +121,7 @@ TEST_F(Sv2Limits, AreNoneUntilTheyAreSwitchedOn) {  // 599
   EXPECT_EQ(status() & kLimit, 0U);
 }
 
-class StandardLimits : public Limits {
- protected:
-  void SetUp() override {
-    boot("cia402");
-    write({0x6081, 0}, "10000");
-    write({0x6083, 0}, "100000");
-  }
-  void go(std::string_view target) {
-    write(kTarget, target);
-    control("15");
-    control("31");
-  }
-};
+class StandardLimits : public StandardTest {};
 
 TEST_F(StandardLimits, LimitSwitchesStopTheAxisWhereTheyAreObeyed) {
   drive().track().limits_stop = true;

@@ -73,4 +73,19 @@ class RowTest : public DrivenTest {
   }
 };
 
+/// A drive of which nothing more is known than CiA 402, with ramps that take little time.
+class StandardTest : public RowTest {
+ protected:
+  void SetUp() override {
+    boot("cia402");
+    write({0x6081, 0}, "10000");
+    write({0x6083, 0}, "100000");
+  }
+  void go(std::string_view target) {
+    write(kTarget, target);
+    control("15");
+    control("31");
+  }
+};
+
 }  // namespace servoctl::sim

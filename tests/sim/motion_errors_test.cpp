@@ -106,19 +106,7 @@ TEST_F(InMotion, OfTheDa200SlippageIsTold) {  // 654, 943
   expect_row("pv", 943, "3");
 }
 
-class StandardErrors : public RowTest {
- protected:
-  void SetUp() override {
-    boot("cia402");
-    write({0x6081, 0}, "10000");
-    write({0x6083, 0}, "100000");
-  }
-  void go(std::string_view target) {
-    write(kTarget, target);
-    control("15");
-    control("31");
-  }
-};
+class StandardErrors : public StandardTest {};
 
 TEST_F(StandardErrors, AFollowingErrorMustLastForItsTime) {  // 6066h
   write({0x6065, 0}, "1000");
