@@ -15,6 +15,7 @@
 #include "canopen/sdo_client.hpp"
 #include "canopen/sdo_frame.hpp"
 #include "canopen/sdo_server.hpp"
+#include "tests/source_dir.hpp"
 #include "transcript.hpp"
 
 namespace servoctl::canopen {
@@ -208,7 +209,7 @@ class Checker {
 
 void check_file(const char* name, std::size_t frames, std::size_t not_ours) {
   Checker checker;
-  const auto vectors = read_vectors(std::filesystem::path(SERVOCTL_SOURCE_DIR) / "tests/vectors" / name);
+  const auto vectors = read_vectors(std::filesystem::path(source_dir()) / "tests/vectors" / name);
   EXPECT_EQ(vectors.size(), frames);
   for (const auto& v : vectors) {
     ASSERT_FALSE(v.meaning.empty()) << v.place << " has no '=' line";

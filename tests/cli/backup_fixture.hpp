@@ -16,6 +16,7 @@
 #include "cli/line_runner.hpp"
 #include "cli/shell.hpp"
 #include "recording_console.hpp"
+#include "tests/source_dir.hpp"
 
 namespace servoctl::cli {
 
@@ -71,7 +72,7 @@ class BackupTest : public testing::Test {
   }
 
   std::filesystem::path folder;  ///< Families that stand here win over those of the program.
-  const std::filesystem::path eds = std::filesystem::path(SERVOCTL_SOURCE_DIR) / "eds";
+  const std::filesystem::path eds = std::filesystem::path(source_dir()) / "eds";
   RecordingConsole console;
 
  private:

@@ -1,6 +1,7 @@
 // Backup, diff and verify, as a user runs them.
 #include "backup_fixture.hpp"
 #include "drive/drive_settings.hpp"
+#include "tests/source_dir.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -122,7 +123,7 @@ TEST_F(BackupTest, OfAnotherFamilyIsRefused) {
 }
 
 TEST(DriveSettings, HoldNothingThatMovesOrStartsAnything) {
-  const fs::path folders[] = {fs::path(SERVOCTL_SOURCE_DIR) / "eds"};
+  const fs::path folders[] = {fs::path(source_dir()) / "eds"};
   for (const auto* family : {"cia402", "da200", "dm", "gsd600", "sv2", "ts"}) {
     const auto profile = drive::load_profile(family, folders).value();
     std::size_t kept = 0;

@@ -6,6 +6,7 @@
 
 #include "cli/batch_plan.hpp"
 #include "cli/gateway_line.hpp"
+#include "tests/source_dir.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -14,7 +15,7 @@ using Words = std::vector<std::string>;
 
 Plan plan(std::string_view text, Variables variables = {}) {
   auto batch = parse_batch(text);
-  auto out = plan_batch(batch, std::move(variables), SERVOCTL_SOURCE_DIR "/tests/cli/data");
+  auto out = plan_batch(batch, std::move(variables), source_dir() + "/tests/cli/data");
   out.errors.insert(out.errors.begin(), batch.errors.begin(), batch.errors.end());
   return out;
 }

@@ -8,6 +8,7 @@
 #include "cli/batch_command.hpp"
 #include "cli/line_runner.hpp"
 #include "recording_console.hpp"
+#include "tests/source_dir.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -20,7 +21,7 @@ class BatchTest : public testing::Test {
 
   Shell::Options options() {
     Shell::Options o;
-    o.drive_folders = {std::filesystem::path(SERVOCTL_SOURCE_DIR) / "eds"};
+    o.drive_folders = {std::filesystem::path(source_dir()) / "eds"};
     o.clock = sim::SimBus::Clock::virtual_time;
     o.defaults.bus = "sim:gsd600@1,gsd600@2";
     o.defaults.drive = "gsd600";

@@ -12,13 +12,14 @@
 #include "cli/shell.hpp"
 #include "cli/words.hpp"
 #include "recording_console.hpp"
+#include "tests/source_dir.hpp"
 
 namespace servoctl::cli {
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kSource = SERVOCTL_SOURCE_DIR;
+const fs::path kSource = source_dir();
 const fs::path kFolder = kSource / "tests/cli/golden";
 
 struct Case {

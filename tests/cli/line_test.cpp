@@ -10,6 +10,7 @@
 #include "cli/parse.hpp"
 #include "cli/words.hpp"
 #include "recording_console.hpp"
+#include "tests/source_dir.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -77,7 +78,7 @@ class ShellTest : public testing::Test {
   ShellTest() : shell(console, options()) {}
   static Shell::Options options() {
     Shell::Options o;
-    o.drive_folders = {std::filesystem::path(SERVOCTL_SOURCE_DIR) / "eds"};
+    o.drive_folders = {std::filesystem::path(source_dir()) / "eds"};
     o.clock = sim::SimBus::Clock::virtual_time;
     o.defaults.bus = "sim:gsd600@1";
     o.defaults.drive = "gsd600";

@@ -8,6 +8,7 @@
 #include "cli/line_runner.hpp"
 #include "cli/shell.hpp"
 #include "recording_console.hpp"
+#include "tests/source_dir.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -27,7 +28,7 @@ class PdoFiles : public testing::Test {
   std::string run(const std::string& bus, const std::vector<std::string>& lines) {
     RecordingConsole console;
     Shell::Options options;
-    options.drive_folders = {fs::path(SERVOCTL_SOURCE_DIR) / "eds"};
+    options.drive_folders = {fs::path(source_dir()) / "eds"};
     options.clock = sim::SimBus::Clock::virtual_time;
     options.defaults.bus = bus;
     Shell shell(console, std::move(options));
@@ -61,7 +62,7 @@ TEST_F(PdoFiles, BringAMappingIntoAnotherDrive) {
 }
 
 TEST_F(PdoFiles, OfEveryPresetSuitTheirFamily) {
-  const fs::path folders[] = {fs::path(SERVOCTL_SOURCE_DIR) / "eds"};
+  const fs::path folders[] = {fs::path(source_dir()) / "eds"};
   std::size_t presets = 0;
   for (const auto& family : drive::find_families(folders)) {
     const auto rules = drive::load_rules(family);

@@ -7,11 +7,12 @@
 #include "commands/command.hpp"
 #include "commands/help.hpp"
 #include "commands/shell_completion.hpp"
+#include "tests/source_dir.hpp"
 
 namespace servoctl::commands {
 namespace {
 
-const std::string kFolder = SERVOCTL_SOURCE_DIR "/completions/";
+const std::string kFolder = source_dir() + "/completions/";
 
 TEST(CompletionScripts, InTheTreeAreFresh) {
   const std::pair<const char*, const char*> files[] = {

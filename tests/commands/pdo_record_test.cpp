@@ -10,6 +10,7 @@
 #include "../session/troubled_bus.hpp"
 #include "drive/drive_settings.hpp"
 #include "session/pdo_setup.hpp"
+#include "tests/source_dir.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -124,7 +125,7 @@ class World {
   sim::SimDrive drive_;
 };
 
-const std::vector<fs::path> World::kFolders = {fs::path(SERVOCTL_SOURCE_DIR) / "eds"};
+const std::vector<fs::path> World::kFolders = {fs::path(source_dir()) / "eds"};
 
 class KilledChange : public testing::TestWithParam<Case> {};
 

@@ -10,6 +10,7 @@
 #include "../session/troubled_bus.hpp"
 #include "commands/restore_journal.hpp"
 #include "drive/quantity.hpp"
+#include "tests/source_dir.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -118,7 +119,7 @@ class World {
   std::vector<ObjectAddress> means_;
 };
 
-const std::vector<fs::path> World::kFolders = {fs::path(SERVOCTL_SOURCE_DIR) / "eds"};
+const std::vector<fs::path> World::kFolders = {fs::path(source_dir()) / "eds"};
 
 class KilledRestore : public testing::TestWithParam<Case> {
  protected:

@@ -9,6 +9,7 @@
 #include "canopen/pdo.hpp"
 #include "session/pdo_setup.hpp"
 #include "tested_drive.hpp"
+#include "tests/source_dir.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -99,7 +100,7 @@ TEST_F(Sampling, AnEnergisedDriveOfAnUnknownFamilyIsLeftAlone) {
     ASSERT_TRUE(session->wait([] { return false; }, session->now() + 200ms));
   }
   ASSERT_EQ(drive().power_state(), drive::DriveState::operation_enabled);
-  const std::filesystem::path folders[] = {std::filesystem::path(SERVOCTL_SOURCE_DIR) / "eds"};
+  const std::filesystem::path folders[] = {std::filesystem::path(source_dir()) / "eds"};
   const auto generic = drive::load_profile("cia402", folders).value();
   const auto* family = std::exchange(context.profile, &generic);
   ASSERT_TRUE(run("scope", {{"object", "0x6064"}, {"--map", "true"}, {"--for", "20ms"}}));

@@ -12,6 +12,7 @@
 
 #include "commands/command.hpp"
 #include "sim/cell.hpp"
+#include "tests/source_dir.hpp"
 
 namespace servoctl::commands {
 
@@ -43,7 +44,7 @@ class TouchedBus final : public can::Bus {
 class TestedDrive : public testing::Test {
  protected:
   void build(const std::string& spec, const std::string& family) {
-    const std::filesystem::path folders[] = {std::filesystem::path(SERVOCTL_SOURCE_DIR) / "eds"};
+    const std::filesystem::path folders[] = {std::filesystem::path(source_dir()) / "eds"};
     auto built = sim::build_cell(spec, folders, sim_bus.now());
     ASSERT_TRUE(built) << built.error().message;
     cell = std::move(*built);

@@ -7,11 +7,12 @@
 #include <cmath>
 
 #include "drive/quantity.hpp"
+#include "tests/source_dir.hpp"
 
 namespace servoctl::drive {
 namespace {
 
-const std::filesystem::path kFolders[] = {std::filesystem::path(SERVOCTL_SOURCE_DIR) / "eds"};
+const std::filesystem::path kFolders[] = {std::filesystem::path(source_dir()) / "eds"};
 
 /// Everything of a family that has a unit, a scale or an encoding.
 const std::vector<Target>& measured_targets() {

@@ -11,11 +11,12 @@
 #include "drive/naming.hpp"
 #include "drive/quantity.hpp"
 #include "od/eds.hpp"
+#include "tests/source_dir.hpp"
 
 namespace servoctl::drive {
 namespace {
 
-const std::filesystem::path kFolders[] = {std::filesystem::path(SERVOCTL_SOURCE_DIR) / "eds"};
+const std::filesystem::path kFolders[] = {std::filesystem::path(source_dir()) / "eds"};
 
 class DriveData : public testing::TestWithParam<std::string> {
  protected:

@@ -7,11 +7,12 @@
 
 #include "base/number.hpp"
 #include "drive/naming.hpp"
+#include "tests/source_dir.hpp"
 
 namespace servoctl::drive {
 namespace {
 
-const std::filesystem::path kFolders[] = {std::filesystem::path(SERVOCTL_SOURCE_DIR) / "eds"};
+const std::filesystem::path kFolders[] = {std::filesystem::path(source_dir()) / "eds"};
 
 Profile load(std::string_view family) {
   auto profile = load_profile(family, kFolders);

@@ -6,6 +6,7 @@
 #include "commands/backup_formats.hpp"
 #include "tests/cli/recording_console.hpp"
 #include "tests/fuzz/fuzz.hpp"
+#include "tests/source_dir.hpp"
 
 using namespace servoctl;
 using commands::Backup;
@@ -13,7 +14,7 @@ using commands::BackupFormat;
 
 namespace {
 
-const std::vector<std::filesystem::path> kFolders{std::filesystem::path(SERVOCTL_SOURCE_DIR) / "eds"};
+const std::vector<std::filesystem::path> kFolders{std::filesystem::path(source_dir()) / "eds"};
 
 const drive::Profile& profile() {
   static const auto loaded = drive::load_profile("gsd600", kFolders).value();

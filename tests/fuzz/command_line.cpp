@@ -10,13 +10,14 @@
 #include "drive/quantity.hpp"
 #include "tests/cli/recording_console.hpp"
 #include "tests/fuzz/fuzz.hpp"
+#include "tests/source_dir.hpp"
 
 using namespace servoctl;
 
 namespace {
 
 const drive::Profile& profile() {
-  static const std::array folders{std::filesystem::path(SERVOCTL_SOURCE_DIR) / "eds"};
+  static const std::array folders{std::filesystem::path(source_dir()) / "eds"};
   static const auto loaded = drive::load_profile("gsd600", folders).value();
   return loaded;
 }

@@ -6,12 +6,13 @@
 #include "commands/pdo_recipes.hpp"
 #include "session/pdo_setup.hpp"
 #include "tests/fuzz/fuzz.hpp"
+#include "tests/source_dir.hpp"
 
 using namespace servoctl;
 
 namespace {
 
-const std::filesystem::path kFolders[] = {std::filesystem::path(SERVOCTL_SOURCE_DIR) / "eds"};
+const std::filesystem::path kFolders[] = {std::filesystem::path(source_dir()) / "eds"};
 constexpr std::uint8_t kNode = 1;
 
 const drive::Profile& profile() {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "scripted_bus.hpp"
+#include "tests/source_dir.hpp"
 #include "troubled_bus.hpp"
 
 namespace servoctl::session {
@@ -44,7 +45,7 @@ class FaultyDrive {
 
  private:
   static const drive::Profile& profile() {
-    static const std::filesystem::path kFolders[] = {std::filesystem::path(SERVOCTL_SOURCE_DIR) / "eds"};
+    static const std::filesystem::path kFolders[] = {std::filesystem::path(source_dir()) / "eds"};
     static const auto kProfile = drive::load_profile("gsd600", kFolders).value();
     return kProfile;
   }

@@ -11,6 +11,7 @@
 
 #include "session/motion_kinds.hpp"
 #include "sim/cell.hpp"
+#include "tests/source_dir.hpp"
 
 namespace servoctl::session {
 
@@ -18,7 +19,7 @@ namespace servoctl::session {
 class MotionBus final : public can::Bus {
  public:
   explicit MotionBus(std::string_view spec) {
-    const std::filesystem::path folders[] = {std::filesystem::path(SERVOCTL_SOURCE_DIR) / "eds"};
+    const std::filesystem::path folders[] = {std::filesystem::path(source_dir()) / "eds"};
     cell = sim::build_cell(spec, folders, bus.now()).value();
     for (const auto& drive : cell.drives) bus.attach(*drive);
   }

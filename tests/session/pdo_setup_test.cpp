@@ -6,6 +6,7 @@
 #include "sim/cell.hpp"
 #include "sim/sim_bus.hpp"
 #include "sim/sim_drive.hpp"
+#include "tests/source_dir.hpp"
 
 namespace servoctl::session {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 using canopen::Pdo;
 using canopen::PdoDirection;
 
-const std::filesystem::path kFolders[] = {std::filesystem::path(SERVOCTL_SOURCE_DIR) / "eds"};
+const std::filesystem::path kFolders[] = {std::filesystem::path(source_dir()) / "eds"};
 
 drive::Profile profile_of(std::string_view family) { return drive::load_profile(family, kFolders).value(); }
 

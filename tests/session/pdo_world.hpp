@@ -14,6 +14,7 @@
 #include "session/pdo_setup.hpp"
 #include "sim/sim_bus.hpp"
 #include "sim/sim_drive.hpp"
+#include "tests/source_dir.hpp"
 
 namespace servoctl::session {
 
@@ -104,7 +105,7 @@ class PdoWorld {
   static drive::Profile profile_of(std::string_view family) {
     static std::map<std::string, drive::Profile, std::less<>> loaded;
     if (const auto found = loaded.find(family); found != loaded.end()) return found->second;
-    const std::filesystem::path folders[] = {std::filesystem::path(SERVOCTL_SOURCE_DIR) / "eds"};
+    const std::filesystem::path folders[] = {std::filesystem::path(source_dir()) / "eds"};
     return loaded.emplace(family, drive::load_profile(family, folders).value()).first->second;
   }
 

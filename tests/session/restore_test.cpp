@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "drive/quantity.hpp"
+#include "tests/source_dir.hpp"
 #include "troubled_bus.hpp"
 
 namespace servoctl::session {
@@ -12,7 +13,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-const std::filesystem::path kFolders[] = {std::filesystem::path(SERVOCTL_SOURCE_DIR) / "eds"};
+const std::filesystem::path kFolders[] = {std::filesystem::path(source_dir()) / "eds"};
 
 /// Name or address of an object, and what it is to hold.
 using Wish = std::pair<const char*, std::int64_t>;

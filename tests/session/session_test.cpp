@@ -8,13 +8,14 @@
 #include "session/scan.hpp"
 #include "session/write.hpp"
 #include "sim/cell.hpp"
+#include "tests/source_dir.hpp"
 
 namespace servoctl::session {
 namespace {
 
 using namespace std::chrono_literals;
 
-const std::filesystem::path kFolders[] = {std::filesystem::path(SERVOCTL_SOURCE_DIR) / "eds"};
+const std::filesystem::path kFolders[] = {std::filesystem::path(source_dir()) / "eds"};
 
 /// A bus whose drives the test can reach, with a count of what was sent.
 class Bench final : public can::Bus {

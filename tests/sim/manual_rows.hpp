@@ -8,6 +8,7 @@
 #include "base/file.hpp"
 #include "base/number.hpp"
 #include "sim_support.hpp"
+#include "tests/source_dir.hpp"
 
 namespace servoctl::sim {
 
@@ -24,7 +25,7 @@ struct ManualRow {
 /// Rows of these lines and this mode that print a statusword.
 inline std::vector<ManualRow> manual_rows(const std::string& family, const std::string& mode, unsigned first,
                                           unsigned last) {
-  const std::string path = SERVOCTL_SOURCE_DIR "/tests/vectors/" + family + "-states.csv";
+  const std::string path = source_dir() + "/tests/vectors/" + family + "-states.csv";
   const auto table = parse_csv(read_file(path).value(), path).value();
   std::vector<ManualRow> out;
   for (const auto& cells : table.rows) {

@@ -1,5 +1,6 @@
 // A simulated GSD600 against what its manual says; frames are written by hand, not by our client.
 #include "sim_support.hpp"
+#include "tests/source_dir.hpp"
 
 #include <filesystem>
 #include <fstream>
@@ -175,7 +176,7 @@ TEST_F(Gsd600, FallsSilentWhenItsCableIsOut) {
 TEST(Memory, KeptInAFileOutlivesTheDrive) {
   const auto file = std::filesystem::temp_directory_path() / "servoctl-memory-test.txt";
   std::filesystem::remove(file);
-  const std::filesystem::path folders[] = {std::filesystem::path(SERVOCTL_SOURCE_DIR) / "eds"};
+  const std::filesystem::path folders[] = {std::filesystem::path(source_dir()) / "eds"};
   for (const int run : {1, 2}) {
     auto bus = open_sim("gsd600@1?state=" + file.string(), folders, SimBus::Clock::virtual_time);
     ASSERT_TRUE(bus) << bus.error().message;

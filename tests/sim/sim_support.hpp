@@ -8,6 +8,7 @@
 #include "base/bytes.hpp"
 #include "drive/quantity.hpp"
 #include "sim/cell.hpp"
+#include "tests/source_dir.hpp"
 
 namespace servoctl::sim {
 
@@ -15,7 +16,7 @@ namespace servoctl::sim {
 class CellTest : public testing::Test {
  protected:
   void build(std::string_view spec) {
-    const std::filesystem::path folders[] = {std::filesystem::path(SERVOCTL_SOURCE_DIR) / "eds"};
+    const std::filesystem::path folders[] = {std::filesystem::path(source_dir()) / "eds"};
     auto cell = build_cell(spec, folders, bus.now());
     ASSERT_TRUE(cell) << cell.error().message;
     cell_ = std::move(*cell);

@@ -5,6 +5,7 @@
 #include "base/file.hpp"
 #include "base/number.hpp"
 #include "sim_support.hpp"
+#include "tests/source_dir.hpp"
 
 namespace servoctl::sim {
 namespace {
@@ -15,7 +16,7 @@ using namespace std::chrono_literals;
 unsigned printed(unsigned line) {
   static const std::map<unsigned, unsigned> kWords = [] {
     std::map<unsigned, unsigned> out;
-    const std::string path = SERVOCTL_SOURCE_DIR "/tests/vectors/gsd600-states.csv";
+    const std::string path = source_dir() + "/tests/vectors/gsd600-states.csv";
     const auto table = parse_csv(read_file(path).value(), path).value();
     for (const auto& row : table.rows) {
       const auto number = [&](const char* column) {

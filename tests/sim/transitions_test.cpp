@@ -6,6 +6,7 @@
 #include "base/file.hpp"
 #include "base/number.hpp"
 #include "sim_support.hpp"
+#include "tests/source_dir.hpp"
 
 namespace servoctl::sim {
 namespace {
@@ -23,7 +24,7 @@ struct Row {
 };
 
 std::vector<Row> rows_of(const std::string& family) {
-  const std::string path = SERVOCTL_SOURCE_DIR "/tests/vectors/" + family + "-states.csv";
+  const std::string path = source_dir() + "/tests/vectors/" + family + "-states.csv";
   const auto table = parse_csv(read_file(path).value(), path).value();
   std::vector<Row> out;
   for (const auto& cells : table.rows) {
