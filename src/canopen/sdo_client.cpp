@@ -12,6 +12,9 @@ namespace servoctl::canopen {
 namespace {
 
 constexpr std::uint8_t kToggleBit = 0x10;
+/// An answer that a node had ready when it sent its boot-up comes at once; a node that has restarted has
+/// none.
+constexpr Duration kAnswerAfterBootUp = std::chrono::milliseconds(100);
 
 std::uint8_t specifier(const can::Frame& frame) { return frame.data[0] & 0xE0U; }
 
@@ -62,7 +65,7 @@ void SdoClient::begin_download(bool expedited, TimePoint now) {
 void SdoClient::on_frame(const can::Frame& frame, TimePoint now) {
   if (state_ == State::idle || frame.extended || frame.remote || frame.error) return;
   if (frame.id == kSdoRequest + node_) return on_foreign_request();
-  if (frame.id == kErrorControl + node_ && frame.size == 1 && frame.data[0] == 0) return on_boot_up();
+  if (frame.id == kErrorControl + node_ && frame.size == 1 && frame.data[0] == 0) return on_boot_up(now);
   if (frame.id != kSdoAnswer + node_) return;
   if (frame.size != 8) {
     abort(sdo_abort::kCommand, Errc::protocol,
@@ -109,7 +112,14 @@ void SdoClient::on_foreign_request() {
                                        "stop the other master, a PLC or a second tool, and try again")));
 }
 
-void SdoClient::on_boot_up() {
+/// Some send it without having restarted, when 1017h is written: the answer that follows is the true one.
+void SdoClient::on_boot_up(TimePoint now) {
+  if (state_ == State::block_download_data) return end_by_boot_up();
+  boot_up_ = true;
+  deadline_ = std::min(deadline_, now + kAnswerAfterBootUp);
+}
+
+void SdoClient::end_by_boot_up() {
   finish(tl::unexpected<Error>(
       error(Errc::timeout, "the node restarted (boot-up) in the middle of the transfer",
             "did it lose its supply, or did somebody reset it? Try again when it has started")));
@@ -216,6 +226,7 @@ void SdoClient::send_segment(TimePoint now) {
 
 void SdoClient::on_time(TimePoint now) {
   if (state_ == State::idle || now < deadline_) return;
+  if (boot_up_) return end_by_boot_up();
   // The last segment of a block has just been handed over: the other side's time begins now.
   if (deadline_ == TimePoint::min()) {
     deadline_ = now + timeout_;
@@ -238,6 +249,7 @@ void SdoClient::on_time(TimePoint now) {
 
 void SdoClient::send(const can::Frame& frame, State next, TimePoint now) {
   tx_ = frame;
+  boot_up_ = false;
   state_ = next;
   deadline_ = now + timeout_;
 }
@@ -249,6 +261,7 @@ void SdoClient::abort(std::uint32_t code, Errc errc, std::string why, std::strin
 
 void SdoClient::finish(Result<Bytes> result) {
   state_ = State::idle;
+  boot_up_ = false;
   deadline_ = kNever;
   result_ = std::move(result);
 }
@@ -272,7 +285,8 @@ std::size_t SdoClient::transferred() const {
 }
 
 std::optional<can::Frame> SdoClient::take_frame() {
-  if (tx_ || state_ != State::block_download_data) return std::exchange(tx_, std::nullopt);
+  if (tx_ || state_ != State::block_download_data)
+    return std::exchange(tx_, std::exchange(following_, std::nullopt));
   const auto segment = sender_.next_segment();
   if (!segment) return std::nullopt;
   if (sender_.is_waiting()) deadline_ = TimePoint::min();

@@ -30,9 +30,9 @@ inline constexpr std::size_t kBlockWorthwhile = 64;
 ///
 /// Frames of other nodes, answers for other objects (late ones of an earlier request) and remote frames are
 /// ignored. Every transfer ends with exactly one result: the data, or Errc::sdo_abort, timeout or protocol
-/// with node and object set. When the client gives up it tells the server with an abort. A boot-up message of
-/// the node ends the transfer at once, as a timeout would. Where block transfer is tried and refused as such,
-/// the transfer is made in segments.
+/// with node and object set. When the client gives up it tells the server with an abort. After a
+/// boot-up message of the node the answer has 100 ms more: without it the transfer ends as by a timeout.
+/// Where block transfer is tried and refused as such, the transfer is made in segments.
 class SdoClient {
  public:
   /// `node` 1..127; `timeout` is the longest silence of the server between two frames.
@@ -95,7 +95,9 @@ class SdoClient {
   void on_block_download_end(const can::Frame& frame, TimePoint now);
   void acknowledge_block(State next, TimePoint now);
   void on_foreign_request();
-  void on_boot_up();
+  void on_boot_up(TimePoint now);
+  void end_by_boot_up();
+  void leave_block_upload(TimePoint now);
   void request_segment(TimePoint now);
   void send_segment(TimePoint now);
   void send(const can::Frame& frame, State next, TimePoint now);
@@ -113,6 +115,7 @@ class SdoClient {
   Transfer transfer_ = Transfer::automatic;
   std::size_t size_ = 0;          ///< Of the object that is read; 0: not known.
   bool foreign_request_ = false;  ///< Another master has asked this node since the transfer began.
+  bool boot_up_ = false;          ///< The node has sent a boot-up since the last request.
   std::uint8_t toggle_ = 0;
   TimePoint deadline_ = kNever;
   BlockSender sender_;
@@ -121,6 +124,7 @@ class SdoClient {
   bool nudged_ = false;                     ///< The present block was acknowledged before its end.
   std::optional<can::Frame> acknowledged_;  ///< The acknowledge received last.
   std::optional<can::Frame> tx_;
+  std::optional<can::Frame> following_;  ///< To be sent behind `tx_`.
   std::optional<Result<Bytes>> result_;
 };
 

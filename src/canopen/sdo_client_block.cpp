@@ -42,9 +42,17 @@ void SdoClient::on_block_upload_initiate(const can::Frame& frame, TimePoint now)
           fmt::format("it announces {} bytes for this object", *announced_));
     return;
   }
+  if (announced_ == 0 && transfer_ != Transfer::block) return leave_block_upload(now);
   receiver_.start(kMaxBlockSize, frame.data);
   nudged_ = false;
   send(sdo_segment(kSdoRequest + node_, 0xA3), State::block_upload_data, now);
+}
+
+/// A block has at least one segment, and a segment at least one byte: nothing at all is read without blocks.
+void SdoClient::leave_block_upload(TimePoint now) {
+  begin_upload(now);
+  following_ =
+      std::exchange(tx_, sdo_frame(kSdoRequest + node_, kSdoAbortCommand, object_, sdo_abort::kGeneral));
 }
 
 void SdoClient::on_block_upload_data(const can::Frame& frame, TimePoint now) {

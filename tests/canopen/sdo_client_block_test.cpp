@@ -53,6 +53,19 @@ TEST_F(ClientBlockTest, AsksForALostEndOnceInEveryBlock) {
   }
 }
 
+TEST_F(ClientBlockTest, ReadsAnEmptyDomainInSegments) {
+  upload({{"> 602#A40020017F000000", "< 582#C200200100000000", "> 602#8000200100000008",
+           "> 602#4000200100000000"},
+          {"< 582#4100200100000000", "> 602#6000000000000000", "< 582#0F00000000000000"}});
+  EXPECT_EQ(outcome(), "0");
+}
+
+TEST_F(ClientBlockTest, EndsAtOnceWhenTheNodeRestartsWhileSegmentsAreSent) {
+  download(9, {{"> 602#C600200109000000", "< 582#A40020017F000000", "> 602#0101020304050607",
+                "> 602#8208090000000000", "< 702#00"}});
+  EXPECT_EQ(outcome(), "the node restarted (boot-up) in the middle of the transfer");
+}
+
 TEST_F(ClientBlockTest, WaitsForTheFirstSegmentAllItsTime) {
   upload({{"> 602#A40020017F000000", "< 582#C20020011C000000", "> 602#A300000000000000"},
           {"+ 499ms"},

@@ -218,7 +218,30 @@ TEST_F(SdoClientModeTest, EndsWhenTheNodeRestarts) {
   tell("703#00");
   EXPECT_TRUE(client.busy());
   tell("702#00");
+  play(client, now, {"+ 99ms"});
+  EXPECT_TRUE(client.busy());
+  play(client, now, {"+ 1ms"});
   EXPECT_EQ(failure(), "the node restarted (boot-up) in the middle of the transfer");
+}
+
+// A written 1017h restarts the heartbeat of some stacks, which begins with a boot-up message.
+TEST_F(SdoClientModeTest, TakesTheAnswerBehindABootUp) {
+  download(2, Transfer::automatic,
+           {"> 602#2B00200101020000", "< 702#00", "+ 90ms", "< 582#6000200100000000"});
+  EXPECT_TRUE(result());
+  upload({"> 602#4000200100000000", "< 702#00", "< 582#4B00200101020000"});
+  EXPECT_TRUE(result());
+}
+
+TEST_F(SdoClientModeTest, TakesARefusalBehindABootUp) {
+  upload({"> 602#4000200100000000", "< 702#00", "< 582#8000200100000206"});
+  EXPECT_EQ(failure(), "refused: object does not exist in the object dictionary (abort 0x06020000)");
+}
+
+TEST_F(SdoClientModeTest, ForgetsABootUpThatWasAnswered) {
+  upload(
+      {"> 602#4000200100000000", "< 702#00", "< 582#4100200108000000", "> 602#6000000000000000", "+ 499ms"});
+  EXPECT_TRUE(client.busy());
 }
 
 TEST_F(SdoClientModeTest, IgnoresFramesOfErrors) {
