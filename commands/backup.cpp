@@ -116,6 +116,7 @@ const Command kBackup{
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::reads,
+    .family = FamilyCheck::always,
     .run = run,
 };
 

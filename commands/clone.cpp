@@ -42,6 +42,11 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   if (from->size() != 1) return fail(Errc::usage, "--from takes one node");
   if (std::find(to->begin(), to->end(), from->front()) != to->end())
     return fail(Errc::usage, fmt::format("node {} cannot be cloned into itself", from->front()));
+  std::vector<std::uint8_t> all = *to;
+  all.push_back(from->front());
+  if (context.hold_family)
+    if (const auto right = context.hold_family(all, context.profile, true); !right)
+      return tl::unexpected<Error>(right.error());
   const auto snapshot = session::take_snapshots(*context.session, *context.profile, *from, {}).front();
   if (!snapshot) return tl::unexpected<Error>(snapshot.error());
   const auto backup = make_backup(context, *snapshot);

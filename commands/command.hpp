@@ -63,6 +63,11 @@ constexpr bool includes(Needs all, Needs part) {
 /// --read-only refuses it.
 enum class Effect : std::uint8_t { none, reads, writes, stores, resets, moves };
 
+/// When the family that was named is held against what the drives say they are, before anything is sent.
+/// `by_effect`: before what changes something; `always`: before an answer, too, that makes sense for the family
+/// alone; `never`: a way out, which nothing may refuse, or the command sees to it (Context::hold_family).
+enum class FamilyCheck : std::uint8_t { by_effect, always, never };
+
 /// The words of one command line, by parameter name.
 class Arguments {
  public:
@@ -115,6 +120,10 @@ struct Context {
   std::function<std::unique_ptr<Keys>()> open_keys;
   /// Opens the bus for a command whose words decide whether it needs one; sets `session`.
   std::function<Result<session::Session*>()> open_bus;
+  /// Holds a family against the identity of these nodes, for a command whose words name them; `changes`: it
+  /// will write to them. Errc::refused when they contradict it, or two nodes have one number. May be empty.
+  std::function<Result<void>(std::span<const std::uint8_t> nodes, const drive::Profile* profile, bool changes)>
+      hold_family;
   /// The data of a family, loaded once; errors as load_profile().
   std::function<Result<const drive::Profile*>(const std::string& family)> family;
   /// Takes a batch file apart into its command lines, loops unrolled. Errc::file with the line of the first
@@ -139,6 +148,7 @@ struct Command {
   std::span<const Parameter> parameters;
   Needs needs = Needs::nothing;
   Effect effect = Effect::none;
+  FamilyCheck family = FamilyCheck::by_effect;
   std::string_view reads_without = {};  ///< Without this parameter it only reads, whatever `effect` says.
   Result<report::Value> (*run)(Context&, const Arguments&) = nullptr;
   /// Checks names and values by the dictionary alone (no session in the context), for lines that are to be

@@ -125,6 +125,9 @@ class Difference {
                   "name the family of the backup with -d when the drive really is one");
     const auto session = context_->open_bus();
     if (!session) return tl::unexpected<Error>(session.error());
+    if (context_->hold_family)
+      if (const auto right = context_->hold_family(std::span(&operand.node, 1), profile_, false); !right)
+        return tl::unexpected<Error>(right.error());
     std::vector<ObjectAddress> objects;
     if (operands_[1 - i].source)
       for (const auto& value : sides_[1 - i].values) objects.push_back(value.first);

@@ -66,6 +66,7 @@ const Command kDisable{
     .parameters = {},
     .needs = Needs::node,
     .effect = Effect::writes,
+    .family = FamilyCheck::never,
     .run = run_disable,
 };
 
@@ -80,6 +81,7 @@ const Command kQuickStopCommand{
     .parameters = {},
     .needs = Needs::node,
     .effect = Effect::writes,
+    .family = FamilyCheck::never,
     .run = run_quick_stop,
 };
 

@@ -77,8 +77,12 @@ Value units(const Rules& rules) {
 
 Value identity(const Rules& rules) {
   List out;
-  for (const auto& condition : rules.identity)
-    out.emplace_back(fmt::format("{} = 0x{:X}", to_string(condition.object), condition.value));
+  for (const auto& mark : rules.identity) {
+    auto text = mark.text.empty() ? fmt::format("{} = 0x{:X}", to_string(mark.object), mark.value)
+                                  : fmt::format("{} = \"{}\"", to_string(mark.object), mark.text);
+    if (mark.mask != ~std::uint64_t{0}) text += fmt::format(" in the bits 0x{:X}", mark.mask);
+    out.emplace_back(std::move(text));
+  }
   return out.empty() ? Value("none: name the drive with -d") : Value(std::move(out));
 }
 

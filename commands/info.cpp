@@ -82,8 +82,13 @@ Result<report::Value> run(Context& context, const Arguments&) {
   std::size_t at = 0;
   for (const auto node : context.nodes) {
     if (at < found->size() && (*found)[at].node == node) {
-      out.push_back(one((*found)[at], families, std::span(answers).subspan(3 * at, 3), context.profile,
-                        context.chinese));
+      // What the drive says of itself is the answer all the same.
+      const auto right = context.profile == nullptr || !context.hold_family
+                             ? Result<void>{}
+                             : context.hold_family(std::span(&node, 1), context.profile, false);
+      if (!right) context.errors.push_back(right.error());
+      out.push_back(one((*found)[at], families, std::span(answers).subspan(3 * at, 3),
+                        right ? context.profile : nullptr, context.chinese));
       ++at;
       continue;
     }
@@ -104,10 +109,14 @@ const Command kInfo{
     .path = "info",
     .summary = "Show the identity of a node",
     .details =
-        "Reads device type, name, versions, identity, error register, heartbeat time and supported modes.",
+        "Reads device type, name, versions, identity, error register, heartbeat time and supported modes. "
+        "Where "
+        "they contradict the family that is named with -d, it says so with exit code 8 and names those that "
+        "fit.",
     .parameters = {},
     .needs = Needs::node,
     .effect = Effect::reads,
+    .family = FamilyCheck::never,
     .run = run,
 };
 

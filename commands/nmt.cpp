@@ -144,6 +144,7 @@ const Command kNmtStart{
     .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::writes,
+    .family = FamilyCheck::never,
     .run = run_command<NmtCommand::start>,
 };
 
@@ -155,6 +156,7 @@ const Command kNmtStop{
     .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::writes,
+    .family = FamilyCheck::never,
     .run = run_command<NmtCommand::stop>,
 };
 
@@ -166,6 +168,7 @@ const Command kNmtPreop{
     .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::writes,
+    .family = FamilyCheck::never,
     .run = run_command<NmtCommand::enter_pre_operational>,
 };
 
@@ -177,6 +180,7 @@ const Command kNmtReset{
     .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::resets,
+    .family = FamilyCheck::never,
     .run = run_command<NmtCommand::reset_node>,
 };
 
@@ -188,6 +192,7 @@ const Command kNmtResetComm{
     .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::resets,
+    .family = FamilyCheck::never,
     .run = run_command<NmtCommand::reset_communication>,
 };
 

@@ -32,6 +32,9 @@ struct Words {
   std::string operator()(const canopen::NodeEvent::GuardingBack& back) const {
     return fmt::format("answers node guarding again, {}", canopen::name(back.state));
   }
+  std::string operator()(const canopen::NodeEvent::Doubled& doubled) const {
+    return (chinese ? "两个节点使用同一个节点号: " : "two nodes answer under this number: ") + doubled.by;
+  }
   std::string operator()(const canopen::Emergency& e) const {
     if (e.is_reset()) return "EMCY 0x0000: error reset or no error";
     if (e.size == 2) return fmt::format("EMCY 0x{:04X} {}", e.code, fault_words(profile, chinese, e.code));

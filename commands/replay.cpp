@@ -160,6 +160,13 @@ Result<void> send(Context& context, const ReplayPlan& plan, const ReplayDrives& 
   return {};
 }
 
+/// A recording is sent to the drives it was made with: where a family is named, they are of it.
+Result<void> hold_drives(Context& context, const ReplayDrives& drives) {
+  if (!context.hold_family) return {};
+  const std::vector<std::uint8_t> nodes(drives.present.begin(), drives.present.end());
+  return context.hold_family(nodes, context.profile, true);
+}
+
 void tell_plan(Context& context, const ReplayPlan& plan, std::string_view file) {
   for (auto& notice : notices(file, plan.strays)) context.notices.push_back(std::move(notice));
   std::string dropped;
@@ -186,6 +193,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   report::Record answer{{"frames", plan.frames.size()},
                         {"can_move", plan.dangerous(), report::Show::everywhere, "can move a motor"}};
   if (!context.dry_run) {
+    if (const auto right = hold_drives(context, *drives); !right) return tl::unexpected<Error>(right.error());
     if (const auto sure = context.confirm(question(plan, file, context.session->url())); !sure)
       return tl::unexpected<Error>(sure.error());
     if (const auto done = send(context, plan, *drives, *speed, answer); !done)

@@ -90,6 +90,7 @@ const Command kReport{
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::reads,
+    .family = FamilyCheck::always,
     .run = run,
 };
 

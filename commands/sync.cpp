@@ -142,6 +142,7 @@ const Command kSyncOnce{
     .parameters = {},
     .needs = Needs::bus,
     .effect = Effect::moves,
+    .family = FamilyCheck::never,
     .run = run_once,
 };
 
@@ -157,6 +158,7 @@ const Command kSyncStart{
     .parameters = kStartParameters,
     .needs = Needs::bus,
     .effect = Effect::moves,
+    .family = FamilyCheck::never,
     .run = run_start,
 };
 
@@ -170,6 +172,7 @@ const Command kSyncStop{
     .parameters = {},
     .needs = Needs::bus,
     .effect = Effect::none,
+    .family = FamilyCheck::never,
     .run = run_stop,
 };
 

@@ -42,6 +42,7 @@ const Command kTestIo{
     .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::reads,
+    .family = FamilyCheck::always,
     .run = run,
 };
 

@@ -59,6 +59,7 @@ const Command kVerify{
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::reads,
+    .family = FamilyCheck::always,
     .run = run,
 };
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <string>
 #include <variant>
 
 #include "base/time.hpp"
@@ -30,9 +31,13 @@ struct NodeEvent {
   struct GuardingBack {
     NmtState state;
   };
+  /// Two nodes answer under this number; what it was noticed by.
+  struct Doubled {
+    std::string by;
+  };
   TimePoint time;
   std::uint8_t node = 0;
-  std::variant<BootUp, StateChange, HeartbeatLost, Emergency, GuardingLost, GuardingBack> what;
+  std::variant<BootUp, StateChange, HeartbeatLost, Emergency, GuardingLost, GuardingBack, Doubled> what;
   std::uint32_t times = 1;  ///< How often in succession the node told the same emergency.
 };
 

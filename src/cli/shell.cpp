@@ -11,6 +11,7 @@
 #include "cli/signals.hpp"
 #include "commands/help.hpp"
 #include "commands/notice.hpp"
+#include "session/identify.hpp"
 #include "session/scan.hpp"
 
 namespace servoctl::cli {
@@ -128,6 +129,11 @@ Result<Value> Shell::execute(Run& run, const commands::Arguments& arguments) {
     if (opened) run.context.session = *opened;
     return opened;
   };
+  context.hold_family = [this, &run](std::span<const std::uint8_t> nodes, const drive::Profile* profile,
+                                     bool changes) {
+    return hold_family(run, nodes, profile,
+                       changes ? FamilyGate::Weight::changes : FamilyGate::Weight::answers);
+  };
   context.family = [this](const std::string& family) { return profile(family); };
   context.batch_lines = [this](std::string_view text, const std::string& file) {
     return batch_lines(*this, text, file);
@@ -164,7 +170,18 @@ Result<void> Shell::prepare(Run& run, const commands::Arguments& arguments) {
   const auto opened = open(run.settings);
   if (!opened) return tl::unexpected<Error>(opened.error());
   run.context.session = *opened;
-  return prepare_nodes(run);
+  if (const auto named = prepare_nodes(run); !named) return named;
+  return hold_family(run, run.context.nodes, run.context.profile, weight_of(command, arguments));
+}
+
+Result<void> Shell::hold_family(Run& run, std::span<const std::uint8_t> nodes, const drive::Profile* profile,
+                                FamilyGate::Weight weight) {
+  FamilyGate gate(*run.context.session,
+                  {.folders = options_.drive_folders,
+                   .force = run.settings.force_family,
+                   .dry_run = run.settings.dry_run},
+                  run.context.notices);
+  return gate.hold(nodes, profile, weight);
 }
 
 Result<void> Shell::prepare_profile(Run& run) {
@@ -254,8 +271,17 @@ std::vector<std::string> Shell::take_notices(const drive::Profile* profile, bool
   return out;
 }
 
+/// A line of its own ends before a second node of the same number may have answered.
+void Shell::hear_second_node(const Run& run) {
+  auto* session = run.context.session;
+  if (session == nullptr || stays_open_ || !includes(run.command->needs, Needs::node) || cancelled()) return;
+  // What it cannot tell is told by the next line.
+  (void)session::settle_duplicates(*session, run.context.nodes);
+}
+
 Outcome Shell::finish(Run& run, const Result<Value>& result) {
   auto& errors = run.context.errors;
+  hear_second_node(run);
   if (!result) errors.insert(errors.begin(), result.error());
   for (auto& notice : take_notices(run.context.profile, run.settings.chinese))
     run.context.notices.push_back(std::move(notice));

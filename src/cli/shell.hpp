@@ -4,12 +4,14 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "cli/bus_holder.hpp"
 #include "cli/console.hpp"
+#include "cli/family_gate.hpp"
 #include "cli/outcome.hpp"
 #include "cli/parse.hpp"
 #include "cli/progress.hpp"
@@ -89,6 +91,9 @@ class Shell {
   Result<void> prepare(Run& run, const commands::Arguments& arguments);
   Result<void> prepare_profile(Run& run);
   Result<void> prepare_nodes(Run& run);
+  Result<void> hold_family(Run& run, std::span<const std::uint8_t> nodes, const drive::Profile* profile,
+                           FamilyGate::Weight weight);
+  void hear_second_node(const Run& run);
   static Result<void> name_nodes(Run& run);
   tl::unexpected<Error> ask_for_family(Run& run);
   Outcome help(const std::vector<std::string>& words, Settings settings);

@@ -7,6 +7,7 @@
 
 #include "base/file.hpp"
 #include "base/text.hpp"
+#include "drive/file_identity.hpp"
 #include "drive/standard_objects.hpp"
 #include "od/eds.hpp"
 
@@ -40,6 +41,14 @@ bool is_drive(const od::Dictionary& dictionary) {
          dictionary.find(objects::kStatusword) != nullptr;
 }
 
+void set_marks(Rules& rules, std::vector<IdentityMark> marks) {
+  rules.identity = std::move(marks);
+  // A maker's number is his alone (CiA 301, 7.5.2.19); without one, others may answer the same.
+  rules.identity_telling =
+      std::any_of(rules.identity.begin(), rules.identity.end(),
+                  [](const IdentityMark& mark) { return mark.object == objects::kVendorId; });
+}
+
 Result<void> add_dictionary(Profile& profile, const fs::path& path) {
   const auto text = read_file(path, od::kMostEdsBytes);
   if (!text) return tl::unexpected<Error>(text.error());
@@ -51,6 +60,7 @@ Result<void> add_dictionary(Profile& profile, const fs::path& path) {
   if (!file->diagnostics.empty())
     profile.warnings.push_back(fmt::format("{0}: {1} errors, {2} warnings; `eds check {0}` lists them",
                                            path.string(), file->error_count(), file->warning_count()));
+  if (profile.rules.identity.empty()) set_marks(profile.rules, identity_marks(*file));
   if (profile.rules.name.empty()) profile.rules.name = file->device.product_name;
   if (profile.rules.vendor.empty()) profile.rules.vendor = file->device.vendor_name;
   return {};
@@ -147,7 +157,9 @@ Result<Profile> load_parts(const Family& family, std::span<const fs::path> folde
 Result<Profile> load_single_file(const fs::path& path, std::span<const fs::path> folders) {
   if (lower(path.extension().string()) == ".toml") {
     const auto stem = fs::path(path).replace_extension();
-    return load_parts({lower(stem.filename().string()), stem}, folders, 0);
+    auto profile = load_parts({lower(stem.filename().string()), stem}, folders, 0);
+    if (profile) profile->of_file = true;
+    return profile;
   }
   Profile profile;
   if (auto generic = load_family(kGenericFamily, folders, 0)) profile = std::move(*generic);
@@ -155,6 +167,9 @@ Result<Profile> load_single_file(const fs::path& path, std::span<const fs::path>
   profile.rules.name.clear();
   profile.rules.vendor.clear();
   profile.rules.name_zh.clear();
+  profile.rules.identity.clear();
+  profile.rules.identity_telling = false;
+  profile.of_file = true;
   const bool table = lower(path.extension().string()) == ".csv";
   const auto added = table ? add_parameters(profile, path) : add_dictionary(profile, path);
   if (!added) return tl::unexpected<Error>(added.error());

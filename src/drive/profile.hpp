@@ -25,6 +25,7 @@ struct Profile {
   std::vector<od::Parameter> parameters;
   std::vector<Fault> faults;
   std::vector<std::string> warnings;  ///< Findings in the files that did not stop them from being used.
+  bool of_file = false;               ///< A file of the user's own, not a family by its name.
   std::filesystem::path data_sheet;   ///< The EDS or DCF the dictionary comes from; empty: none.
 
   /// The parameter with this id, in any of the ways people write it (`Pn0202`, `pn202`).

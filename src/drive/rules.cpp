@@ -14,6 +14,7 @@ class RulesReader {
     rules_.family.clear();
     rules_.identity.clear();
     rules_.identity_certain = false;
+    rules_.identity_telling = false;
   }
 
   Result<Rules> read(const toml::table& root) {

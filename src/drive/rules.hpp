@@ -23,6 +23,15 @@ struct Condition {
   std::uint64_t value = 0;
 };
 
+/// What an object of the identity (1000h, 1008h, 1018h) says on every drive of a family.
+struct IdentityMark {
+  ObjectAddress object;
+  std::uint64_t value = 0;
+  std::uint64_t mask = ~std::uint64_t{0};  ///< Bits of the value that count.
+  std::string text;   ///< Of an object that is a text, instead of `value`; empty: it is a number.
+  bool soft = false;  ///< Another value is told, and contradicts nothing.
+};
+
 /// A parameter or object by name (`Fn_99`, `0x2005:01`), and what to write to it.
 struct Setting {
   std::string name;
@@ -182,8 +191,11 @@ struct Rules {
   std::string name;
   std::string name_zh;
 
-  std::vector<Condition> identity;  ///< All must hold.
-  bool identity_certain = false;    ///< False: a match is a guess, to be offered and never assumed.
+  std::vector<IdentityMark> identity;  ///< All must hold.
+  bool identity_certain = false;       ///< False: a match is a guess, to be offered and never assumed.
+  /// Whatever matches is of this family or of one that answers like it: enough to take the user's word, and
+  /// to contradict the name of another family. Always so where a match is certain.
+  bool identity_telling = false;
 
   std::vector<Numbering> numbering;
   std::map<Measure, Quotient> units;

@@ -29,6 +29,21 @@ bool get(const toml::node& node, Quotient::When& out) {
          get_int(at(node, "value"), out.value);
 }
 
+/// `{ object, value }` or `{ object, text }`, with `mask` and `soft` where needed.
+bool get(const toml::node& node, IdentityMark& out) {
+  const auto* table = node.as_table();
+  if (table == nullptr || table->get("object") == nullptr ||
+      (table->get("value") == nullptr) == (table->get("text") == nullptr))
+    return false;
+  return TableReader(*table, "")
+      .read({{"object", into(out.object)},
+             {"value", [&](const auto& n) { return get_int(n, out.value); }},
+             {"mask", [&](const auto& n) { return get_int(n, out.mask); }},
+             {"text", [&](const auto& n) { return drive::get(n, out.text) && !out.text.empty(); }},
+             {"soft", into(out.soft)}})
+      .has_value();
+}
+
 bool get(const toml::node& node, Setting& out) {
   return has_only(node, {"name", "value"}) && drive::get(at(node, "name"), out.name) &&
          get_int(at(node, "value"), out.value);
@@ -86,7 +101,9 @@ TableReader::Handler quotient_into(Quotient& out) {
 }  // namespace
 
 Result<void> read_identity(const TableReader& reader, Rules& rules) {
-  return reader.read({{"certain", into(rules.identity_certain)}, {"match", list_into(rules.identity)}});
+  return reader.read({{"certain", into(rules.identity_certain)},
+                      {"telling", into(rules.identity_telling)},
+                      {"match", list_into(rules.identity)}});
 }
 
 Result<void> read_numbering(const TableReader& reader, Numbering& out) {

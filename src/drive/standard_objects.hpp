@@ -9,6 +9,11 @@
 namespace servoctl::objects {
 
 inline constexpr ObjectAddress kDeviceType{0x1000, 0};
+inline constexpr ObjectAddress kDeviceName{0x1008, 0};
+inline constexpr ObjectAddress kVendorId{0x1018, 1};
+inline constexpr ObjectAddress kProductCode{0x1018, 2};
+inline constexpr ObjectAddress kRevision{0x1018, 3};
+inline constexpr ObjectAddress kSerialNumber{0x1018, 4};
 inline constexpr ObjectAddress kErrorRegister{0x1001, 0};
 inline constexpr ObjectAddress kErrorHistory{0x1003, 0};  ///< Pre-defined error field, its count.
 inline constexpr ObjectAddress kSyncCobId{0x1005, 0};

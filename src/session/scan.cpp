@@ -1,5 +1,7 @@
 #include "session/scan.hpp"
 #include "drive/standard_objects.hpp"
+#include "session/family_check.hpp"
+#include "session/identify.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,9 +10,9 @@
 namespace servoctl::session {
 namespace {
 
-constexpr std::array kNumbers{ObjectAddress{0x1018, 1}, ObjectAddress{0x1018, 2}, ObjectAddress{0x1018, 3},
-                              ObjectAddress{0x1018, 4}};
-constexpr std::array kTexts{ObjectAddress{0x1008, 0}, ObjectAddress{0x1009, 0}, ObjectAddress{0x100A, 0}};
+constexpr std::array kNumbers{objects::kVendorId, objects::kProductCode, objects::kRevision,
+                              objects::kSerialNumber};
+constexpr std::array kTexts{objects::kDeviceName, ObjectAddress{0x1009, 0}, ObjectAddress{0x100A, 0}};
 
 std::optional<std::uint32_t> number(const Result<Bytes>& answer) {
   if (!answer || answer->empty() || answer->size() > 4) return std::nullopt;
@@ -47,6 +49,9 @@ Result<std::vector<Identity>> find_nodes(Session& session, std::span<const std::
 }  // namespace
 
 Result<std::vector<Identity>> scan(Session& session, std::span<const std::uint8_t> nodes) {
+  // Whoever looks again may have put it right.
+  for (const auto node : nodes)
+    if (!session.duplicates().noticed(node).empty()) session.duplicates().forget(node);
   auto found = find_nodes(session, nodes);
   if (!found) return found;
   std::vector<SdoRequest> requests;
@@ -65,33 +70,21 @@ Result<std::vector<Identity>> scan(Session& session, std::span<const std::uint8_
     identity.hardware_version = text(*at++);
     identity.software_version = text(*at++);
     identity.nmt = session.watch().state(identity.node);
+    session.identities().keep(identity, session.watch().boots(identity.node));
   }
+  std::vector<std::uint8_t> there;
+  for (const auto& identity : *found) there.push_back(identity.node);
+  if (const auto settled = settle_duplicates(session, there); !settled)
+    return tl::unexpected<Error>(settled.error());
   return found;
 }
-
-namespace {
-
-std::optional<std::uint32_t> identity_number(const Identity& identity, ObjectAddress object) {
-  if (object == objects::kDeviceType) return identity.device_type;
-  if (object == kNumbers[0]) return identity.vendor_id;
-  if (object == kNumbers[1]) return identity.product_code;
-  if (object == kNumbers[2]) return identity.revision;
-  if (object == kNumbers[3]) return identity.serial;
-  return std::nullopt;
-}
-
-}  // namespace
 
 std::vector<Guess> guess_families(const Identity& identity, std::span<const drive::Family> families) {
   std::vector<Guess> out;
   for (const auto& family : families) {
     const auto rules = drive::load_rules(family);
-    if (!rules || rules->identity.empty()) continue;
-    const bool fits =
-        std::all_of(rules->identity.begin(), rules->identity.end(), [&](const drive::Condition& condition) {
-          return identity_number(identity, condition.object) == condition.value;
-        });
-    if (fits) out.push_back({family.name, rules->identity_certain});
+    if (!rules) continue;
+    if (has_marks(*rules) && fits(identity, *rules)) out.push_back({family.name, rules->identity_certain});
   }
   std::stable_sort(out.begin(), out.end(),
                    [](const Guess& a, const Guess& b) { return a.certain && !b.certain; });

@@ -51,6 +51,7 @@ Result<std::optional<can::Frame>> Session::receive(TimePoint deadline) {
   if (!frame) return frame;
   received_at_ = *frame ? std::max(received_at_, bus_->arrived()) : now();
   if (*frame) watch_.on_frame(**frame, received_at_);
+  if (*frame) duplicates_.on_frame(**frame, received_at_);
   if (*frame) guard_.on_frame(**frame, received_at_);
   if (*frame && sync_ && !(*frame)->extended && (*frame)->id == sync_->options.can_id) ++sync_->foreign;
   if (*frame && options_.heard) options_.heard(**frame, received_at_);
@@ -115,6 +116,7 @@ std::vector<canopen::NodeEvent> Session::take_events() {
   std::vector<canopen::NodeEvent> out;
   while (const auto event = watch_.take_event()) out.push_back(*event);
   while (const auto event = guard_.take_event()) out.push_back(*event);
+  while (const auto event = duplicates_.take_event()) out.push_back(*event);
   std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
   return out;
 }

@@ -16,9 +16,11 @@
 #include "base/result.hpp"
 #include "can/bus.hpp"
 #include "can/controller_report.hpp"
+#include "canopen/duplicate_watch.hpp"
 #include "canopen/node_guard.hpp"
 #include "canopen/node_watch.hpp"
 #include "canopen/sdo_client.hpp"
+#include "session/known_identities.hpp"
 #include "session/sync_production.hpp"
 
 namespace servoctl::session {
@@ -63,7 +65,10 @@ class Session {
   Result<void> download(std::uint8_t node, ObjectAddress object, Bytes data);
 
   /// Sends a frame that belongs to no machine.
-  Result<void> send(const can::Frame& frame) { return bus_->send(frame); }
+  Result<void> send(const can::Frame& frame) {
+    duplicates_.on_sent(frame, now());
+    return bus_->send(frame);
+  }
 
   /// Listens until `done` answers true or the deadline passes; the answer is that of `done`.
   Result<bool> wait(const std::function<bool()>& done, TimePoint deadline);
@@ -81,6 +86,10 @@ class Session {
   /// What the controller reported since the last call; the same report in succession is told once.
   std::vector<can::ControllerReport> take_reports() { return std::exchange(reports_, {}); }
   canopen::NodeWatch& watch() { return watch_; }
+  /// Whether two nodes have one number.
+  canopen::DuplicateWatch& duplicates() { return duplicates_; }
+  /// What nodes said they are, as long as they have not restarted.
+  KnownIdentities& identities() { return identities_; }
   /// Guards a node in every wait from now on; what is noticed is among the events.
   void guard(std::uint8_t node, canopen::GuardOptions options);
   void stop_guarding();
@@ -135,6 +144,8 @@ class Session {
   std::string url_;
   Options options_;
   canopen::NodeWatch watch_;
+  canopen::DuplicateWatch duplicates_;
+  KnownIdentities identities_;
   canopen::NodeGuard guard_;
   std::optional<Heartbeat> heartbeat_;
   std::optional<SyncProduction> sync_;

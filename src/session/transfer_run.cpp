@@ -76,7 +76,7 @@ void TransferRun::dispatch(const can::Frame& frame) {
 
 bool TransferRun::advance(Channel& channel) {
   if (const auto frame = channel.client.take_frame()) {
-    if (const auto sent = session_->bus().send(*frame); !sent) fail_all(sent.error());
+    if (const auto sent = session_->send(*frame); !sent) fail_all(sent.error());
     return true;
   }
   if (auto result = channel.client.take_result()) {

@@ -16,6 +16,9 @@ void ObjectValues::load_defaults(std::uint8_t node) {
       if (bytes.empty()) bytes.resize(od::size_of(entry.type).value_or(0));
     }
   }
+  // The identity its family tells, where the dictionary states none.
+  for (const auto& mark : profile_->rules.identity)
+    if (has(mark.object) && mark.text.empty() && number(mark.object) == 0) set_number(mark.object, mark.value);
 }
 
 const Bytes& ObjectValues::get(ObjectAddress object) const {

@@ -1,0 +1,112 @@
+#include "cli/family_gate.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "base/text.hpp"
+#include "session/family_check.hpp"
+#include "session/identify.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+using session::FamilyVerdict;
+
+std::string forcing_hint(const FamilyVerdict& verdict) {
+  const std::string_view force = "--force-family goes on all the same";
+  if (verdict.fitting.empty())
+    return fmt::format("no family fits it: look at the nameplate; `info` tells what it says of itself; {}",
+                       force);
+  return fmt::format("its identity fits {}: when the nameplate says so, add -d {}; {}",
+                     one_of(verdict.fitting), verdict.fitting.front(), force);
+}
+
+}  // namespace
+
+Result<void> FamilyGate::hold(std::span<const std::uint8_t> nodes, const drive::Profile* profile,
+                              Weight weight) {
+  if (nodes.empty() || nodes.front() == 0) return {};
+  if (profile != nullptr && weight == Weight::reads) tell_known(nodes, *profile);
+  if (profile != nullptr && weight != Weight::reads)
+    if (const auto fits = ask_all(nodes, *profile, weight); !fits) return fits;
+  return weight == Weight::changes ? refuse_duplicates(nodes) : Result<void>{};
+}
+
+Result<void> FamilyGate::refuse_duplicates(std::span<const std::uint8_t> nodes) {
+  if (const auto heard = session_->listen(); !heard) return heard;
+  for (const auto node : nodes)
+    if (const auto single = session::refuse_duplicate(*session_, node); !single) return single;
+  return {};
+}
+
+Result<void> FamilyGate::ask_all(std::span<const std::uint8_t> nodes, const drive::Profile& profile,
+                                 Weight weight) {
+  const auto identities = session::identify(*session_, nodes, profile.rules);
+  const bool must_answer = weight == Weight::changes && !options_.dry_run;
+  const bool none =
+      std::none_of(identities.begin(), identities.end(), [](const auto& i) { return i.has_value(); });
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const auto& identity = identities[i];
+    if (identity) {
+      if (const auto fits = hold_one(*identity, profile, true); !fits) return fits;
+      continue;
+    }
+    const auto code = identity.error().code;
+    if (code == Errc::bus || code == Errc::interrupted || (must_answer && none))
+      return tl::unexpected<Error>(identity.error());
+    if (must_answer)
+      notices_->push_back(
+          fmt::format("node {} did not answer when it was asked what it is: that it is a {} is "
+                      "unchecked",
+                      nodes[i], profile.family));
+  }
+  return {};
+}
+
+/// Reads alone are no reason to ask a drive what it is.
+void FamilyGate::tell_known(std::span<const std::uint8_t> nodes, const drive::Profile& profile) {
+  for (const auto node : nodes)
+    if (const auto* known = session_->identities().find(node, session_->watch().boots(node)))
+      (void)hold_one(*known, profile, false);
+}
+
+Result<void> FamilyGate::hold_one(const session::Identity& identity, const drive::Profile& profile,
+                                  bool refuses) {
+  const auto families = drive::find_families(options_.folders);
+  const auto verdict = session::judge_family(identity, profile, families);
+  const auto node = identity.node;
+  if (verdict.kind == FamilyVerdict::Kind::proven) return {};
+  const bool contradicted = verdict.kind == FamilyVerdict::Kind::contradicted;
+  if (contradicted && refuses && !options_.force) {
+    Error error;
+    error.code = Errc::refused;
+    error.node = node;
+    error.object = verdict.object;
+    error.message = fmt::format("node {} is no {}: {}", node, profile.family, verdict.why);
+    error.hint = forcing_hint(verdict);
+    return fail(std::move(error));
+  }
+  const bool unproven_read = !contradicted && !refuses;
+  if (unproven_read || !session_->identities().is_news(node, profile.family + (contradicted ? "!" : "?")))
+    return {};
+  const std::string_view forced = refuses ? "; --force-family goes on all the same" : "";
+  notices_->push_back(
+      contradicted
+          ? fmt::format("node {} is no {}: {}{}", node, profile.family, verdict.why, forced)
+          : fmt::format("node {}: nothing proves that it is a {}: {}", node, profile.family, verdict.why));
+  return {};
+}
+
+FamilyGate::Weight weight_of(const commands::Command& command, const commands::Arguments& arguments) {
+  switch (command.family) {
+    case commands::FamilyCheck::by_effect: break;
+    case commands::FamilyCheck::always:
+      return command.effect_with(arguments) >= commands::Effect::writes ? FamilyGate::Weight::changes
+                                                                        : FamilyGate::Weight::answers;
+    case commands::FamilyCheck::never: return FamilyGate::Weight::reads;
+  }
+  return command.effect_with(arguments) >= commands::Effect::writes ? FamilyGate::Weight::changes
+                                                                    : FamilyGate::Weight::reads;
+}
+
+}  // namespace servoctl::cli

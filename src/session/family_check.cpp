@@ -1,0 +1,122 @@
+#include "session/family_check.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "base/text.hpp"
+#include "drive/standard_objects.hpp"
+
+namespace servoctl::session {
+namespace {
+
+using drive::IdentityMark;
+
+enum class Says : std::uint8_t { nothing, yes, no };
+
+std::optional<std::uint32_t> number_of(const Identity& identity, ObjectAddress object) {
+  if (object == objects::kDeviceType) return identity.device_type;
+  if (object == objects::kVendorId) return identity.vendor_id;
+  if (object == objects::kProductCode) return identity.product_code;
+  if (object == objects::kRevision) return identity.revision;
+  if (object == objects::kSerialNumber) return identity.serial;
+  return std::nullopt;
+}
+
+Says ask(const Identity& identity, const IdentityMark& mark) {
+  if (!mark.text.empty()) {
+    if (mark.object != objects::kDeviceName || identity.device_name.empty()) return Says::nothing;
+    return trim(identity.device_name) == mark.text ? Says::yes : Says::no;
+  }
+  const auto number = number_of(identity, mark.object);
+  if (!number) return Says::nothing;
+  return (*number & mark.mask) == (mark.value & mark.mask) ? Says::yes : Says::no;
+}
+
+std::string drive_says(const Identity& identity, const IdentityMark& mark) {
+  if (!mark.text.empty()) return fmt::format("\"{}\"", trim(identity.device_name));
+  return fmt::format("0x{:08X}", number_of(identity, mark.object).value_or(0));
+}
+
+std::string family_says(const IdentityMark& mark) {
+  if (!mark.text.empty()) return fmt::format("\"{}\"", mark.text);
+  const auto value = fmt::format("0x{:08X}", mark.value);
+  return mark.mask == ~std::uint64_t{0} ? value : fmt::format("{} in the bits 0x{:08X}", value, mark.mask);
+}
+
+bool is_telling(const drive::Rules& rules) { return rules.identity_telling || rules.identity_certain; }
+
+/// What is not so, of the family's own marks; soft ones count when they are asked for.
+const IdentityMark* violated(const Identity& identity, const drive::Rules& rules, bool soft) {
+  for (const auto& mark : rules.identity)
+    if (mark.soft == soft && ask(identity, mark) == Says::no) return &mark;
+  return nullptr;
+}
+
+std::string held(const Identity& identity, const drive::Rules& rules) {
+  std::string out;
+  for (const auto& mark : rules.identity)
+    out +=
+        fmt::format("{}{} = {}", out.empty() ? "" : ", ", to_string(mark.object), drive_says(identity, mark));
+  return out;
+}
+
+/// The other family that the drive tells it is, where the one that was named says nothing against it.
+void judge_by_others(const Identity& identity, const drive::Profile& profile,
+                     std::span<const drive::Family> families, FamilyVerdict& verdict) {
+  for (const auto& family : families) {
+    if (equals_nocase(family.name, profile.family)) continue;
+    const auto rules = drive::load_rules(family);
+    if (!rules || !has_marks(*rules) || !fits(identity, *rules)) continue;
+    verdict.fitting.push_back(family.name);
+    const bool related = profile.of_file || equals_nocase(family.name, profile.rules.parent);
+    if (verdict.kind == FamilyVerdict::Kind::contradicted || !is_telling(*rules) || related) continue;
+    verdict.kind = FamilyVerdict::Kind::contradicted;
+    verdict.object = rules->identity.front().object;
+    verdict.why = fmt::format("its identity is that of {} ({})", family.name, held(identity, *rules));
+  }
+}
+
+}  // namespace
+
+bool fits(const Identity& identity, const drive::Rules& rules) {
+  return std::all_of(rules.identity.begin(), rules.identity.end(),
+                     [&](const IdentityMark& mark) { return ask(identity, mark) == Says::yes; });
+}
+
+bool has_marks(const drive::Rules& rules) {
+  return std::any_of(rules.identity.begin(), rules.identity.end(),
+                     [](const IdentityMark& mark) { return !mark.soft; });
+}
+
+FamilyVerdict judge_family(const Identity& identity, const drive::Profile& profile,
+                           std::span<const drive::Family> families) {
+  const auto& rules = profile.rules;
+  FamilyVerdict out;
+  if (const auto* mark = violated(identity, rules, false)) {
+    out.kind = FamilyVerdict::Kind::contradicted;
+    out.object = mark->object;
+    out.why = fmt::format("its {} is {}, that of {} is {}", to_string(mark->object),
+                          drive_says(identity, *mark), profile.family, family_says(*mark));
+    judge_by_others(identity, profile, families, out);
+    return out;
+  }
+  const auto* soft = violated(identity, rules, true);
+  if (is_telling(rules) && !rules.identity.empty() && soft == nullptr && fits(identity, rules)) {
+    out.kind = FamilyVerdict::Kind::proven;
+    return out;
+  }
+  judge_by_others(identity, profile, families, out);
+  if (out.kind == FamilyVerdict::Kind::contradicted) return out;
+  if (soft != nullptr)
+    out.why = fmt::format("its {} is {}, that of {} is {}", to_string(soft->object),
+                          drive_says(identity, *soft), profile.family, family_says(*soft));
+  else if (rules.identity.empty())
+    out.why = fmt::format("no identity of {} is known", profile.family);
+  else if (fits(identity, rules))
+    out.why = fmt::format("{} fits, and others answer the same", held(identity, rules));
+  else
+    out.why = fmt::format("it does not tell all that {} would", profile.family);
+  return out;
+}
+
+}  // namespace servoctl::session

@@ -1,0 +1,113 @@
+#include "session/identify.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "drive/standard_objects.hpp"
+
+namespace servoctl::session {
+namespace {
+
+constexpr Duration kShortest = std::chrono::milliseconds(2);
+constexpr Duration kLongest = std::chrono::milliseconds(20);
+
+std::optional<std::uint32_t> number(const Result<Bytes>& answer) {
+  if (!answer || answer->empty() || answer->size() > 4) return std::nullopt;
+  return static_cast<std::uint32_t>(load_le(*answer));
+}
+
+std::string text(const Result<Bytes>& answer) {
+  if (!answer) return {};
+  return std::string(answer->begin(), std::find(answer->begin(), answer->end(), std::uint8_t{0}));
+}
+
+/// A node that refuses a read is there; one that does not answer, or is not reached, is not known.
+bool tells(const Result<Bytes>& answer) {
+  return answer || answer.error().code == Errc::sdo_abort || answer.error().code == Errc::protocol;
+}
+
+Result<void> listen_for(Session& session, Duration time) {
+  const auto waited = session.wait([] { return false; }, session.now() + time);
+  if (!waited) return tl::unexpected<Error>(waited.error());
+  return {};
+}
+
+}  // namespace
+
+std::vector<Result<Identity>> identify(Session& session, std::span<const std::uint8_t> nodes,
+                                       const drive::Rules& rules) {
+  const bool with_revision = std::any_of(rules.identity.begin(), rules.identity.end(),
+                                         [](const auto& mark) { return mark.object == objects::kRevision; });
+  const auto known = [&](std::uint8_t node) {
+    const auto* found = session.identities().find(node, session.watch().boots(node));
+    return found != nullptr && with_revision && !found->revision ? nullptr : found;
+  };
+  std::vector<ObjectAddress> objects{objects::kDeviceType, objects::kVendorId, objects::kProductCode,
+                                     objects::kDeviceName};
+  if (with_revision) objects.push_back(objects::kRevision);
+  std::vector<SdoRequest> requests;
+  for (const auto node : nodes)
+    if (known(node) == nullptr)
+      for (const auto object : objects) requests.push_back({node, object, {}});
+  const auto answers = session.transfer(requests);
+  std::vector<Result<Identity>> out;
+  auto at = answers.begin();
+  for (const auto node : nodes) {
+    if (const auto* found = known(node)) {
+      out.emplace_back(*found);
+      continue;
+    }
+    const auto here = std::span(at, objects.size());
+    at += static_cast<std::ptrdiff_t>(objects.size());
+    const auto silent = std::find_if(here.begin(), here.end(), [](const auto& a) { return !tells(a); });
+    if (silent != here.end()) {
+      out.emplace_back(tl::unexpected<Error>(silent->error()));
+      continue;
+    }
+    Identity identity;
+    identity.node = node;
+    identity.device_type = number(here[0]);
+    identity.vendor_id = number(here[1]);
+    identity.product_code = number(here[2]);
+    identity.device_name = text(here[3]);
+    if (with_revision) identity.revision = number(here[4]);
+    session.identities().keep(identity, session.watch().boots(node));
+    out.emplace_back(std::move(identity));
+  }
+  // What is wrong with the bus is told by what follows.
+  if (!requests.empty()) (void)settle_duplicates(session, nodes);
+  return out;
+}
+
+Result<void> settle_duplicates(Session& session, std::span<const std::uint8_t> nodes) {
+  auto& duplicates = session.duplicates();
+  const auto patience = std::clamp<Duration>(2 * duplicates.slowest_answer(), kShortest, kLongest);
+  if (const auto heard = listen_for(session, patience); !heard) return heard;
+  std::vector<SdoRequest> requests;
+  for (const auto node : nodes)
+    if (duplicates.is_suspect(node))
+      for (const auto object :
+           {objects::kSerialNumber, objects::kDeviceType, objects::kVendorId, objects::kProductCode})
+        requests.push_back({node, object, {}});
+  if (requests.empty()) return {};
+  (void)session.transfer(requests);
+  return listen_for(session, patience);
+}
+
+Result<void> refuse_duplicate(Session& session, std::uint8_t node) {
+  const auto& by = session.duplicates().noticed(node);
+  if (by.empty()) return {};
+  Error error;
+  error.code = Errc::refused;
+  error.node = node;
+  error.message =
+      fmt::format("two nodes answer as node {} ({}): nothing is written to them or moved", node, by);
+  error.hint = fmt::format(
+      "take one of them off the bus and give it a number of its own, then `scan`; `disable -n {}` and `nmt "
+      "stop` "
+      "reach both",
+      node);
+  return fail(std::move(error));
+}
+
+}  // namespace servoctl::session

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/result.hpp"
+#include "drive/rules.hpp"
+#include "session/identity.hpp"
+#include "session/session.hpp"
+
+namespace servoctl::session {
+
+/// What the nodes are, as far as it tells a family: 1000h, 1018h:01 and :02, 1008h, and 1018h:03 where a mark
+/// of the rules asks for it. Read in one transfer, all nodes at the same time, and kept in the session until
+/// a node restarts. A node that does not answer has Errc::timeout. Where something was read, listens for a
+/// second node of the same number, see settle_duplicates().
+std::vector<Result<Identity>> identify(Session& session, std::span<const std::uint8_t> nodes,
+                                       const drive::Rules& rules);
+
+/// Takes in what a second node of the same number may still answer to what was asked: about as long as an
+/// answer takes, 20 ms at most. Where an answer has come twice, asks for what never changes to know better.
+/// Errors of the bus.
+Result<void> settle_duplicates(Session& session, std::span<const std::uint8_t> nodes);
+
+/// Errc::refused when two nodes were noticed under this number.
+Result<void> refuse_duplicate(Session& session, std::uint8_t node);
+
+}  // namespace servoctl::session
