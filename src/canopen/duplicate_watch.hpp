@@ -33,7 +33,7 @@ class DuplicateWatch {
   /// A frame that is received, of another master too.
   void on_frame(const can::Frame& frame, TimePoint now);
 
-  /// What was noticed of the node (1..127) in words, `0x1018:04 was answered by 0x00000001 and by
+  /// What was noticed of the node (1..127) in words, `0x1018:4 was answered by 0x00000001 and by
   /// 0x00000002`; empty: nothing.
   const std::string& noticed(std::uint8_t node) const { return nodes_[node].noticed; }
   /// An answer of the node came twice: to ask for what never changes would tell more.

@@ -276,7 +276,7 @@ void Shell::hear_second_node(const Run& run) {
   auto* session = run.context.session;
   if (session == nullptr || stays_open_ || !includes(run.command->needs, Needs::node) || cancelled()) return;
   // What it cannot tell is told by the next line.
-  (void)session::settle_duplicates(*session, run.context.nodes);
+  (void)session::settle_duplicates(*session, run.context.nodes, session::kBriefly);
 }
 
 Outcome Shell::finish(Run& run, const Result<Value>& result) {

@@ -54,13 +54,13 @@ Result<void> add_dictionary(Profile& profile, const fs::path& path) {
   if (!text) return tl::unexpected<Error>(text.error());
   auto file = od::read_eds(*text, path.string());
   if (!file) return tl::unexpected<Error>(file.error());
+  if (profile.rules.identity.empty()) set_marks(profile.rules, identity_marks(*file));
   if (is_drive(file->dictionary)) od::inherit(file->dictionary, profile.dictionary);
   profile.dictionary = std::move(file->dictionary);
   profile.data_sheet = path;
   if (!file->diagnostics.empty())
     profile.warnings.push_back(fmt::format("{0}: {1} errors, {2} warnings; `eds check {0}` lists them",
                                            path.string(), file->error_count(), file->warning_count()));
-  if (profile.rules.identity.empty()) set_marks(profile.rules, identity_marks(*file));
   if (profile.rules.name.empty()) profile.rules.name = file->device.product_name;
   if (profile.rules.vendor.empty()) profile.rules.vendor = file->device.vendor_name;
   return {};

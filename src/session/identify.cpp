@@ -8,9 +8,6 @@
 namespace servoctl::session {
 namespace {
 
-constexpr Duration kShortest = std::chrono::milliseconds(2);
-constexpr Duration kLongest = std::chrono::milliseconds(20);
-
 std::optional<std::uint32_t> number(const Result<Bytes>& answer) {
   if (!answer || answer->empty() || answer->size() > 4) return std::nullopt;
   return static_cast<std::uint32_t>(load_le(*answer));
@@ -75,13 +72,13 @@ std::vector<Result<Identity>> identify(Session& session, std::span<const std::ui
     out.emplace_back(std::move(identity));
   }
   // What is wrong with the bus is told by what follows.
-  if (!requests.empty()) (void)settle_duplicates(session, nodes);
+  if (!requests.empty()) (void)settle_duplicates(session, nodes, kBeforeWrites);
   return out;
 }
 
-Result<void> settle_duplicates(Session& session, std::span<const std::uint8_t> nodes) {
+Result<void> settle_duplicates(Session& session, std::span<const std::uint8_t> nodes, Duration least) {
   auto& duplicates = session.duplicates();
-  const auto patience = std::clamp<Duration>(2 * duplicates.slowest_answer(), kShortest, kLongest);
+  const auto patience = std::clamp<Duration>(2 * duplicates.slowest_answer(), least, kThoroughly);
   if (const auto heard = listen_for(session, patience); !heard) return heard;
   std::vector<SdoRequest> requests;
   for (const auto node : nodes)

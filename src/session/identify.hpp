@@ -18,10 +18,16 @@ namespace servoctl::session {
 std::vector<Result<Identity>> identify(Session& session, std::span<const std::uint8_t> nodes,
                                        const drive::Rules& rules);
 
-/// Takes in what a second node of the same number may still answer to what was asked: about as long as an
-/// answer takes, 20 ms at most. Where an answer has come twice, asks for what never changes to know better.
-/// Errors of the bus.
-Result<void> settle_duplicates(Session& session, std::span<const std::uint8_t> nodes);
+/// How long a second node of the same number is waited for, at least: answers of two drives of one kind are
+/// close together; where somebody looks who is there, others have their time as well.
+inline constexpr Duration kBriefly = std::chrono::milliseconds(2);
+inline constexpr Duration kBeforeWrites = std::chrono::milliseconds(5);
+inline constexpr Duration kThoroughly = std::chrono::milliseconds(20);
+
+/// Takes in what a second node of the same number may still answer to what was asked: for twice the time that
+/// the slowest answer took, between `least` and 20 ms. Where an answer has come twice, asks for what never
+/// changes to know better. Errors of the bus.
+Result<void> settle_duplicates(Session& session, std::span<const std::uint8_t> nodes, Duration least);
 
 /// Errc::refused when two nodes were noticed under this number.
 Result<void> refuse_duplicate(Session& session, std::uint8_t node);

@@ -74,7 +74,7 @@ Result<std::vector<Identity>> scan(Session& session, std::span<const std::uint8_
   }
   std::vector<std::uint8_t> there;
   for (const auto& identity : *found) there.push_back(identity.node);
-  if (const auto settled = settle_duplicates(session, there); !settled)
+  if (const auto settled = settle_duplicates(session, there, kThoroughly); !settled)
     return tl::unexpected<Error>(settled.error());
   return found;
 }
