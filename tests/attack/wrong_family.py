@@ -87,7 +87,7 @@ def attack(work):
     wrong = []
     if command in ways_out and run.returncode == 8:
         wrong.append("a way out was refused")
-    if command not in ways_out and (frames or before != after):
+    if command not in ways_out and (frames or (before and before != after)):
         wrong.append("something was written: " + " ".join(frames[:3]))
     if command not in ways_out and command not in reads and run.returncode == 0:
         wrong.append("it was done")
