@@ -82,8 +82,8 @@ void complain_of_silent_nodes(Context& context, std::span<const std::uint8_t> no
 }
 
 std::string_view event_name(const NodeEvent& event) {
-  constexpr std::string_view kNames[] = {"boot-up",   "state",         "heartbeat-lost",
-                                         "emergency", "guarding-lost", "guarding-back"};
+  constexpr std::string_view kNames[] = {"boot-up",       "state",         "heartbeat-lost", "emergency",
+                                         "guarding-lost", "guarding-back", "doubled"};
   static_assert(std::size(kNames) == std::variant_size_v<decltype(event.what)>);
   return kNames[event.what.index()];
 }
