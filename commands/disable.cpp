@@ -17,40 +17,47 @@ report::Table state_table() {
   return table;
 }
 
-using Action = Result<void> (session::Power::*)();
+/// What is known of one node now goes into the table and beside it.
+void tell(Context& context, std::uint8_t node, const session::PowerDownResult& done,
+          std::string_view done_word, report::Table& table) {
+  if (!done.outcome) context.errors.push_back(done.outcome.error());
+  const bool energised = !done.statusword || drive::is_energised(done.state());
+  table.rows.push_back({node, done.statusword ? Value(drive::name(done.state())) : Value(), Value(energised),
+                        done.outcome ? Value(done_word) : Value("failed"),
+                        done.outcome ? Value() : error_record(done.outcome.error())});
+  for (const auto& note : done.notes) context.notices.push_back(fmt::format("node {}: {}", node, note));
+  if (energised)
+    context.notices.push_back(
+        done.statusword
+            ? fmt::format("node {} is still energised: {}; `disable` takes its power away", node,
+                          drive::name(done.state()))
+            : fmt::format("WHETHER NODE {} IS ENERGISED IS NOT KNOWN: TAKE THE POWER AWAY", node));
+}
 
-/// All nodes are told, whatever becomes of the others.
-Result<Value> run(Context& context, Action action, std::string_view done_word) {
+/// All nodes are told at the same time, whatever becomes of the others.
+Result<Value> run(Context& context, session::PowerAim aim, std::string_view done_word) {
   auto table = state_table();
-  const drive::Profile plain;
-  const auto& profile = context.profile != nullptr ? *context.profile : plain;
+  std::vector<session::PowerDownPlan> plans;
   for (const auto node : context.nodes) {
     if (context.dry_run) {
       table.rows.push_back({node, Value(), Value(), fmt::format("would be {}", done_word), Value()});
       continue;
     }
-    session::Power power(*context.session, profile, node);
-    const auto done = (power.*action)();
-    const auto state = power.state();
-    if (!done) context.errors.push_back(done.error());
-    const bool energised = !state || drive::is_energised(*state);
-    table.rows.push_back({node, state ? Value(drive::name(*state)) : Value(), Value(energised),
-                          done ? Value(done_word) : Value("failed"),
-                          done ? Value() : error_record(done.error())});
-    if (energised)
-      context.notices.push_back(
-          state ? fmt::format("node {} is still energised: {}; `disable` takes its power away", node,
-                              drive::name(*state))
-                : fmt::format("WHETHER NODE {} IS ENERGISED IS NOT KNOWN: TAKE THE POWER AWAY", node));
+    plans.emplace_back();
+    plans.back().node = node;
+    plans.back().aim = aim;
   }
+  if (context.dry_run) return Value(std::move(table));
+  const auto done = session::take_down(*context.session, plans);
+  for (std::size_t i = 0; i < plans.size(); ++i) tell(context, plans[i].node, done[i], done_word, table);
   return Value(std::move(table));
 }
 
 Result<Value> run_disable(Context& context, const Arguments&) {
-  return run(context, &session::Power::disable, "disabled");
+  return run(context, session::PowerAim::disable, "disabled");
 }
 Result<Value> run_quick_stop(Context& context, const Arguments&) {
-  return run(context, &session::Power::quick_stop, "stopped");
+  return run(context, session::PowerAim::stop, "stopped");
 }
 
 }  // namespace
@@ -60,9 +67,13 @@ const Command kDisable{
     .path = "disable",
     .summary = "Take the power of a motor away",
     .details =
-        "Controlwords 07h and 00h; asks nothing. A motor that turns coasts, or ramps down where the drive "
-        "does that by "
-        "605Ch; `quick-stop` stops it first. The answer is the state read afterwards.",
+        "Controlwords 07h and 00h to all nodes at the same time; asks nothing. 00h is written in every "
+        "state, also in "
+        "a fault. A motor that turns coasts, or ramps down where the drive does that by 605Ch; `quick-stop` "
+        "stops it "
+        "first. A drive that does not obey or does not answer is tried by NMT as well (pre-operational). The "
+        "answer "
+        "is the state read afterwards.",
     .parameters = {},
     .needs = Needs::node,
     .effect = Effect::writes,
@@ -75,9 +86,9 @@ const Command kQuickStopCommand{
     .path = "quick-stop",
     .summary = "Stop a motor as fast as it can",
     .details =
-        "Controlword 02h to every node that is energised; asks nothing. What the drive does after it has "
-        "stopped is "
-        "set by 605Ah: some stay energised, and the answer says so.",
+        "Controlword 02h to all nodes before any answer is waited for; asks nothing. What a drive does after "
+        "it has "
+        "stopped is set by 605Ah: some stay energised, and the answer says so.",
     .parameters = {},
     .needs = Needs::node,
     .effect = Effect::writes,

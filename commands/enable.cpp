@@ -51,10 +51,15 @@ Result<Value> run(Context& context, const Arguments& arguments) {
     auto options = motion_options(context, arguments);
     if (!options) return tl::unexpected<Error>(options.error());
     session::Motion motion(*context.session, *context.profile, node, std::move(*options));
-    const auto done = enable_one(context, motion);
-    if (!done) context.errors.push_back(done.error());
+    auto done = enable_one(context, motion);
     session::Power power(*context.session, *context.profile, node);
     const auto state = power.state();
+    if (done && !context.dry_run && state && *state != drive::DriveState::operation_enabled)
+      done = fail(session::drive_error(
+          Errc::negative, node,
+          fmt::format("was enabled and did not stay so: it is in {}", drive::name(*state)),
+          "`status` and `fault show` tell more; `disable` it before anything else"));
+    if (!done) context.errors.push_back(done.error());
     const bool enabled = done.has_value() && !context.dry_run;
     table.rows.push_back({node, state ? Value(drive::name(*state)) : Value(),
                           state ? Value(drive::is_energised(*state)) : Value(),

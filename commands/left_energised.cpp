@@ -27,6 +27,11 @@ void tell_left_energised(Context& context) {
     const auto state = power.state();
     if (state && drive::is_energised(*state))
       context.notices.push_back(energised_notice(node));
+    else if (state && context.session->energised().contains(node))
+      context.notices.push_back(fmt::format(
+          "node {} has lost its power by itself ({}) and may start again by itself: 6040h still says "
+          "\"enable operation\"; `disable -n {}` takes that back",
+          node, drive::name(*state), node));
     else if (!state && state.error().code != Errc::sdo_abort)
       context.notices.push_back(
           fmt::format("node {} MAY BE ENERGISED: it does not tell ({})", node, state.error().message));

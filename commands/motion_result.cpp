@@ -81,7 +81,11 @@ std::string end_text(const session::MotionEnd& end, const session::WatchdogPlan&
   if (end.verified)
     return fmt::format("{}{}, verified (statusword 0x{:04X})", drive::name(end.state),
                        end.quick_stop ? " after a quick stop" : "", end.statusword);
-  std::string out = "THE END STATE COULD NOT BE VERIFIED: TAKE THE POWER AWAY";
+  std::string out = end.statusword == 0 ? "THE END STATE COULD NOT BE VERIFIED: TAKE THE POWER AWAY"
+                                        : fmt::format(
+                                              "IT IS IN {} (statusword 0x{:04X}), NOT WITHOUT POWER: TAKE "
+                                              "THE POWER AWAY",
+                                              drive::name(end.state), end.statusword);
   if (watchdog.kind != session::WatchdogPlan::Kind::none)
     out += fmt::format(" (its watchdog should stop it within {} ms)",
                        std::chrono::duration_cast<std::chrono::milliseconds>(watchdog.time).count());
@@ -97,7 +101,9 @@ Value motion_result(Context& context, std::uint8_t node, const session::MotionPl
   else if (!done.outcome)
     context.errors.push_back(ended(node, done));
   for (const auto& left : done.end.left)
-    context.errors.push_back(session::drive_error(Errc::negative, node, left, "write it by hand"));
+    context.errors.push_back(session::drive_error(
+        Errc::negative, node, left,
+        left.starts_with("object ") ? "write it by hand" : "look at the drive before it is used"));
   for (const auto& note : done.end.notes) context.notices.push_back(fmt::format("node {}: {}", node, note));
   for (const auto& event : done.events)
     context.notices.push_back(notice_text(event, context.profile, context.chinese));

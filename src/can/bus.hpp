@@ -27,6 +27,12 @@ class Bus {
   /// there was none; it may come before the deadline when a signal woke the process up.
   virtual Result<std::optional<Frame>> receive(TimePoint deadline) = 0;
 
+  /// After Errc::bus: waits until `deadline` at most for the interface, and takes part again when it is back;
+  /// one that was gone is opened anew. Errc::bus while it is not back; at once where it never comes.
+  virtual Result<void> recover(TimePoint /*deadline*/) {
+    return fail(Errc::bus, "this bus does not come back by itself");
+  }
+
   /// When the frame that receive() gave last arrived, on the clock of now(); where the kernel stamps frames,
   /// it does not matter how late receive() was called.
   virtual TimePoint arrived() const { return now(); }

@@ -1,10 +1,12 @@
 #include "can/socketcan.hpp"
 
+#include <fcntl.h>
 #include <linux/can.h>
 #include <linux/can/error.h>
 #include <linux/can/raw.h>
 #include <poll.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -20,6 +22,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
+/// Between two looks at an interface that is down.
+constexpr Duration kReopenPause = milliseconds(5);
 /// Frames one call takes from the kernel.
 constexpr std::size_t kBatch = 64;
 /// Frames that wait here at most, some 24 MB; beyond that the kernel's queue has to do.
@@ -135,6 +139,25 @@ Result<std::optional<Frame>> SocketCanBus::receive(TimePoint deadline) {
   inbox_.pop_front();
   arrived_ = time;
   return std::optional(frame);
+}
+
+/// A socket of its own, whether the old one is still bound or not: it also tells whether the controller is on
+/// the bus. It takes the place of the old one, on which others may poll.
+Result<void> SocketCanBus::recover(TimePoint deadline) {
+  for (;;) {
+    auto opened = socketcan_socket(interface_name_, filters_);
+    if (opened) {
+      if (::dup3(opened->get(), socket_.get(), O_CLOEXEC) < 0)
+        return fail(Errc::bus, fmt::format("cannot open {} again: {}", interface_name_, system_text(errno)));
+      inbox_.clear();
+      failed_.reset();
+      is_bus_off_ = false;
+      lost_frames_ = 0;
+      return {};
+    }
+    if (now() >= deadline) return tl::unexpected<Error>(opened.error());
+    nap(std::min<Duration>(kReopenPause, deadline - now()));
+  }
 }
 
 /// Whoever is slower than the bus finds its frames here: the kernel drops what its queue has no room for.

@@ -39,6 +39,9 @@ inline constexpr Duration kSendLimit = std::chrono::seconds(1);
 Result<std::unique_ptr<Bus>> open_socketcan(std::string_view interface_name,
                                             std::span<const Filter> filters = {});
 
+/// The socket of open_socketcan(); errors as there.
+Result<Descriptor> socketcan_socket(const std::string& name, std::span<const Filter> filters);
+
 /// The CAN interfaces of this machine, up or down, in alphabetical order.
 std::vector<std::string> can_interfaces();
 
@@ -48,6 +51,8 @@ class SocketCanBus final : public Bus {
  public:
   /// `socket` must be non-blocking; `interface_name` is used in messages.
   SocketCanBus(Descriptor socket, std::string interface_name, Duration send_limit = kSendLimit);
+  /// Filters that the socket has, for one that is opened in its place.
+  void keep_filters(std::span<const Filter> filters) { filters_.assign(filters.begin(), filters.end()); }
 
   TimePoint now() const override { return steady_now(); }
   /// Errc::bug for a frame that is not one of ISO 11898-1: a report of the controller, or an identifier or a
@@ -55,6 +60,7 @@ class SocketCanBus final : public Bus {
   /// of a bus-off to that of a restart: the kernel drops such frames in silence.
   Result<void> send(const Frame& frame) override;
   Result<std::optional<Frame>> receive(TimePoint deadline) override;
+  Result<void> recover(TimePoint deadline) override;
   TimePoint arrived() const override { return arrived_; }
   void gather(Duration delay) override { delay_ = delay; }
   int poll_fd() const override { return socket_.get(); }
@@ -68,6 +74,7 @@ class SocketCanBus final : public Bus {
   Descriptor socket_;
   std::string interface_name_;
   Duration send_limit_;
+  std::vector<Filter> filters_;
   std::uint32_t lost_frames_ = 0;  ///< As last told by the kernel.
   bool is_bus_off_ = false;        ///< As last reported.
   struct Received {

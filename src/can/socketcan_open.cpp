@@ -75,9 +75,7 @@ bool configure(int fd, std::span<const Filter> filters) {
 
 }  // namespace
 
-Result<std::unique_ptr<Bus>> open_socketcan(std::string_view interface_name,
-                                            std::span<const Filter> filters) {
-  const std::string name(interface_name);
+Result<Descriptor> socketcan_socket(const std::string& name, std::span<const Filter> filters) {
   if (name.empty() || name.size() >= IFNAMSIZ || name.find('/') != std::string::npos)
     return fail(Errc::usage, fmt::format("'{}' cannot be the name of an interface", name),
                 "an interface has 1 to 15 characters, such as can0; `ip link` lists them");
@@ -97,7 +95,17 @@ Result<std::unique_ptr<Bus>> open_socketcan(std::string_view interface_name,
   // The one way in which the socket interface takes addresses of all families.
   const auto* const generic = reinterpret_cast<const sockaddr*>(&address);
   if (::bind(socket.get(), generic, sizeof address) != 0) return interface_cannot_open(name, errno);
-  return std::make_unique<SocketCanBus>(std::move(socket), name);
+  return socket;
+}
+
+Result<std::unique_ptr<Bus>> open_socketcan(std::string_view interface_name,
+                                            std::span<const Filter> filters) {
+  const std::string name(interface_name);
+  auto socket = socketcan_socket(name, filters);
+  if (!socket) return tl::unexpected<Error>(socket.error());
+  auto bus = std::make_unique<SocketCanBus>(std::move(*socket), name);
+  bus->keep_filters(filters);
+  return bus;
 }
 
 std::vector<std::string> can_interfaces() {

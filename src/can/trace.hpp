@@ -54,6 +54,7 @@ class TraceBus final : public Bus {
   TimePoint now() const override { return inner_->now(); }
   Result<void> send(const Frame& frame) override;
   Result<std::optional<Frame>> receive(TimePoint deadline) override;
+  Result<void> recover(TimePoint deadline) override { return inner_->recover(deadline); }
   TimePoint arrived() const override { return inner_->arrived(); }
   void gather(Duration delay) override { inner_->gather(delay); }
   int poll_fd() const override { return inner_->poll_fd(); }

@@ -5,13 +5,19 @@
 #include <utility>
 
 #include "base/text.hpp"
+#include "can/descriptor.hpp"
 #include "can/socketcan.hpp"
 #include "commands/left_energised.hpp"
 #include "commands/sync_end.hpp"
+#include "session/link_wait.hpp"
 #include "session/power.hpp"
 
 namespace servoctl::cli {
 namespace {
+
+/// Between two tries to open a bus that is lost, and two lines about it.
+constexpr Duration kReconnectPause = std::chrono::milliseconds(10);
+constexpr Duration kTelling = std::chrono::seconds(1);
 
 Error no_bus() {
   Error error;
@@ -72,12 +78,29 @@ void BusHolder::let_go() {
   stop_sync();
   if (!left.empty()) drop();
   for (const auto& [url, nodes] : left) {
-    if (const auto back = connect(url); !back) {
+    if (const auto back = connect_again(url, nodes); !back) {
       for (const auto node : nodes) warn(node, back.error().message);
       continue;
     }
     stop_and_disable();
     drop();
+  }
+}
+
+/// A bus that is lost may come back: behind it drives are energised.
+Result<void> BusHolder::connect_again(const std::string& url, const std::set<std::uint8_t>& nodes) {
+  const auto end = steady_now() + session::LinkWait::kPatience;
+  auto next_line = steady_now();
+  for (;;) {
+    auto back = connect(url);
+    const auto time = steady_now();
+    if (back || back.error().code != Errc::bus || time >= end) return back;
+    if (time >= next_line) {
+      console_->err(fmt::format("notice: {}: stopping node{} {} is tried again\n", back.error().message,
+                                nodes.size() == 1 ? "" : "s", fmt::join(nodes, ", ")));
+      next_line += kTelling;
+    }
+    can::nap(kReconnectPause);
   }
 }
 

@@ -45,6 +45,7 @@ class BusHolder {
   /// Does what is due on the bus while the user is waited for; the answer is how long it has time.
   Duration serve();
   Result<void> connect(const std::string& url);
+  Result<void> connect_again(const std::string& url, const std::set<std::uint8_t>& nodes);
   void stop_and_disable();
   void drop();
   void warn(std::uint8_t node, std::string_view why);

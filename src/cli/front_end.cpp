@@ -47,18 +47,7 @@ std::vector<std::string> as_run(std::vector<std::string> words, std::size_t at) 
   return words;
 }
 
-int run(const std::vector<std::string>& words, StandardConsole& console) {
-  Shell::Options options;
-  options.defaults = settings_from_environment();
-  options.drive_folders = drive::drive_folders();
-  options.state_folder = state_folder();
-  options.cancelled = interrupted;
-  Shell shell(console, std::move(options));
-  if (words.size() == 1 && words.front() == "--version") {
-    console.out("servoctl " SERVOCTL_VERSION "\n");
-    return 0;
-  }
-  install_signal_handlers();
+int run_words(const std::vector<std::string>& words, Shell& shell, StandardConsole& console) {
   const auto first = match_command(words).first;
   if (first < words.size() && words[first] == "-") return run_batch(shell, as_run(words, first), &std::cin);
   if (is_batch(words)) return run_batch(shell, words, &std::cin);
@@ -71,6 +60,27 @@ int run(const std::vector<std::string>& words, StandardConsole& console) {
     if (const auto opened = shell.open(shell.defaults()); !opened)
       return shell.report_error(opened.error(), false);
   return run_prompt(shell, console);
+}
+
+int run(const std::vector<std::string>& words, StandardConsole& console) {
+  Shell::Options options;
+  options.defaults = settings_from_environment();
+  options.drive_folders = drive::drive_folders();
+  options.state_folder = state_folder();
+  options.cancelled = interrupted;
+  Shell shell(console, std::move(options));
+  if (words.size() == 1 && words.front() == "--version") {
+    console.out("servoctl " SERVOCTL_VERSION "\n");
+    return 0;
+  }
+  install_signal_handlers();
+  try {
+    return run_words(words, shell, console);
+  } catch (...) {
+    // Memory that ran out, or a bug: what is energised is not left to itself.
+    shell.let_go();
+    throw;
+  }
 }
 
 }  // namespace

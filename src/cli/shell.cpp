@@ -67,6 +67,10 @@ session::Options Shell::session_options() {
     protect_from_signals(energised);
     console_->set_live(energised);
   };
+  out.tell = [this](std::string_view line) {
+    progress_.end();
+    console_->err("notice: " + std::string(line) + "\n");
+  };
   out.progress = [this](std::size_t done, std::optional<std::size_t> total, TimePoint now) {
     progress_.update(done, total, now);
   };

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <new>
 
 #include "drive/soft_ramp.hpp"
 #include "drive/standard_objects.hpp"
@@ -206,7 +207,18 @@ Result<void> Motion::command(std::uint16_t controlword) {
   return done;
 }
 
+/// What a motion keeps grows with its time.
 Result<bool> Motion::watch(const std::function<Result<bool>(const MotionSample&)>& done, Duration longest) {
+  try {
+    return supervise(done, longest);
+  } catch (const std::bad_alloc&) {
+    return fail(error(Errc::bug, "the memory ran out, so the motion was ended",
+                      "give it more memory, or a shorter motion; end other programs"));
+  }
+}
+
+Result<bool> Motion::supervise(const std::function<Result<bool>(const MotionSample&)>& done,
+                               Duration longest) {
   const auto end = session_->now() + longest;
   for (;;) {
     const auto sample = monitor_->sample();
@@ -227,8 +239,14 @@ MotionReport Motion::finish(Result<void> outcome) {
   out.watchdog = watchdog_;
   out.begun = guard_ != nullptr;
   if (guard_) out.end = guard_->end();
-  out.samples = monitor_->samples();
-  out.series = monitor_->series();
+  try {
+    out.samples = monitor_->samples();
+    out.series = monitor_->series();
+  } catch (const std::bad_alloc&) {
+    out.samples.clear();
+    out.series.clear();
+    if (out.outcome) out.outcome = fail(error(Errc::bug, "the memory ran out: there are no samples to show"));
+  }
   out.events = monitor_->events();
   out.by_pdo = monitor_->by_pdo();
   return out;

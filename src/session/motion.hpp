@@ -106,6 +106,7 @@ class Motion {
   }
 
  private:
+  Result<bool> supervise(const std::function<Result<bool>(const MotionSample&)>& done, Duration longest);
   Result<void> look_again();
   Result<void> read_limits();
   Result<double> find_speed_cap();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "canopen/cob_id.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/operation_mode.hpp"
 
@@ -10,6 +11,9 @@ namespace servoctl::session {
 namespace {
 
 using drive::DriveState;
+
+constexpr std::uint8_t kQuickStop = 0x02;
+constexpr std::uint8_t kDisableVoltage = 0x00;
 
 constexpr std::uint32_t kLife = 5;  ///< Guard times in the life time.
 
@@ -21,11 +25,52 @@ constexpr Duration kNmtPause = std::chrono::milliseconds(20);
 }  // namespace
 
 MotionGuard::MotionGuard(Session& session, const MotionUnits& units, std::uint8_t node)
-    : session_(&session), units_(&units), node_(node), power_(session, units.profile(), node) {
+    : session_(&session),
+      units_(&units),
+      node_(node),
+      power_(session, units.profile(), node),
+      hearing_(session, [this, before = session.options().heard](const can::Frame& frame, TimePoint time) {
+        if (before) before(frame, time);
+        hear(frame);
+      }) {
   if (session.options().protect) session.options().protect(true);
 }
 
-MotionGuard::~MotionGuard() { (void)end(); }
+/// Where even the way out runs out of memory, the drive is still told to stop: nothing of that needs any.
+MotionGuard::~MotionGuard() {
+  try {
+    (void)end();
+  } catch (...) {
+    for (const auto controlword : {kQuickStop, kDisableVoltage, kDisableVoltage}) say(controlword);
+  }
+}
+
+void MotionGuard::say(std::uint8_t controlword) noexcept {
+  // Expedited, two bytes (CiA 301, 7.2.4.3.3).
+  can::Frame frame;
+  frame.id = static_cast<std::uint32_t>(canopen::kSdoRequest) + node_;
+  frame.size = 8;
+  frame.data = {0x2B, 0x40, 0x60, 0, controlword, 0, 0, 0};
+  try {
+    (void)session_->send(frame);
+  } catch (...) {
+    return;
+  }
+}
+
+/// The first frame of a write by somebody else (CiA 301, 7.2.4.3: command specifier 1, or 6 for a block).
+void MotionGuard::hear(const can::Frame& frame) {
+  if (end_ || frame.extended || frame.remote || frame.error || frame.size != 8 ||
+      frame.id != static_cast<std::uint32_t>(canopen::kSdoRequest) + node_)
+    return;
+  const auto command = frame.data[0] >> 5U;
+  if (command != 1 && !(command == 6 && (frame.data[0] & 1U) == 0)) return;
+  const ObjectAddress object{static_cast<std::uint16_t>(frame.data[1] | frame.data[2] << 8U), frame.data[3]};
+  const bool ours =
+      object == objects::kControlword ||
+      std::any_of(changed_.begin(), changed_.end(), [&](const Changed& c) { return c.object == object; });
+  if (ours) foreign_.insert(object);
+}
 
 Result<void> MotionGuard::change(ObjectAddress object, const Bytes& data) {
   const auto before = session_->upload(node_, object);

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "session/hearing.hpp"
 #include "session/motion_units.hpp"
 #include "session/power.hpp"
 #include "session/watchdog.hpp"
@@ -12,7 +14,7 @@ namespace servoctl::session {
 
 /// In which state a motion left the drive.
 struct MotionEnd {
-  bool verified = false;  ///< The statusword was read afterwards and shows no energised state.
+  bool verified = false;  ///< The statusword was read afterwards and shows a state without power.
   drive::DriveState state = drive::DriveState::unknown;
   std::uint16_t statusword = 0;
   bool stopped = false;            ///< It stood still before its power was taken away.
@@ -64,11 +66,14 @@ class MotionGuard {
     Bytes before;
   };
 
-  void stop();
-  Result<bool> wait_for_standstill(Duration patience);
-  /// Whether it is known to have no power now.
-  bool take_power_away();
+  PowerDownPlan way_down();
+  void bring_down();
   void put_back();
+  void put_back(const Changed& changed);
+  void hear(const can::Frame& frame);
+  /// Sends a controlword without waiting for anything and without memory.
+  void say(std::uint8_t controlword) noexcept;
+  void tell_foreign_writes();
   void disarm();
   void put_node_back();
   void verify();
@@ -88,6 +93,8 @@ class MotionGuard {
   std::optional<double> standstill_;
   std::optional<MotionEnd> end_;
   MotionEnd result_;
+  std::set<ObjectAddress> foreign_;  ///< Of those that it changes, what another master wrote since.
+  Hearing hearing_;
 };
 
 }  // namespace servoctl::session

@@ -1,11 +1,13 @@
 // How a motion ends: the way down to a drive without power that is as it was.
 #include <fmt/format.h>
 #include <cmath>
+#include <exception>
 #include <utility>
 
 #include "drive/standard_objects.hpp"
 #include "session/deaf.hpp"
 #include "session/hurry.hpp"
+#include "session/link_wait.hpp"
 #include "session/motion_guard.hpp"
 #include "session/operation_mode.hpp"
 
@@ -14,27 +16,11 @@ namespace {
 
 using drive::DriveState;
 
-constexpr std::uint16_t kHalted = 0x010F;
-constexpr std::uint16_t kQuickStop = 0x0002;
-constexpr std::uint16_t kDisableVoltage = 0x0000;
-
-/// A ramp of servoctl's own takes half a second.
-constexpr Duration kHaltPatience = std::chrono::seconds(2);
-constexpr Duration kQuickStopPatience = std::chrono::seconds(1);
-/// A drive that obeys has lost a tenth of its speed by then.
-constexpr Duration kMostDelay = std::chrono::milliseconds(250);
-constexpr double kSlower = 0.9;
 constexpr Duration kPause = std::chrono::milliseconds(10);
-constexpr int kTries = 3;
 /// Longest wait for one answer while it is stopped: a drive that is lost is left to its own watchdog soon.
 constexpr Duration kPatience = std::chrono::milliseconds(200);
 
 bool is_lost(const Error& error) { return error.code == Errc::timeout || error.code == Errc::bus; }
-
-bool is_without_power(DriveState state) {
-  return !drive::is_energised(state) && state != DriveState::switched_on &&
-         state != DriveState::ready_to_switch_on;
-}
 
 }  // namespace
 
@@ -50,66 +36,47 @@ void MotionGuard::put_node_back() {
   if (!sent) note("the node could not be put back to pre-operational", sent.error());
 }
 
-Result<bool> MotionGuard::wait_for_standstill(Duration patience) {
-  const auto begin = session_->now();
-  std::optional<double> first;
-  for (;;) {
-    const auto state = power_.state();
-    if (!state) return tl::unexpected<Error>(state.error());
-    if (!drive::is_energised(*state)) return true;
-    const auto answer = session_->upload(node_, objects::kVelocityActual);
-    if (!answer && is_lost(answer.error())) return tl::unexpected<Error>(answer.error());
-    const auto speed = answer ? units_->physical(objects::kVelocityActual, *answer) : std::nullopt;
-    if (speed && std::abs(speed->value) <= standstill_.value_or(0)) return true;
-    if (speed && !first) first = std::abs(speed->value);
-    const bool slower = speed && std::abs(speed->value) < *first * kSlower;
-    if (session_->now() >= begin + (slower ? patience : kMostDelay)) return false;
-    if (const auto paused = pause(*session_, kPause); !paused) return tl::unexpected<Error>(paused.error());
-  }
-}
-
-/// Halt where there is one, targets to zero, and a quick stop when that does not help.
-void MotionGuard::stop() {
-  const auto state = power_.state();
-  if (!state) {
-    lost_ = is_lost(state.error());
-    return;
-  }
-  if (!drive::is_energised(*state)) return;
+/// Halt where there is one, target to zero, a quick stop when that does not help, then 07h and 00h.
+PowerDownPlan MotionGuard::way_down() {
+  PowerDownPlan plan;
+  plan.node = node_;
+  plan.aim = PowerAim::stop_and_disable;
   const auto& rules = units_->profile().rules.motion;
-  const auto mode = read_mode(*session_, node_);
-  const bool by_target = mode && (*mode == rules.velocity || *mode == rules.torque);
-  if (*state == DriveState::operation_enabled) {
-    if (rules.halt) (void)power_.command(kHalted);
-    const auto target = mode && *mode == rules.torque ? objects::kTargetTorque : objects::kTargetVelocity;
-    if (by_target) {
-      const auto size = od::size_of(units_->meaning(target).type).value_or(4);
-      (void)session_->download(node_, target, Bytes(size, 0));
-    }
+  auto& gentle = plan.gentle.emplace();
+  gentle.halt = rules.halt;
+  for (const auto& [mode, target] : {std::pair{rules.velocity, objects::kTargetVelocity},
+                                     std::pair{rules.torque, objects::kTargetTorque}}) {
+    if (!mode) continue;
+    const auto size = od::size_of(units_->meaning(target).type).value_or(4);
+    gentle.targets.emplace_back(static_cast<std::int8_t>(*mode), SdoRequest{node_, target, Bytes(size, 0)});
   }
-  auto stopped = rules.halt || by_target ? wait_for_standstill(kHaltPatience) : Result<bool>(false);
-  if (stopped && !*stopped) {
-    result_.quick_stop = true;
-    (void)power_.command(kQuickStop);
-    stopped = wait_for_standstill(kQuickStopPatience);
-  }
-  result_.stopped = stopped.value_or(false);
-  lost_ = !stopped && is_lost(stopped.error());
+  plan.speed = [this](ByteSpan bytes) -> std::optional<double> {
+    const auto speed = units_->physical(objects::kVelocityActual, bytes);
+    return speed ? std::optional(std::abs(speed->value)) : std::nullopt;
+  };
+  plan.standstill = standstill_.value_or(0);
+  // A drive that cannot be reached is left to its own watchdog.
+  plan.on_silence = [this] { disarm(); };
+  return plan;
 }
 
-/// By "switched on", so that the drive can set its brake; at once where it does not follow.
-bool MotionGuard::take_power_away() {
-  if (!lost_ && result_.stopped && power_.state() == DriveState::operation_enabled)
-    (void)power_.reach(DriveState::switched_on);
-  for (int i = 0; i < kTries; ++i) {
-    const auto state = power_.state();
-    if (state && is_without_power(*state)) return true;
-    const auto written = power_.command(kDisableVoltage);
-    if (written && power_.wait_for(DriveState::switch_on_disabled).value_or(false)) return true;
-    if (!written && written.error().code == Errc::bus) return false;
-  }
-  const auto state = power_.state();
-  return state && !drive::is_energised(*state);
+void MotionGuard::bring_down() {
+  const Hurry hurry(*session_, kPatience, 1);
+  std::vector<PowerDownPlan> plans;
+  plans.push_back(way_down());
+  const auto done = std::move(take_down(*session_, std::move(plans)).front());
+  result_.stopped = done.stopped;
+  result_.quick_stop = done.quick_stop;
+  lost_ = done.silent;
+  powered_ = !done.is_without_power();
+  for (const auto& means : done.notes) result_.notes.push_back(means);
+  if (done.ignored > 0)
+    result_.left.push_back(fmt::format(
+        "it did not obey 0000h, which was written {} times: whatever state it is in now was not commanded",
+        done.ignored));
+  else if (!done.outcome)
+    result_.left.push_back("its power could not be taken away: " + done.outcome.error().message);
+  if (lost_) disarm();
 }
 
 void MotionGuard::note(const std::string& what, const Error& error) {
@@ -133,14 +100,41 @@ void MotionGuard::put_back() {
                       to_string(changed->object), to_hex(changed->before)));
       continue;
     }
-    const auto done = session_->download(node_, changed->object, changed->before);
-    if (!done)
-      note(fmt::format("object {} could not be put back to {}", to_string(changed->object),
-                       to_hex(changed->before)),
-           done.error());
-    lost_ = lost_ || (!done && is_lost(done.error()));
+    put_back(*changed);
   }
   changed_.clear();
+}
+
+/// What the drive acknowledges is read as well: it may not have done it, and another master may use it.
+void MotionGuard::put_back(const Changed& changed) {
+  LinkWait link(*session_,
+                fmt::format("putting object {} of node {} back", to_string(changed.object), node_));
+  auto done = session_->download(node_, changed.object, changed.before);
+  while (!done && done.error().code == Errc::bus && link.comes_back(done.error()))
+    done = session_->download(node_, changed.object, changed.before);
+  const auto what =
+      fmt::format("object {} could not be put back to {}", to_string(changed.object), to_hex(changed.before));
+  if (!done) {
+    lost_ = lost_ || is_lost(done.error());
+    return note(what, done.error());
+  }
+  const auto now_holds = session_->upload(node_, changed.object);
+  if (now_holds && *now_holds == changed.before) return;
+  if (!now_holds && now_holds.error().code == Errc::sdo_abort)
+    return;  // The drive has taken it, and tells no more.
+  if (!now_holds) return note(what + " for certain: it was not read back", now_holds.error());
+  result_.left.push_back(fmt::format("{}: it was written and reads {}; does another master use the drive?",
+                                     what, to_hex(*now_holds)));
+}
+
+void MotionGuard::tell_foreign_writes() {
+  for (const auto object : foreign_)
+    result_.left.push_back(
+        fmt::format("another master wrote object {} meanwhile: what it held before may be lost, and what it "
+                    "holds now is not known "
+                    "to be right",
+                    to_string(object)));
+  foreign_.clear();
 }
 
 void MotionGuard::disarm() {
@@ -157,7 +151,7 @@ void MotionGuard::verify() {
     if (!word) return note("the statusword could not be read", word.error());
     result_.statusword = *word;
     result_.state = drive::decode_state(*word);
-    result_.verified = !drive::is_energised(result_.state);
+    result_.verified = is_without_power(result_.state);
     // A fault reaction takes its time.
     if (result_.verified || session_->now() >= end || !pause(*session_, kPause)) return;
   }
@@ -166,20 +160,12 @@ void MotionGuard::verify() {
 MotionEnd MotionGuard::end() {
   if (end_) return *end_;
   const Deaf deaf(*session_);
-  if (energised_) {
-    const Hurry hurry(*session_, kPatience, 1);
-    stop();
-    // A drive that cannot be reached is left to its own watchdog.
-    if (lost_) disarm();
-    powered_ = !take_power_away();
-    // Some lose it when they leave Operational.
-    if (powered_) put_node_back();
-    if (powered_) powered_ = drive::is_energised(power_.state().value_or(DriveState::operation_enabled));
-  }
+  if (energised_) bring_down();
   put_back();
   put_node_back();
   disarm();
   verify();
+  tell_foreign_writes();
   if (!result_.verified) session_->energised().insert(node_);
   end_ = result_;
   if (session_->options().protect) session_->options().protect(false);

@@ -2,24 +2,18 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <cstdlib>
 
 #include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
-#include "session/deaf.hpp"
 
 namespace servoctl::session {
 namespace {
 
 using drive::DriveState;
 
-constexpr std::uint16_t kQuickStop = 0x0002;
-constexpr std::uint16_t kDisableVoltage = 0x0000;
 constexpr Duration kPause = std::chrono::milliseconds(5);
 /// No way between two states has more steps; a drive that changes its state by itself could make it endless.
 constexpr int kMostSteps = 12;
-/// A motor at rest shows some noise: this part of its greatest speed.
-constexpr std::uint64_t kStandstillPart = 50;
 
 }  // namespace
 
@@ -55,8 +49,18 @@ Result<DriveState> Power::state() {
   const auto word = statusword();
   if (!word) return tl::unexpected<Error>(word.error());
   const auto out = drive::decode_state(*word);
-  if (!drive::is_energised(out)) session_->energised().erase(node_);
+  if (!drive::is_energised(out) && session_->energised().contains(node_) && !says_go())
+    session_->energised().erase(node_);
   return out;
+}
+
+/// Whether the drive would start again by itself, if what keeps its power away (an enable input, STO) went.
+/// One that does not tell may.
+bool Power::says_go() {
+  constexpr std::uint64_t kCommand = 0x8F;
+  constexpr std::uint64_t kEnableOperation = 0x0F;
+  const auto held = session_->upload(node_, objects::kControlword);
+  return !held || (load_le(*held) & kCommand) == kEnableOperation;
 }
 
 Result<void> Power::command(std::uint16_t controlword) {
@@ -143,85 +147,32 @@ Result<void> Power::reach(DriveState goal) {
                           "does another master command it?"));
 }
 
-Result<void> Power::disable() {
-  const Deaf deaf(*session_);
-  const auto is_in_fault = [](DriveState state) {
-    return state == DriveState::fault || state == DriveState::fault_reaction_active;
-  };
-  const auto before = state();
-  if (before && !drive::is_energised(*before) && is_in_fault(*before)) return {};
-  if (before && *before == DriveState::operation_enabled) (void)reach(DriveState::switched_on);
-  if (const auto off = command(kDisableVoltage); !off) return off;
-  const auto reached = state();
-  if (!reached) return tl::unexpected<Error>(reached.error());
-  if (*reached == DriveState::fault) return {};
-  if (*reached != DriveState::fault_reaction_active) return reach(DriveState::switch_on_disabled);
-  const auto ended = wait_for(DriveState::fault);
-  if (!ended) return tl::unexpected<Error>(ended.error());
-  if (*ended) return {};
-  return fail(drive_error(Errc::negative, node_, "still brakes after a fault, and may have its power",
-                          "`status` shows its state"));
-}
+Result<void> Power::disable() { return take_down(PowerAim::disable); }
 
-/// By its speed, whatever unit that has; without one by bit 10 (CiA 402-2: a quick stop has ended at
-/// standstill).
-bool Power::has_stopped(std::optional<std::uint64_t>& fastest) {
-  const auto answer = session_->upload(node_, objects::kVelocityActual);
-  if (!answer || answer->size() > 4 || answer->empty()) return (statusword_ & kTargetReached) != 0;
-  const auto bits = 64 - 8 * static_cast<int>(answer->size());
-  const auto speed = static_cast<std::int64_t>(load_le(*answer) << bits) >> bits;
-  const auto size = static_cast<std::uint64_t>(std::abs(speed));
-  fastest = std::max(fastest.value_or(size), size);
-  return size <= *fastest / kStandstillPart;
-}
+Result<void> Power::quick_stop() { return take_down(PowerAim::stop); }
 
-Result<void> Power::quick_stop() {
-  const Deaf deaf(*session_);
-  const auto before = state();
-  if (!before) return tl::unexpected<Error>(before.error());
-  if (!drive::is_energised(*before)) return {};
-  std::optional<std::uint64_t> fastest;
-  (void)has_stopped(fastest);
-  if (const auto told = command(kQuickStop); !told) return told;
-  const auto end = session_->now() + kQuickStopPatience;
-  std::optional<TimePoint> standing_since;
-  for (;;) {
-    const auto now_in = state();
-    if (!now_in) return tl::unexpected<Error>(now_in.error());
-    if (!drive::is_energised(*now_in)) return {};
-    const bool followed = *now_in == DriveState::quick_stop_active;
-    if (!followed || !has_stopped(fastest))
-      standing_since.reset();
-    else if (!standing_since)
-      standing_since = session_->now();
-    // Most lose their power then by themselves; by 605Ah some stay.
-    if (standing_since && session_->now() - *standing_since >= kPatience) return {};
-    if (session_->now() >= end)
-      return fail(drive_error(
-          Errc::negative, node_,
-          followed ? std::string("is in quick stop active and does not tell that it stands still")
-                   : fmt::format("does not follow the quick stop; it is in {} (statusword 0x{:04X})",
-                                 drive::name(*now_in), statusword_),
-          followed ? "look at the motor; `disable` takes its power away"
-                   : "does another master command it? `disable`, or take the power away"));
-    if (const auto paused = pause(*session_, kPause); !paused) return paused;
-  }
+Result<void> Power::take_down(PowerAim aim) {
+  std::vector<PowerDownPlan> plans(1);
+  plans.front().node = node_;
+  plans.front().aim = aim;
+  const auto done = std::move(session::take_down(*session_, std::move(plans)).front());
+  statusword_ = done.statusword.value_or(statusword_);
+  return done.outcome;
 }
 
 std::vector<std::pair<std::uint8_t, Result<void>>> de_energise(Session& session) {
   std::vector<std::pair<std::uint8_t, Result<void>>> out;
   if (session.energised().empty()) return out;
-  const Deaf deaf(session);
   const auto& protect = session.options().protect;
   if (protect) protect(true);
-  const drive::Profile plain;
-  for (const auto node : std::set(session.energised())) {
-    Power power(session, plain, node);
-    // It may have been disabled by others meanwhile.
-    if (const auto state = power.state(); state && !drive::is_energised(*state)) continue;
-    (void)power.quick_stop();
-    out.emplace_back(node, power.disable());
+  std::vector<PowerDownPlan> plans;
+  for (const auto node : session.energised()) {
+    plans.emplace_back();
+    plans.back().node = node;
+    plans.back().aim = PowerAim::stop_and_disable;
   }
+  const auto done = take_down(session, plans);
+  for (std::size_t i = 0; i < plans.size(); ++i) out.emplace_back(plans[i].node, done[i].outcome);
   if (protect) protect(false);
   return out;
 }

@@ -8,6 +8,7 @@
 #include "drive/power_path.hpp"
 #include "drive/profile.hpp"
 #include "drive/standard_objects.hpp"
+#include "session/power_down.hpp"
 #include "session/session.hpp"
 
 namespace servoctl::session {
@@ -22,10 +23,8 @@ inline constexpr std::uint16_t kInternalLimit = 1U << 11U;
 /// The power state of one drive, read and changed by SDO.
 class Power {
  public:
-  /// Longest wait for one transition; manuals name none, and a brake takes some tenths of a second.
-  static constexpr Duration kPatience = std::chrono::seconds(1);
-  /// Longest wait for the end of a quick stop; its ramp (6085h) is the machine's.
-  static constexpr Duration kQuickStopPatience = std::chrono::seconds(3);
+  /// Longest wait for one transition.
+  static constexpr Duration kPatience = PowerDown::kPatience;
 
   Power(Session& session, const drive::Profile& profile, std::uint8_t node)
       : session_(&session), profile_(&profile), node_(node) {}
@@ -38,13 +37,13 @@ class Power {
   /// it. Errc::refused where there is no way: out of a fault (`fault reset` is asked for separately);
   /// Errc::negative when the drive does not follow, with what its statusword says of the reason.
   Result<void> reach(drive::DriveState goal);
-  /// Takes the power away: by "switched on" where it can, which lets the drive ramp down and set its brake;
-  /// at once where it cannot. A drive in fault has none. Neither this nor quick_stop()
-  /// hears Ctrl-C.
+  /// Takes the power away (PowerAim::disable). Errc::negative when it was not seen to go, or when 0000h could
+  /// not be written. Neither this nor quick_stop() hears Ctrl-C, and both wait for a bus that is lost
+  /// (LinkWait).
   Result<void> disable();
   /// Stops a drive that is energised as fast as it can, and waits until it has no power or stands still in
   /// "quick stop active", where 605Ah lets it stay. Errc::negative when it does not follow, or when
-  /// that it stands still is not seen within kQuickStopPatience.
+  /// that it stands still is not seen within PowerDown::kQuickStopPatience.
   Result<void> quick_stop();
   /// Waits until the drive is in this state; false when it is not after kPatience.
   Result<bool> wait_for(drive::DriveState state);
@@ -54,7 +53,8 @@ class Power {
   bool tells(std::uint16_t bit) const;
 
  private:
-  bool has_stopped(std::optional<std::uint64_t>& fastest);
+  Result<void> take_down(PowerAim aim);
+  bool says_go();
   Result<void> step(drive::DriveState from, const drive::PowerStep& next);
   Error stuck(drive::DriveState from, const drive::PowerStep& next) const;
   bool resumes();
@@ -65,8 +65,8 @@ class Power {
   std::uint16_t statusword_ = 0;  ///< Read last.
 };
 
-/// Stops and disables every drive that was left energised through this session. Does not hear Ctrl-C. The
-/// nodes with what came of it.
+/// Stops and disables every drive that was left energised through this session, all at the same time. Does
+/// not hear Ctrl-C. The nodes with what came of it.
 std::vector<std::pair<std::uint8_t, Result<void>>> de_energise(Session& session);
 
 /// The drive is energised although servoctl has not done it.

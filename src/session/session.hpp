@@ -8,6 +8,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -43,6 +44,8 @@ struct Options {
   /// Told true before a drive is energised and false when it is at rest again: until then a signal must not
   /// end the process at once. May be empty.
   std::function<void(bool energised)> protect;
+  /// Told, a line at a time, what a way out does while the bus is lost; may be empty.
+  std::function<void(std::string_view line)> tell;
   /// Told how many bytes of a long transfer have gone, of how many in all where that is known, on the bus's
   /// clock; may be empty.
   std::function<void(std::size_t done, std::optional<std::size_t> total, TimePoint now)> progress;

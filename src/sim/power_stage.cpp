@@ -23,6 +23,7 @@ void PowerStage::on_controlword(std::uint16_t controlword, std::int64_t quick_st
   const auto command = drive::decode_command(controlword, controlword_);
   controlword_ = controlword;
   was_reset_ = false;
+  if (torque_off_ && command != ControlCommand::fault_reset) return;
   if (command == ControlCommand::fault_reset && !may_reset) return;
   const auto before = state_;
   const bool stopping = state_ == DriveState::quick_stop_active && deadline_ != kNever;
@@ -53,6 +54,14 @@ void PowerStage::disable() {
   if (state_ == DriveState::fault || state_ == DriveState::fault_reaction_active) return;
   state_ = DriveState::switch_on_disabled;
   deadline_ = kNever;
+}
+
+void PowerStage::set_torque_off(bool off) {
+  if (off == torque_off_) return;
+  torque_off_ = off;
+  if (off) return disable();
+  const bool says_go = drive::decode_command(controlword_, controlword_) == ControlCommand::enable_operation;
+  if (says_go && state_ == DriveState::switch_on_disabled) state_ = DriveState::operation_enabled;
 }
 
 void PowerStage::on_time(TimePoint now) {

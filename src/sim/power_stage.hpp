@@ -24,6 +24,9 @@ class PowerStage {
   bool reset_fault();
   /// De-energises at once, whatever the state; a fault stays.
   void disable();
+  /// The enable input (STO) takes the power away, whatever is commanded. When it is given back, a controlword
+  /// that still says "enable operation" energises again: what some drives do.
+  void set_torque_off(bool off);
   void on_time(TimePoint now);
   TimePoint deadline() const { return deadline_; }
 
@@ -38,6 +41,7 @@ class PowerStage {
   std::uint16_t controlword_ = 0;
   bool stays_enabled_ = false;
   bool was_reset_ = false;
+  bool torque_off_ = false;
   TimePoint deadline_ = kNever;
 };
 

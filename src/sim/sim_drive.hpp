@@ -23,11 +23,16 @@ namespace servoctl::sim {
 
 /// Ways in which a simulated drive misbehaves; all off at first.
 struct Misbehaviour {
-  bool silent = false;                  ///< Says nothing and hears nothing: the cable is out.
-  std::uint32_t drop_answers = 0;       ///< So many SDO answers are lost on the way.
-  std::uint32_t duplicate_answers = 0;  ///< So many SDO answers arrive twice.
-  Duration answer_delay{};              ///< Every SDO answer comes this late.
-  std::set<std::uint16_t> missing;      ///< Objects that its EDS tells of and it does not have.
+  bool silent = false;                           ///< Says nothing and hears nothing: the cable is out.
+  std::uint32_t drop_answers = 0;                ///< So many SDO answers are lost on the way.
+  std::uint32_t duplicate_answers = 0;           ///< So many SDO answers arrive twice.
+  Duration answer_delay{};                       ///< Every SDO answer comes this late.
+  std::set<std::uint16_t> missing;               ///< Objects that its EDS tells of and it does not have.
+  std::set<std::uint16_t> feigned;               ///< Objects whose writes it acknowledges and does not do.
+  std::set<std::uint16_t> refused;               ///< Objects whose writes it refuses.
+  bool ignores_disable = false;                  ///< Takes 00h, 02h and 07h, and stays energised.
+  bool stays_switched_on = false;                ///< Takes 00h, and goes no lower than "switched on".
+  std::optional<std::uint16_t> statusword = {};  ///< What it says, whatever state it is in.
 };
 
 /// A drive of a family, made from its profile: object dictionary behind an SDO server, NMT slave, boot-up,
@@ -57,6 +62,8 @@ class SimDrive final : public Device, private canopen::ObjectStore {
   void raise_fault_at(Alarm alarm, TimePoint time) { planned_fault_ = {alarm, time}; }
   void fall_silent_at(TimePoint time) { planned_silence_ = time; }
   Misbehaviour& misbehaviour() { return misbehaviour_; }
+  /// The enable input, or STO: no power while it is off.
+  void set_torque_off(bool off) { power_.set_torque_off(off); }
   AxisFaults& axis_faults() { return axis_.faults(); }
   Track& track() { return axis_.track(); }
 
@@ -84,6 +91,7 @@ class SimDrive final : public Device, private canopen::ObjectStore {
   std::uint32_t write(ObjectAddress object, ByteSpan data) override;
   std::uint32_t check_state(ObjectAddress object, ByteSpan data) const;
   void after_write(ObjectAddress object, ByteSpan data);
+  bool feigns(std::uint16_t controlword);
   std::uint32_t write_command(ObjectAddress object, ByteSpan data, bool& handled);
   std::uint32_t save_objects();
 

@@ -15,6 +15,10 @@ std::uint32_t SimDrive::read(ObjectAddress object, Bytes& out) {
   if (misbehaviour_.missing.contains(object.index)) return abort::kNoObject;
   if (const auto code = values_.check_read(object); code != 0) return code;
   move_axis();
+  if (object == objects::kStatusword && misbehaviour_.statusword) {
+    out = store_le(*misbehaviour_.statusword, 2);
+    return 0;
+  }
   if (object == objects::kStatusword) {
     const auto word = power_.statusword(static_cast<std::int8_t>(values_.number(objects::kModeDisplay)));
     out = store_le(static_cast<std::uint16_t>(word | axis_.bits(is_enabled())), 2);
@@ -61,6 +65,8 @@ bool SimDrive::is_locked(ObjectAddress object) const {
 
 std::uint32_t SimDrive::write(ObjectAddress object, ByteSpan data) {
   if (misbehaviour_.missing.contains(object.index)) return abort::kNoObject;
+  if (misbehaviour_.refused.contains(object.index)) return abort::kDeviceState;
+  if (misbehaviour_.feigned.contains(object.index)) return 0;
   if (object == objects::kErrorHistory && data.size() == 1 && data[0] != 0) return abort::kRange;
   auto code = values_.check_write(object, data, node_);
   if (code == 0) code = check_state(object, data);
@@ -109,6 +115,19 @@ bool SimDrive::is_kept(ObjectAddress object) const {
          static_cast<std::int64_t>(values_.number(flash->address)) == *rules.to_flash;
 }
 
+/// Whether a controlword is taken and not obeyed.
+bool SimDrive::feigns(std::uint16_t controlword) {
+  const auto command = drive::decode_command(controlword, controlword);
+  const bool down = command == drive::ControlCommand::disable_voltage ||
+                    command == drive::ControlCommand::quick_stop ||
+                    command == drive::ControlCommand::switch_on;
+  if (misbehaviour_.ignores_disable && down && is_enabled()) return true;
+  if (!misbehaviour_.stays_switched_on || command != drive::ControlCommand::disable_voltage) return false;
+  constexpr std::uint16_t kSwitchOn = 0x07;
+  power_.on_controlword(kSwitchOn, 0, false, now_);
+  return true;
+}
+
 void SimDrive::after_write(ObjectAddress object, ByteSpan data) {
   if (is_kept(object)) {
     memory_->cells(key_)[object] = Bytes(data.begin(), data.end());
@@ -125,7 +144,7 @@ void SimDrive::after_write(ObjectAddress object, ByteSpan data) {
   if (object.index == objects::kConsumerHeartbeatIndex && object.sub > 0)
     consumer_.set(object.sub, static_cast<std::uint32_t>(values_.number(object)));
   if (object == objects::kModeOfOperation) values_.set(objects::kModeDisplay, data);
-  if (object == objects::kControlword) {
+  if (object == objects::kControlword && !feigns(static_cast<std::uint16_t>(load_le(data)))) {
     power_.on_controlword(static_cast<std::uint16_t>(load_le(data)),
                           static_cast<std::int64_t>(values_.number(objects::kQuickStopOption)), may_reset(),
                           now_);

@@ -12,6 +12,7 @@
 #include "session/motion_kinds.hpp"
 #include "sim/cell.hpp"
 #include "tests/source_dir.hpp"
+#include "troubled_bus.hpp"
 
 namespace servoctl::session {
 
@@ -26,6 +27,8 @@ class MotionBus final : public can::Bus {
   TimePoint now() const override { return bus.now(); }
   Result<void> send(const can::Frame& frame) override {
     ++sent;
+    if (outage.covers(now())) return fail(Errc::bus, "vcan0 went down");
+    if (on_sent) on_sent(frame);
     if (sent > lost_after) return fail(Errc::bus, "vcan0 went down");
     frames.push_back(can::to_string(frame));
     if (frame.id == 0x77F) last_heartbeat = now();
@@ -38,12 +41,19 @@ class MotionBus final : public can::Bus {
       injected.pop_front();
       return first;
     }
+    if (outage.covers(now())) return fail(Errc::bus, "vcan0 went down");
     auto frame = bus.receive(deadline);
     if (frame && *frame && alter) alter(**frame);
     return frame;
   }
   TimePoint next_event() const override { return bus.next_event(); }
+  Result<void> recover(TimePoint deadline) override {
+    if (sent > lost_after) return fail(Errc::bus, "vcan0 is down");
+    return outage.pass(bus, deadline);
+  }
 
+  Outage outage;
+  std::function<void(const can::Frame&)> on_sent;
   sim::SimBus bus{sim::SimBus::Clock::virtual_time};
   sim::Cell cell;
   std::vector<std::string> frames;

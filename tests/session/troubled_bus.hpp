@@ -25,6 +25,23 @@ struct Trouble {
   int kill_at = -1;  ///< The process ends: an exception, and nothing is sent or heard after it.
 };
 
+/// The interface is down for a time: what is sent or received fails, and the drives go on without it.
+struct Outage {
+  TimePoint from = kNever;
+  TimePoint to = kNever;
+
+  bool covers(TimePoint now) const { return now >= from && now < to; }
+  /// As Bus::recover(): lets the time pass on the bus behind it.
+  Result<void> pass(sim::SimBus& bus, TimePoint deadline) const {
+    const auto end = std::min(deadline, to);
+    while (bus.now() < end) (void)bus.receive(end);
+    while (*bus.receive(bus.now())) {
+    }
+    if (covers(bus.now())) return fail(Errc::bus, "vcan0 is down");
+    return {};
+  }
+};
+
 /// What a TroubledBus throws where the process is to end.
 struct Killed {};
 

@@ -1,0 +1,52 @@
+#include "session/link_wait.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "base/duration.hpp"
+
+namespace servoctl::session {
+namespace {
+
+/// Between two lines about a bus that stays lost.
+constexpr Duration kTelling = std::chrono::seconds(1);
+/// A bus that is back so soon was perhaps never lost: its queue stays full, or it fails otherwise.
+constexpr Duration kFlicker = std::chrono::milliseconds(10);
+/// A bus that is there and fails is not asked faster than this.
+constexpr Duration kPause = std::chrono::milliseconds(5);
+
+std::string tenths(Duration time) {
+  return fmt::format("{:.2g} s", std::chrono::duration<double>(time).count());
+}
+
+}  // namespace
+
+void LinkWait::tell(const std::string& line) const {
+  if (session_->options().tell) session_->options().tell(line);
+}
+
+bool LinkWait::comes_back(const Error& lost) {
+  const auto since = session_->now();
+  if (!first_) first_ = since;
+  if (since - *first_ >= (only_failing_ ? kPatience : kMost)) return false;
+  tell(fmt::format("{}: {} is tried again for {}", lost.message, doing_, servoctl::to_string(kPatience)));
+  const auto end = since + kPatience;
+  for (;;) {
+    const auto asked = session_->now();
+    const auto back = session_->bus().recover(std::min(asked + kTelling, end));
+    const auto time = session_->now();
+    if (back) {
+      only_failing_ = only_failing_ && time - since < kFlicker;
+      tell(fmt::format("{} is back after {}: {} now", session_->url(), tenths(time - since), doing_));
+      return true;
+    }
+    if (time >= end || time < asked + kPause) {
+      tell(fmt::format("{} did not come back: {}", session_->url(), back.error().message));
+      return false;
+    }
+    tell(fmt::format("{} is still lost after {}: {} goes on being tried", session_->url(),
+                     tenths(time - since), doing_));
+  }
+}
+
+}  // namespace servoctl::session
