@@ -1,0 +1,55 @@
+#!/usr/bin/env bash
+# The link of a motion goes down and comes back: the drive, behind another controller, is stopped as soon as it does.
+# Runs inside with-vcan.sh, with can0 and can1 on one bus. usage: link_test.sh SERVOCTL
+set -u
+servoctl=$1
+work=$(mktemp -d)
+sim=
+trap 'kill $sim 2>/dev/null; rm -rf "$work"' EXIT
+failures=0
+checks=0
+
+[ "${VCAN_GUEST:-}" = uml ] || { echo "skipped: there is no can0 and can1"; exit 0; }
+fail() { failures=$((failures + 1)); printf 'FAILED %s\n' "$*"; }
+state() { "$servoctl" status -n 1 --bus can1 -d "$1" --json | jq -r '.result[0] | "\(.energised) \(.state)"'; }
+until_state() {  # until_state FAMILY PATTERN
+  for _ in $(seq 200); do case $(state "$1" 2>/dev/null) in $2) return 0 ;; esac; sleep 0.05; done
+  return 1
+}
+
+# break_link HOW: what happens to can0 while the motor turns; it is back afterwards.
+break_link() {
+  case $1 in
+    moment) ip link set can0 down; sleep 0.02; ip link set can0 up ;;
+    seconds) ip link set can0 down; sleep 3; ip link set can0 up ;;
+    bus-off) printf 'sb000256\r' >/dev/can0.inject; sleep 1; ip link set can0 down; ip link set can0 up ;;
+  esac
+}
+
+for family in da200 sv2 gsd600 dm ts; do
+  turn=
+  case $family in gsd600 | sv2) turn=131072 ;; da200 | ts) turn=10000 ;; esac
+  "$servoctl" sim "$family@1" --bus can1 >"$work/sim" 2>&1 &
+  sim=$!
+  until_state "$family" '*' || fail "$family: the drive does not answer: $(cat "$work/sim")"
+  for how in moment seconds bus-off; do
+    checks=$((checks + 1))
+    "$servoctl" jog 60rpm --for 30s ${turn:+--turn $turn} -n 1 -d "$family" --bus can0 --yes >"$work/out" 2>"$work/err" &
+    client=$!
+    until_state "$family" 'true*' || fail "$family: the drive is not energised: $(cat "$work/err")"
+    break_link "$how"
+    wait "$client"
+    code=$?
+    after=$(state "$family")
+    case $after in false*) ;; *) fail "$family, $how: the drive is '$after'"; cat "$work/err" ;; esac
+    [ "$code" -ne 0 ] || fail "$family, $how: the exit code is 0"
+    grep -q 'stopping node 1 is tried again' "$work/err" || fail "$family, $how: it does not say that it goes on: $(cat "$work/err")"
+    grep -q 'can0 is back after' "$work/err" || fail "$family, $how: it does not say that the link is back"
+    # A drive whose watchdog has tripped meanwhile starts anew.
+    case $after in *fault*) "$servoctl" nmt reset -n 1 --bus can1 --wait --yes >/dev/null ;; esac
+  done
+  kill "$sim"; wait "$sim" 2>/dev/null
+done
+
+printf '%d checks, %d failed\n' "$checks" "$failures"
+[ "$failures" -eq 0 ]
