@@ -3,9 +3,12 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include <chrono>
-#include <ctime>
+#include <optional>
+#include <span>
 #include <system_error>
+
+#include "base/signal_wait.hpp"
+#include "base/timespec.hpp"
 
 namespace servoctl::can {
 
@@ -13,17 +16,31 @@ Descriptor::~Descriptor() {
   if (fd_ >= 0) ::close(fd_);
 }
 
-Wake wait_for(int fd, short events, TimePoint deadline) {
+namespace {
+
+Duration left_until(TimePoint deadline) {
   const auto start = steady_now();
-  const auto left = deadline > start ? deadline - start : Duration::zero();
-  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(left);
-  timespec limit{};
-  limit.tv_sec = static_cast<std::time_t>(seconds.count());
-  limit.tv_nsec = static_cast<long>(std::chrono::nanoseconds(left - seconds).count());
-  pollfd entry{fd, events, 0};
-  const int count = ::ppoll(&entry, 1, deadline == kNever ? nullptr : &limit, nullptr);
+  return deadline > start ? deadline - start : Duration::zero();
+}
+
+Wake wake(int count) {
   if (count > 0) return Wake::ready;
   return count == 0 ? Wake::elapsed : Wake::interrupted;
+}
+
+}  // namespace
+
+Wake wait_for(int fd, short events, TimePoint deadline) {
+  pollfd entry{fd, events, 0};
+  if (deadline == kNever) return wake(::ppoll(&entry, 1, nullptr, nullptr));
+  const auto limit = to_timespec(left_until(deadline));
+  return wake(::ppoll(&entry, 1, &limit, nullptr));
+}
+
+Wake wait_or_signal(int fd, short events, TimePoint deadline) {
+  pollfd entry{fd, events, 0};
+  const auto longest = deadline == kNever ? std::nullopt : std::optional(left_until(deadline));
+  return wake(servoctl::wait_or_signal(std::span(&entry, 1), longest));
 }
 
 void nap(Duration time) { wait_for(-1, 0, steady_now() + time); }

@@ -167,7 +167,7 @@ Result<std::optional<Frame>> LocalBus::receive(TimePoint deadline) {
   for (;;) {
     const auto frame = take();
     if (frame || now() >= deadline) return frame;
-    if (wait_for(socket_.get(), POLLIN, deadline) == Wake::interrupted) return frame;
+    if (wait_or_signal(socket_.get(), POLLIN, deadline) == Wake::interrupted) return frame;
   }
 }
 

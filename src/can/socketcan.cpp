@@ -125,12 +125,13 @@ Result<void> SocketCanBus::send(const Frame& frame) {
 
 Result<std::optional<Frame>> SocketCanBus::receive(TimePoint deadline) {
   if (inbox_.empty() && delay_ > Duration::zero()) {
-    wait_for(-1, 0, std::min(deadline, now() + delay_));
+    const auto woken = wait_or_signal(-1, 0, std::min(deadline, now() + delay_));
     drain();  // Most likely there is something: no need to ask first.
+    if (woken == Wake::interrupted && inbox_.empty() && !failed_) return std::optional<Frame>();
   }
   while (inbox_.empty()) {
     if (failed_) return tl::unexpected<Error>(*std::exchange(failed_, std::nullopt));
-    if (wait_for(socket_.get(), POLLIN, deadline) != Wake::ready) return std::optional<Frame>();
+    if (wait_or_signal(socket_.get(), POLLIN, deadline) != Wake::ready) return std::optional<Frame>();
     drain();
   }
   if (inbox_.size() >= kBatch && given_ >= kBatch) drain();

@@ -5,8 +5,6 @@
 namespace servoctl::session {
 namespace {
 
-constexpr Duration kCancelSlice = std::chrono::milliseconds(250);
-
 /// Sends what the drives have to say, to the bus and to each other.
 Result<void> flush(can::Bus& bus, sim::Cell& cell) {
   for (bool any = true; any;) {
@@ -29,7 +27,7 @@ Result<void> serve(Session& session, sim::Cell& cell) {
   auto& bus = session.bus();
   const auto& cancelled = session.options().cancelled;
   for (;;) {
-    TimePoint next = bus.now() + kCancelSlice;
+    TimePoint next = bus.now() + std::chrono::hours(1);
     for (const auto& drive : cell.drives) {
       if (drive->deadline() <= bus.now()) drive->on_time(bus.now());
       next = std::min(next, drive->deadline());

@@ -1,9 +1,8 @@
 #include "sim/sim_bus.hpp"
 
-#include <poll.h>
-
 #include <algorithm>
-#include <ctime>
+
+#include "base/signal_wait.hpp"
 
 namespace servoctl::sim {
 namespace {
@@ -62,12 +61,7 @@ bool SimBus::wait_until(TimePoint time) {
   }
   const auto left = time - steady_now();
   if (left <= Duration::zero()) return true;
-  const auto capped = std::min<Duration>(left, std::chrono::hours(1));
-  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(capped);
-  timespec wait{};
-  wait.tv_sec = seconds.count();
-  wait.tv_nsec = std::chrono::nanoseconds(capped - seconds).count();
-  return ::ppoll(nullptr, 0, &wait, nullptr) == 0;
+  return wait_or_signal({}, std::min<Duration>(left, std::chrono::hours(1))) == 0;
 }
 
 Result<std::optional<can::Frame>> SimBus::receive(TimePoint deadline) {

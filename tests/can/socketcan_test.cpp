@@ -16,6 +16,8 @@
 #include <string>
 #include <vector>
 
+#include "base/signal_wait.hpp"
+
 namespace servoctl::can {
 namespace {
 
@@ -197,7 +199,7 @@ TEST_F(SocketCan, WaitsUntilTheDeadlineAndNotMuchLonger) {
 
 TEST_F(SocketCan, ReturnsEarlyWithNothingWhenASignalArrives) {
   struct sigaction handler {};
-  handler.sa_handler = [](int) {};
+  handler.sa_handler = [](int) { note_signal(); };
   struct sigaction before {};
   ASSERT_EQ(::sigaction(SIGALRM, &handler, &before), 0);
   const itimerval every_millisecond{{0, 1000}, {0, 1000}};
