@@ -1,6 +1,8 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "base/result.hpp"
 #include "base/time.hpp"
@@ -44,6 +46,9 @@ class Bus {
   /// A descriptor that becomes readable when receive() has something to give, for use in a poll loop; -1 if
   /// none.
   virtual int poll_fd() const { return -1; }
+
+  /// What people should know of the bus beside its frames, since the last call.
+  virtual std::vector<std::string> take_notices() { return {}; }
 
   /// When the bus wants receive() called although its descriptor is not readable: something is due or kept
   /// inside; kNever when there is nothing such.

@@ -1,6 +1,7 @@
 #include "can/trace.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <fmt/format.h>
@@ -20,6 +21,10 @@ using std::chrono::microseconds;
 
 constexpr Duration kFlushAfter = std::chrono::milliseconds(100);
 constexpr std::size_t kFlushBytes = std::size_t{64} << 10U;
+/// What is kept for a reader who does not read.
+constexpr std::size_t kMostBytes = std::size_t{1} << 20U;
+/// How long he is waited for at the end, as often as he takes something.
+constexpr Duration kLastPatience = std::chrono::milliseconds(500);
 
 /// The words of a line, at most one more than it may have; without a heap, as millions of lines are read.
 struct Words {
@@ -77,7 +82,7 @@ TraceBus::TraceBus(std::unique_ptr<Bus> inner, Descriptor file, std::string file
       interface_name_(std::move(interface_name)),
       clock_offset_(clock_offset) {}
 
-TraceBus::~TraceBus() { flush(); }
+TraceBus::~TraceBus() { flush_to_slow_reader(); }
 
 Result<void> TraceBus::send(const Frame& frame) {
   auto result = inner_->send(frame);
@@ -105,6 +110,10 @@ TimePoint TraceBus::next_event() const { return std::min(inner_->next_event(), f
 
 void TraceBus::record(const Frame& frame, TimePoint time) {
   if (!file_) return;
+  if (buffer_.size() >= kMostBytes) {
+    ++left_out_;
+    return flush_when_due();
+  }
   if (buffer_.empty()) oldest_ = now();
   buffer_ += to_string(LogFrame{time.time_since_epoch() + clock_offset_, interface_name_, frame});
   buffer_ += '\n';
@@ -114,37 +123,74 @@ void TraceBus::record(const Frame& frame, TimePoint time) {
 TimePoint TraceBus::flush_due() const { return buffer_.empty() ? kNever : oldest_ + kFlushAfter; }
 
 void TraceBus::flush_when_due() {
-  if (buffer_.size() >= kFlushBytes || now() >= flush_due()) flush();
+  if ((buffer_.size() >= kFlushBytes && !stalled_) || now() >= flush_due()) flush();
 }
 
 void TraceBus::flush() {
   std::string_view rest = buffer_;
-  while (!rest.empty()) {
+  stalled_ = false;
+  while (!rest.empty() && !stalled_) {
     const auto wrote = ::write(file_.get(), rest.data(), rest.size());
     if (wrote >= 0) {
       rest.remove_prefix(static_cast<std::size_t>(wrote));
+    } else if (errno == EAGAIN) {
+      stalled_ = true;
+      oldest_ = now();  // Asked again when that is due.
     } else if (errno != EINTR) {
       failure_ =
           fail(Errc::file, fmt::format("cannot write the trace {}: {}", file_name_, system_text(errno)),
                "the trace ends here; the bus goes on without it")
               .value();
       file_ = Descriptor();
-      break;
+      rest = {};
     }
   }
-  buffer_.clear();
+  buffer_.erase(0, buffer_.size() - rest.size());
 }
+
+/// What is left then is lost, because nobody read it.
+void TraceBus::flush_to_slow_reader() {
+  flush();
+  for (auto before = buffer_.size() + 1; stalled_ && buffer_.size() < before;) {
+    before = buffer_.size();
+    if (wait_or_signal(file_.get(), POLLOUT, steady_now() + kLastPatience) != Wake::ready) return;
+    flush();
+  }
+}
+
+std::vector<std::string> TraceBus::take_notices() {
+  auto out = inner_->take_notices();
+  if (const auto count = std::exchange(left_out_, 0); count > 0)
+    out.push_back(
+        fmt::format("{} frames are missing in the trace {}: nobody read it in time", count, file_name_));
+  return out;
+}
+
+namespace {
+
+/// Never waits for a reader: neither here nor when it is written.
+Result<Descriptor> open_trace(const std::filesystem::path& file) {
+  constexpr int kFlags = O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK | O_NOCTTY;
+  Descriptor log(::open(file.c_str(), kFlags, 0644));
+  if (log) return log;
+  if (errno == ENXIO)
+    return fail(Errc::file,
+                fmt::format("cannot write the trace {}: nobody reads this pipe or socket", file.string()),
+                "start what reads it first, such as `cat` on the pipe");
+  return fail(Errc::file, fmt::format("cannot write the trace {}: {}", file.string(), system_text(errno)),
+              "choose a folder that exists and that you may write to");
+}
+
+}  // namespace
 
 Result<std::unique_ptr<Bus>> trace_to(std::unique_ptr<Bus> inner, const std::filesystem::path& file,
                                       std::string_view interface_name, TraceClock clock) {
-  Descriptor log(::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
-  if (!log)
-    return fail(Errc::file, fmt::format("cannot write the trace {}: {}", file.string(), system_text(errno)),
-                "choose a folder that exists and that you may write to");
+  auto log = open_trace(file);
+  if (!log) return tl::unexpected<Error>(log.error());
   // Taken once, so that a step of the system clock does not tear the trace apart.
   const auto wall = std::chrono::duration_cast<Duration>(std::chrono::system_clock::now().time_since_epoch());
   const auto offset = clock == TraceClock::wall ? wall - inner->now().time_since_epoch() : Duration::zero();
-  return std::make_unique<TraceBus>(std::move(inner), std::move(log), file.string(),
+  return std::make_unique<TraceBus>(std::move(inner), std::move(*log), file.string(),
                                     std::string(interface_name), offset);
 }
 

@@ -24,7 +24,9 @@ enum class TraceClock {
 /// A bus that passes everything on to `inner` and writes every frame, sent and received, to `file` in the
 /// form of `candump -L`, which canplayer and log2asc read: `(1736412345.123456) can0 601#4041600000000000`.
 /// An existing file is replaced. A frame reaches the file at most 100 ms late while the bus is in use, as
-/// next_event() asks for. Errc::file when the file cannot be made. When it cannot be written later on, the
+/// next_event() asks for. A pipe or terminal that nobody reads is not waited for: a megabyte is kept for it,
+/// frames beyond that are left out and counted in take_notices(). Errc::file when the file cannot be made, or
+/// is a named pipe that nobody has opened for reading. When it cannot be written later on, the
 /// next receive() says so, once, and the bus goes on without a trace.
 Result<std::unique_ptr<Bus>> trace_to(std::unique_ptr<Bus> inner, const std::filesystem::path& file,
                                       std::string_view interface_name, TraceClock clock = TraceClock::wall);
@@ -59,10 +61,12 @@ class TraceBus final : public Bus {
   void gather(Duration delay) override { inner_->gather(delay); }
   int poll_fd() const override { return inner_->poll_fd(); }
   TimePoint next_event() const override;
+  std::vector<std::string> take_notices() override;
 
  private:
   void record(const Frame& frame, TimePoint time);
   void flush();
+  void flush_to_slow_reader();
   void flush_when_due();
   TimePoint flush_due() const;
 
@@ -72,7 +76,9 @@ class TraceBus final : public Bus {
   std::string interface_name_;
   Duration clock_offset_;  ///< From the bus's clock to the times in the file.
   std::string buffer_;
-  TimePoint oldest_{};  ///< When the first line in the buffer was put there.
+  TimePoint oldest_{};    ///< When the first line in the buffer was put there.
+  bool stalled_ = false;  ///< The reader had no room when it was asked last.
+  std::size_t left_out_ = 0;
   std::optional<Error> failure_;
 };
 

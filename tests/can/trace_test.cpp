@@ -1,12 +1,15 @@
 #include "can/trace.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <memory>
@@ -206,6 +209,69 @@ TEST_F(Trace, ThatCannotBeWrittenSaysSoOnceAndLeavesTheBusUsable) {
   EXPECT_TRUE(bus->send(frame_of("080#")));
   EXPECT_TRUE(bus->receive(kStart + milliseconds(900)));
   EXPECT_TRUE(bus->receive(kStart + milliseconds(900)));
+}
+
+/// A named pipe in place of the file, and who has it open for reading.
+class TracePipe : public Trace {
+ protected:
+  TracePipe() {
+    std::filesystem::remove(file_);
+    EXPECT_EQ(::mkfifo(file_.c_str(), 0600), 0);
+    ::alarm(20);  // Whoever waits after all is ended.
+  }
+  ~TracePipe() override {
+    ::alarm(0);
+    if (reader >= 0) ::close(reader);
+  }
+  void open_reader() {
+    reader = ::open(file_.c_str(), O_RDONLY | O_NONBLOCK);
+    ASSERT_GE(::fcntl(reader, F_SETPIPE_SZ, 4096), 0);
+  }
+  std::size_t read_lines() const {
+    std::size_t lines = 0;
+    std::array<char, 4096> piece{};
+    for (auto got = ::read(reader, piece.data(), piece.size()); got > 0;
+         got = ::read(reader, piece.data(), piece.size()))
+      lines += static_cast<std::size_t>(std::count(piece.begin(), piece.begin() + got, '\n'));
+    return lines;
+  }
+  int reader = -1;
+};
+
+TEST_F(TracePipe, ThatNobodyHasOpenedIsRefusedAtOnce) {
+  const auto bus = trace_to(std::make_unique<ScriptedBus>(kStart), file_, "can0");
+  ASSERT_FALSE(bus);
+  EXPECT_EQ(bus.error().code, Errc::file);
+  EXPECT_NE(bus.error().message.find("nobody reads"), std::string::npos) << bus.error().message;
+}
+
+TEST_F(TracePipe, ThatNobodyReadsHoldsNothingUpAndCountsWhatIsMissing) {
+  open_reader();
+  auto bus = trace(kStart);
+  constexpr std::size_t kFrames = 50'000;
+  for (std::size_t i = 0; i < kFrames; ++i) ASSERT_TRUE(bus->send(frame_of("080#")));
+  ASSERT_TRUE(bus->receive(kStart + seconds(1)));
+  EXPECT_GT(bus->next_event(), bus->now()) << "it is asked again later, not over and over";
+  const auto told = bus->take_notices();
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_NE(told.front().find("frames are missing in the trace"), std::string::npos) << told.front();
+  EXPECT_TRUE(bus->take_notices().empty());
+  const auto missing = std::stoul(told.front());
+  auto lines = read_lines();
+  for (auto time = kStart + seconds(2); time < kStart + seconds(100); time += milliseconds(150)) {
+    ASSERT_TRUE(bus->receive(time));
+    lines += read_lines();
+  }
+  EXPECT_EQ(lines + missing, kFrames) << "whole lines only";
+}
+
+TEST_F(TracePipe, IsNotWaitedForAtTheEnd) {
+  open_reader();
+  auto bus = trace(kStart);
+  for (int i = 0; i < 1'000; ++i) ASSERT_TRUE(bus->send(frame_of("080#")));
+  const auto begin = std::chrono::steady_clock::now();
+  bus.reset();
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, seconds(5));
 }
 
 TEST_F(Trace, IsRefusedWhenTheFileCannotBeMade) {
