@@ -252,6 +252,8 @@ Result<Value> write_changes(Context& context, std::span<const Change> changes, c
     requests.push_back({change.node, change.target.address, change.data, change.transfer});
   KeepingNodes keeping(context, changes);
   if (const auto opened = keeping.open(options); !opened) return tl::unexpected<Error>(opened.error());
+  const bool energises = std::any_of(changes.begin(), changes.end(), enables);
+  const auto hold = context.session->protect(energises ? session::Care::energised : session::Care::none);
   const auto written = session::write_all(*context.session, requests, options.read_back || options.keep);
   keeping.close(written);
   for (const auto& change : changes)

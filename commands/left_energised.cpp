@@ -22,7 +22,7 @@ std::string power_warning(std::uint8_t node, std::string_view why) {
 
 void tell_left_energised(Context& context) {
   const drive::Profile plain;
-  for (const auto node : std::set(context.session->energised())) {
+  for (const auto node : std::set(context.session->energised().nodes())) {
     session::Power power(*context.session, plain, node);
     const auto state = power.state();
     if (state && drive::is_energised(*state))

@@ -157,12 +157,27 @@ class Log {
   report::List events_;
 };
 
+/// Guarding is asked, and a drive that was guarded once may take its end for an error.
+report::Table guarding_frames(std::span<const std::uint8_t> nodes) {
+  report::Table table;
+  table.columns = {{"node"}, {"frame"}};
+  for (const auto node : nodes) {
+    canopen::NodeGuard guard;
+    guard.start(node, {}, TimePoint{});
+    guard.on_time(TimePoint{});
+    const auto frame = guard.take_frame();
+    table.rows.push_back({node, frame ? can::to_string(*frame) : std::string()});
+  }
+  return table;
+}
+
 Result<Value> run(Context& context, const Arguments& arguments) {
   const auto plan = plan_of(arguments);
   if (!plan) return tl::unexpected<Error>(plan.error());
   const auto nodes = nodes_of(context);
   if (!nodes) return tl::unexpected<Error>(nodes.error());
   auto& session = *context.session;
+  if (plan->guard_time && context.dry_run) return Value(guarding_frames(*nodes));
   if (plan->guard_time) {
     for (const auto node : *nodes) session.guard(node, {*plan->guard_time, plan->life_factor});
   } else {
@@ -191,12 +206,15 @@ const Command kNmtWatch{
         "the end "
         "(--for, or Ctrl-C) what became of each node. A lost node is one that was silent for three of its "
         "heartbeat "
-        "periods, or with --guard did not answer in its life time. Exit code 1 when a node was lost, never "
+        "periods, or with --guard did not answer in its life time. Guarding sends frames that start a "
+        "drive's "
+        "own watch over its master: --read-only refuses it. Exit code 1 when a node was lost, never "
         "heard, or "
         "sends no heartbeat. Do not guard nodes that send heartbeats: CiA 301 allows one of the two.",
     .parameters = kParameters,
     .needs = Needs::node,
-    .effect = Effect::reads,
+    .effect = Effect::writes,
+    .reads_without = "--guard",
     .run = run,
 };
 

@@ -59,23 +59,6 @@ report::Table kinds_table(const FrameKinds& kinds) {
   return out;
 }
 
-/// While it lives a second Ctrl-C does not end the process: what may be energised is stopped first.
-class Protection {
- public:
-  Protection(session::Session& session, bool needed) : protect_(session.options().protect) {
-    if (!needed) protect_ = {};
-    if (protect_) protect_(true);
-  }
-  Protection(const Protection&) = delete;
-  Protection& operator=(const Protection&) = delete;
-  ~Protection() {
-    if (protect_) protect_(false);
-  }
-
- private:
-  std::function<void(bool)> protect_;
-};
-
 std::string failure_text(const Context& context, const ReplayFailure& failure) {
   const auto label = drive::target_at(context.profile, failure.object).label();
   return fmt::format("{} {}{} of node {} {}", failure.write ? "write of" : "read of",
@@ -141,7 +124,7 @@ void remember_energised(Context& context, const ReplayPlan& plan, const ReplayDr
 Result<void> send(Context& context, const ReplayPlan& plan, const ReplayDrives& drives, double speed,
                   report::Record& answer) {
   auto& session = *context.session;
-  const Protection protection(session, !plan.moving.empty());
+  const auto hold = session.protect(plan.moving.empty() ? session::Care::none : session::Care::guarded);
   remember_energised(context, plan, drives);
   ReplayRun replay(session);
   const auto done = replay.run(plan.frames, speed);

@@ -22,6 +22,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   context.emit(
       {{"bus", context.session->url()}, {"nodes", std::move(nodes)}},
       fmt::format("{} drive{} on {}; Ctrl-C ends it", count, count == 1 ? "" : "s", context.session->url()));
+  if (context.dry_run) return report::Value();
   if (const auto served = session::serve(*context.session, *cell); !served)
     return tl::unexpected<Error>(served.error());
   return report::Value();

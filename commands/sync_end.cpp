@@ -30,7 +30,7 @@ SyncEnd end_sync(session::Session& session) {
   SyncEnd out;
   const session::Deaf deaf(session);
   // While SYNC still goes on: reading takes a moment.
-  for (const auto node : session.energised())
+  for (const auto node : session.energised().nodes())
     if (auto text = warning(session, node); !text.empty()) out.warnings.push_back(std::move(text));
   const auto& production = *session.sync();
   if (production.foreign > 0)

@@ -17,16 +17,24 @@ class BatchRun {
 
   /// False when the run ends here.
   bool take(const Step& step) {
-    if (shell_->cancelled()) return interrupt(step);
+    if (shell_->cancelled()) {
+      shell_->let_go();
+      return interrupt(step);
+    }
     auto outcome = perform(step);
     const bool ok = outcome.errors.empty();
     // Ctrl-C ends the run whatever holds for failures.
     const bool stopped = !ok && outcome.errors.front().code == Errc::interrupted;
     ++(ok ? done_ : failed_);
     if (!ok && (!first_error_ || stopped)) first_error_ = in_line(step, outcome.errors.front());
+    const bool goes_on = !stopped && (ok || step.goes_on);
+    // Whoever does not read what went wrong does not hold it up.
+    if (!goes_on) shell_->let_go();
     tell(step, std::move(outcome));
-    return !is_exit(step.words) && !stopped && (ok || step.goes_on);
+    return !is_exit(step.words) && goes_on;
   }
+
+  bool has_failed() const { return first_error_.has_value(); }
 
   int finish() {
     const auto left = count_ - done_ - failed_;
@@ -160,9 +168,9 @@ int run_steps(Shell& shell, std::span<const Step> steps, const std::string& file
   BatchRun run(shell, steps, file);
   for (const auto& step : steps)
     if (!run.take(step)) break;
-  const int code = run.finish();
   // Nobody goes on with what the file began.
-  if (code != 0) shell.let_go();
+  if (run.has_failed()) shell.let_go();
+  const int code = run.finish();
   if (!produced) shell.stop_sync();
   shell.stay_open(stayed);
   return code;

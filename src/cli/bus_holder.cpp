@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <map>
+#include <set>
 #include <utility>
 
 #include "base/text.hpp"
@@ -53,27 +55,30 @@ Result<void> BusHolder::connect(const std::string& url) {
   // Boot-ups of drives that are simulated in this process are no news.
   if (auto heard = session->listen(); !heard) return heard;
   (void)session->take_events();
-  if (const auto left = left_energised_.extract(url)) session->energised() = left.mapped();
+  if (auto left = left_energised_.extract(url)) session->energised() = std::move(left.mapped());
   session_ = std::move(session);
   return {};
 }
 
 /// Closes the bus; what is still energised stays known.
 void BusHolder::drop() {
-  if (session_ && !session_->energised().empty()) left_energised_[session_->url()] = session_->energised();
+  if (session_ && !session_->energised().empty())
+    left_energised_.insert_or_assign(session_->url(), std::move(session_->energised()));
   session_.reset();
 }
 
 void BusHolder::lose() {
   if (!session_) return;
-  for (const auto node : session_->energised()) warn(node, session_->url() + " was lost");
+  for (const auto node : session_->energised().nodes()) warn(node, session_->url() + " was lost");
   if (session_->sync() != nullptr)
     console_->err(fmt::format("notice: SYNC is no longer produced: {} was lost\n", session_->url()));
   drop();
 }
 
 void BusHolder::let_go() {
-  const auto left = left_energised_;
+  // Taken out only when its bus is there again: what is known to be energised stays protected.
+  std::map<std::string, std::set<std::uint8_t>> left;
+  for (const auto& [url, nodes] : left_energised_) left[url] = nodes.nodes();
   if (session_) stop_and_disable();
   stop_sync();
   if (!left.empty()) drop();

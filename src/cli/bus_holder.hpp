@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <set>
 #include <string>
 
 #include "cli/console.hpp"
@@ -54,7 +53,7 @@ class BusHolder {
   session::BusOptions bus_options_;
   session::Options options_;
   std::unique_ptr<session::Session> session_;
-  std::map<std::string, std::set<std::uint8_t>> left_energised_;  ///< By the URL of a bus that is not open.
+  std::map<std::string, session::EnergisedNodes> left_energised_;  ///< By the URL of a bus that is not open.
 };
 
 }  // namespace servoctl::cli

@@ -4,20 +4,21 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cerrno>
 #include <cstdio>
+#include <optional>
+#include <span>
 #include <string>
+#include <utility>
 
-#include "base/timespec.hpp"
+#include "base/signal_wait.hpp"
 #include "cli/signals.hpp"
 #include "cli/terminal_keys.hpp"
 
 namespace servoctl::cli {
 namespace {
 
-/// How late Ctrl-C may be noticed when it comes just before the wait begins.
-constexpr Duration kSlice = std::chrono::milliseconds(50);
+/// For who reads while a drive is energised and nothing is to be done about it.
+constexpr Duration kPatience = std::chrono::seconds(2);
 
 }  // namespace
 
@@ -25,8 +26,9 @@ constexpr Duration kSlice = std::chrono::milliseconds(50);
 bool StandardConsole::line_is_there() const {
   pollfd input{STDIN_FILENO, POLLIN, 0};
   while (!interrupted()) {
-    const auto wait = to_timespec(std::min(serve(), kSlice));
-    if (::ppoll(&input, 1, &wait, nullptr) > 0) return true;
+    const auto time = serve();
+    const auto longest = time == Duration::max() ? std::nullopt : std::optional(time);
+    if (wait_or_signal(std::span(&input, 1), longest) > 0) return true;
   }
   return false;
 }
@@ -40,27 +42,33 @@ std::string StandardConsole::typed_line() const {
   return out;
 }
 
-void StandardConsole::out(std::string_view text) {
-  if (live_) return live_out_.offer(text);
-  const auto all = live_out_.take_waiting().append(text);
-  const bool written =
-      std::fwrite(all.data(), 1, all.size(), stdout) == all.size() && std::fflush(stdout) == 0;
-  if (!written && write_error_ == 0) write_error_ = errno;
+void StandardConsole::show(LiveOutput& output, std::string_view text) const {
+  if (care_ == session::Care::none && !terminated()) return output.write(text);
+  output.open();
+  // What is to be done about the drive after a signal does not wait for who reads.
+  const bool waits = care_ == session::Care::none || (care_ == session::Care::energised && !interrupted());
+  output.offer(text, waits ? kPatience : Duration::zero());
 }
 
-void StandardConsole::err(std::string_view text) {
-  if (live_) return live_err_.offer(text);
-  const auto all = live_err_.take_waiting().append(text);
-  std::fwrite(all.data(), 1, all.size(), stderr);
-}
+void StandardConsole::out(std::string_view text) { show(out_, text); }
+void StandardConsole::err(std::string_view text) { show(err_, text); }
 
-void StandardConsole::set_live(bool live) {
-  live_ = live;
-  for (auto* output : {&live_out_, &live_err_}) {
-    if (live)
+void StandardConsole::set_care(session::Care care) {
+  const bool was_live = std::exchange(care_, care) != session::Care::none;
+  const bool is_live = care != session::Care::none;
+  if (is_live == was_live) return;
+  for (auto* output : {&out_, &err_}) {
+    if (is_live)
       output->open();
     else
       output->close();
+  }
+}
+
+void StandardConsole::finish() {
+  for (auto* output : {&out_, &err_}) {
+    show(*output, {});
+    output->give_up();
   }
 }
 

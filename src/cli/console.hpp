@@ -9,6 +9,7 @@
 #include "base/time.hpp"
 #include "cli/live_output.hpp"
 #include "commands/keys.hpp"
+#include "session/protection.hpp"
 
 namespace servoctl::cli {
 
@@ -34,10 +35,13 @@ class Console {
   virtual std::unique_ptr<commands::Keys> open_keys() { return nullptr; }
   /// Whether data can no longer be written: the reader has gone.
   virtual bool output_lost() const { return false; }
-  /// Told true while a drive is energised: until false is told, nobody who reads is waited for.
-  virtual void set_live(bool live) { (void)live; }
+  /// Told what would be left alone if nobody read what is shown: who reads is not waited for while a drive is
+  /// guarded, and two seconds at most while one is energised.
+  virtual void set_care(session::Care care) { (void)care; }
   /// How many texts of out() were left out since the last call, because their reader was too slow.
   virtual std::size_t take_left_out() { return 0; }
+  /// The same for err().
+  virtual std::size_t take_untold() { return 0; }
 
   /// What is done while the user is waited for; it answers how long it can be left alone. May be empty.
   void set_service(std::function<Duration()> service) { service_ = std::move(service); }
@@ -61,20 +65,23 @@ class StandardConsole final : public Console {
   std::size_t width() const override;
   std::unique_ptr<commands::Keys> open_keys() override;
   bool output_lost() const override { return write_error() != 0; }
-  void set_live(bool live) override;
-  std::size_t take_left_out() override { return live_out_.take_left_out(); }
+  void set_care(session::Care care) override;
+  std::size_t take_left_out() override { return out_.take_left_out(); }
+  std::size_t take_untold() override { return err_.take_left_out(); }
 
+  /// Writes what still waits for its reader; the last call.
+  void finish();
   /// The first error (errno) that kept data from being written; 0 when all of it was.
-  int write_error() const { return write_error_ != 0 ? write_error_ : live_out_.error(); }
+  int write_error() const { return out_.error(); }
 
  private:
   bool line_is_there() const;
   std::string typed_line() const;
+  void show(LiveOutput& output, std::string_view text) const;
 
-  bool live_ = false;
-  LiveOutput live_out_{1};
-  LiveOutput live_err_{2};
-  int write_error_ = 0;
+  session::Care care_ = session::Care::none;
+  LiveOutput out_{1};
+  LiveOutput err_{2};
 };
 
 }  // namespace servoctl::cli

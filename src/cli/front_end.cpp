@@ -1,5 +1,6 @@
 #include "cli/front_end.hpp"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -19,6 +20,17 @@
 
 namespace servoctl::cli {
 namespace {
+
+/// A standard stream that was closed would be the next thing that is opened: text for people would go into
+/// the socket of the bus.
+void open_standard_descriptors() {
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(descriptor, F_GETFD) >= 0 || errno != EBADF) continue;
+    // The lowest that is free, which is this one.
+    const int direction = descriptor == STDIN_FILENO ? O_RDONLY : O_WRONLY;
+    if (::open("/dev/null", direction) != descriptor) ::_exit(exit_code(Errc::file));
+  }
+}
 
 /// Lines from a pipe or file: stops at the first that fails, whose exit code is the answer.
 int run_pipe(Shell& shell) {
@@ -87,8 +99,10 @@ int run(const std::vector<std::string>& words, StandardConsole& console) {
 
 int run_program(const std::vector<std::string>& words) {
   try {
+    open_standard_descriptors();
     StandardConsole console;
     const int code = run(words, console);
+    console.finish();
     // A reader that has closed the pipe has seen enough.
     if (console.write_error() == 0 || console.write_error() == EPIPE) return code;
     std::cerr << "error: the output could not be written (" << std::strerror(console.write_error())

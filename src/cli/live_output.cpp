@@ -7,6 +7,9 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <span>
+
+#include "base/signal_wait.hpp"
 
 namespace servoctl::cli {
 
@@ -41,12 +44,50 @@ std::ptrdiff_t LiveOutput::pass(std::string_view text) const {
   return ::write(descriptor_, text.data(), is_file_ ? text.size() : 1);
 }
 
-void LiveOutput::offer(std::string_view text) {
+int LiveOutput::wait_for_room(Duration patience) const {
+  pollfd room{own_ >= 0 ? own_ : descriptor_, POLLOUT, 0};
+  return wait_or_signal(std::span(&room, 1), patience);
+}
+
+void LiveOutput::offer(std::string_view text, Duration patience) {
   if (error_ != 0) return;
   if (waiting_.size() < kMost)
     waiting_ += text;
-  else
+  else if (!text.empty())
     ++left_out_;
+  pass_on();
+  while (!waiting_.empty() && error_ == 0 && !stalled_ && patience > Duration::zero()) {
+    const int ready = wait_for_room(patience);
+    if (ready < 0) return;
+    stalled_ = ready == 0;
+    pass_on();
+  }
+}
+
+void LiveOutput::write(std::string_view text) {
+  const auto before = signals_noted();
+  auto all = take_waiting().append(text);
+  std::string_view rest = all;
+  while (!rest.empty()) {
+    const auto taken = ::write(descriptor_, rest.data(), rest.size());
+    if (taken >= 0) {
+      rest.remove_prefix(static_cast<std::size_t>(taken));
+      continue;
+    }
+    const int error = errno;
+    if (error == EAGAIN) (void)wait_for_room(std::chrono::seconds(1));
+    if (signals_noted() == before && (error == EINTR || error == EAGAIN)) continue;
+    if (error_ == 0) error_ = error;
+    return;
+  }
+}
+
+void LiveOutput::give_up() {
+  if (!take_waiting().empty() && error_ == 0) error_ = ETIMEDOUT;
+}
+
+/// Passes on what waits, as much as is taken.
+void LiveOutput::pass_on() {
   std::size_t gone = 0;
   while (gone < waiting_.size()) {
     const auto taken = pass(std::string_view(waiting_).substr(gone));
@@ -56,6 +97,7 @@ void LiveOutput::offer(std::string_view text) {
     gone += static_cast<std::size_t>(taken);
   }
   waiting_.erase(0, gone);
+  if (gone > 0) stalled_ = false;
 }
 
 }  // namespace servoctl::cli

@@ -5,10 +5,12 @@
 #include <string_view>
 #include <utility>
 
+#include "base/time.hpp"
+
 namespace servoctl::cli {
 
-/// The way to a reader who must not be waited for: passes text on as fast as it is taken, keeps a little of
-/// it meanwhile, and leaves out what is beyond that. What was begun is never cut.
+/// The way to a reader who must not be waited for without end: passes text on as fast as it is taken, keeps a
+/// little of it meanwhile, and leaves out what is beyond that. What was begun is never cut.
 class LiveOutput {
  public:
   /// Bytes that wait for the reader; as many as a pipe holds.
@@ -19,15 +21,21 @@ class LiveOutput {
   LiveOutput(const LiveOutput&) = delete;
   LiveOutput& operator=(const LiveOutput&) = delete;
 
-  /// Before the first offer().
+  /// Before the first offer(), and again as often as one likes.
   void open();
   void close();
 
-  /// Never waits.
-  void offer(std::string_view text);
+  /// Waits for a reader who takes nothing at most `patience`, and not at all once that was in vain, until he
+  /// takes something; a signal ends the wait.
+  void offer(std::string_view text, Duration patience = Duration::zero());
+  /// Passes on what waits and the text, and waits for the reader as long as he likes; only a signal that
+  /// comes meanwhile ends it, and is the error().
+  void write(std::string_view text);
 
   /// What was offered and has not gone yet; the caller sees to it.
   std::string take_waiting() { return std::exchange(waiting_, {}); }
+  /// What still waits is lost, which is an error.
+  void give_up();
   /// How many texts were left out since the last call.
   std::size_t take_left_out() { return std::exchange(left_out_, 0); }
   /// The first error (errno) that kept text from being written; 0 when there was none.
@@ -35,6 +43,8 @@ class LiveOutput {
 
  private:
   std::ptrdiff_t pass(std::string_view text) const;
+  void pass_on();
+  int wait_for_room(Duration patience) const;
 
   int descriptor_;
   int own_ = -1;  ///< The same pipe or terminal without waiting; -1 where it cannot be opened again.
@@ -42,6 +52,7 @@ class LiveOutput {
   bool is_socket_ = false;
   std::string waiting_;
   std::size_t left_out_ = 0;
+  bool stalled_ = false;  ///< Waited for in vain, and nothing was taken since.
   int error_ = 0;
 };
 

@@ -8,8 +8,9 @@
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <optional>
 
-#include "base/timespec.hpp"
+#include "base/signal_wait.hpp"
 #include "cli/completer.hpp"
 #include "cli/line_runner.hpp"
 #include "cli/signals.hpp"
@@ -54,6 +55,7 @@ class Prompt {
   }
   std::string prompt_text() const;
   bool wait_for_key();
+  bool terminal_takes() const;
   void show_notices();
   void drop_line();
 
@@ -65,6 +67,7 @@ class Prompt {
   Completions completions_;
   std::size_t next_ = 0;
   bool done_ = false;
+  bool held_ = false;  ///< A key waits, and the terminal takes nothing: the editor would wait for it.
 };
 
 Prompt* Prompt::active_ = nullptr;
@@ -105,12 +108,11 @@ bool Prompt::wait_for_key() {
   auto* session = shell_->session();
   pollfd fds[2] = {{STDIN_FILENO, POLLIN, 0},
                    {session == nullptr ? -1 : session->bus().poll_fd(), POLLIN, 0}};
-  timespec left{};
-  const bool timed = session != nullptr && session->next_event() != kNever;
-  if (timed)
-    left = to_timespec(
-        std::clamp<Duration>(session->next_event() - session->now(), Duration::zero(), kLongestWait));
-  if (::ppoll(fds, 2, timed ? &left : nullptr, nullptr) < 0) return false;
+  if (held_) fds[0] = {STDOUT_FILENO, POLLOUT, 0};
+  std::optional<Duration> left;
+  if (session != nullptr && session->next_event() != kNever)
+    left = std::clamp<Duration>(session->next_event() - session->now(), Duration::zero(), kLongestWait);
+  if (wait_or_signal(fds, left) < 0) return false;
   if (session != nullptr)
     if (const auto heard = session->listen(); !heard && heard.error().code == Errc::bus) {
       console_->err("\r\033[K");
@@ -118,7 +120,14 @@ bool Prompt::wait_for_key() {
       shell_->lose_bus();
       rl_forced_update_display();
     }
-  return (fds[0].revents & (POLLIN | POLLHUP)) != 0;
+  const bool key = fds[0].revents != 0;
+  held_ = key && !terminal_takes();
+  return key && !held_;
+}
+
+bool Prompt::terminal_takes() const {
+  pollfd terminal{STDOUT_FILENO, POLLOUT, 0};
+  return ::poll(&terminal, 1, 0) != 0;
 }
 
 void Prompt::show_notices() {
@@ -152,7 +161,7 @@ void Prompt::take_line(char* line) {
   runner_.run(text);
   clear_interrupt();
   done_ = runner_.wants_exit();
-  if (!done_) install();
+  if (!done_ && !terminated()) install();
 }
 
 char* Prompt::next_candidate(const char*, int state) {

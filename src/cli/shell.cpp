@@ -1,5 +1,7 @@
 #include "cli/shell.hpp"
 
+#include <unistd.h>
+
 #include <fmt/format.h>
 #include <algorithm>
 #include <numeric>
@@ -57,16 +59,21 @@ Shell::Shell(Console& console, Options options)
     : console_(&console),
       options_(std::move(options)),
       progress_(console),
+      protection_([this](session::Care worst) {
+        protect_from_signals(worst != session::Care::none);
+        console_->set_care(worst);
+      }),
       bus_(console, {.drive_folders = options_.drive_folders, .trace = {}, .clock = options_.clock},
            session_options()) {}
 
 session::Options Shell::session_options() {
   session::Options out;
   out.cancelled = options_.cancelled;
-  out.protect = [this](bool energised) {
-    protect_from_signals(energised);
-    console_->set_live(energised);
-  };
+  out.protection = &protection_;
+  // Two that start at once have process numbers close together, or other times.
+  constexpr std::uint64_t kSpread = 0x9E37'79B9'7F4A'7C15;
+  const auto time = static_cast<std::uint64_t>(steady_now().time_since_epoch().count());
+  out.claim_seed = (static_cast<std::uint64_t>(::getpid()) * kSpread ^ time * kSpread) >> 16U;
   out.tell = [this](std::string_view line) {
     progress_.end();
     console_->err("notice: " + std::string(line) + "\n");
@@ -270,6 +277,7 @@ std::vector<std::string> Shell::take_notices(const drive::Profile* profile, bool
   if (session == nullptr) return out;
   for (const auto report : session->take_reports())
     out.push_back(session->url() + ": " + std::string(can::text(report)));
+  for (auto& notice : session->bus().take_notices()) out.push_back(std::move(notice));
   for (const auto& event : session->take_events())
     out.push_back(commands::notice_text(event, profile, chinese));
   return out;
@@ -292,6 +300,9 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
   if (const auto left_out = console_->take_left_out(); left_out > 0)
     run.context.notices.push_back(fmt::format(
         "{} samples were not shown, because nobody read them in time; --csv has every sample", left_out));
+  if (const auto untold = console_->take_untold(); untold > 0)
+    run.context.notices.push_back(
+        fmt::format("{} messages were not shown, because nobody read them in time", untold));
   if (run.context.profile != nullptr && run.settings.chinese)
     for (auto& error : errors) {
       const auto& texts = run.context.profile->rules.abort_texts_zh;

@@ -102,6 +102,7 @@ class Shell {
   Console* console_;
   Options options_;
   Progress progress_;
+  session::Protection protection_;
   BusHolder bus_;
   bool stays_open_ = false;
   std::map<std::string, std::unique_ptr<drive::Profile>> profiles_;

@@ -4,12 +4,14 @@ namespace servoctl::cli {
 
 /// Catches every signal that ends a program and can be caught, but for those of a crash, so that every wait
 /// ends in order; SIGPIPE and SIGXFSZ are ignored. A second Ctrl-C or Ctrl-\ while the first is still being
-/// worked on ends the process at once, unless a drive is energised.
+/// worked on ends the process at once, unless a drive is energised. Until clear_interrupt() a call that
+/// blocks otherwise than in wait_or_signal(), such as a write of a library to a terminal that is held, ends
+/// with EINTR again and again.
 void install_signal_handlers();
 
 /// Told true while a drive is energised: no number of signals ends or stops the process then, because it has
 /// to stop the drive first. Ctrl-Z counts as Ctrl-C; one who reads or writes in the background is not
-/// stopped.
+/// stopped. A signal that comes in between is handled as before or as afterwards.
 void protect_from_signals(bool energised);
 
 /// Whether one of them came since the last clear_interrupt().

@@ -7,6 +7,7 @@
 
 #include "drive/soft_ramp.hpp"
 #include "drive/standard_objects.hpp"
+#include "session/producer_claim.hpp"
 
 namespace servoctl::session {
 namespace {
@@ -179,6 +180,7 @@ Result<void> Motion::look_again() {
 Result<void> Motion::begin(std::int8_t mode, const std::vector<MotionSetting>& settings,
                            std::optional<ObjectAddress> kept_target) {
   if (const auto ready = look_again(); !ready) return ready;
+  if (const auto own = claim_producer(*session_, node_, options_.producer, watchdog_); !own) return own;
   monitor_->find_tpdos();
   guard_ = std::make_unique<MotionGuard>(*session_, *units_, node_);
   guard_->set_standstill(standstill_);

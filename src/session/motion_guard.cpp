@@ -29,12 +29,11 @@ MotionGuard::MotionGuard(Session& session, const MotionUnits& units, std::uint8_
       units_(&units),
       node_(node),
       power_(session, units.profile(), node),
+      hold_(session.protect(Care::guarded)),
       hearing_(session, [this, before = session.options().heard](const can::Frame& frame, TimePoint time) {
         if (before) before(frame, time);
         hear(frame);
-      }) {
-  if (session.options().protect) session.options().protect(true);
-}
+      }) {}
 
 /// Where even the way out runs out of memory, the drive is still told to stop: nothing of that needs any.
 MotionGuard::~MotionGuard() {

@@ -83,6 +83,7 @@ class MotionGuard {
   const MotionUnits* units_;
   std::uint8_t node_;
   Power power_;
+  Protection::Hold hold_;
   std::vector<Changed> changed_;
   std::optional<WatchdogPlan> watchdog_;
   bool started_ = false;  ///< It was sent NMT "start".

@@ -168,7 +168,7 @@ MotionEnd MotionGuard::end() {
   tell_foreign_writes();
   if (!result_.verified) session_->energised().insert(node_);
   end_ = result_;
-  if (session_->options().protect) session_->options().protect(false);
+  hold_.release();
   return *end_;
 }
 
@@ -185,7 +185,7 @@ Result<void> MotionGuard::release() {
   session_->energised().insert(node_);
   result_.state = power_.state().value_or(DriveState::unknown);
   end_ = result_;
-  if (session_->options().protect) session_->options().protect(false);
+  hold_.release();
   return done;
 }
 

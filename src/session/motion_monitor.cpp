@@ -9,6 +9,7 @@
 #include "session/identify.hpp"
 #include "session/pdo_setup.hpp"
 #include "session/power.hpp"
+#include "session/producer_claim.hpp"
 
 namespace servoctl::session {
 namespace {
@@ -96,8 +97,8 @@ Result<MotionSample> MotionMonitor::sample() {
   if (!begin_) begin_ = out[Channel::position];
   if (rate_ && !samples_.empty()) follow_zero(out);
   samples_.push_back(out);
-  for (const auto& done :
-       {refuse_duplicate(*session_, node_), check_events(), check_state(out), check_limits(out)})
+  for (const auto& done : {refuse_duplicate(*session_, node_), check_producer(*session_), check_events(),
+                           check_state(out), check_limits(out)})
     if (!done) return tl::unexpected<Error>(done.error());
   return out;
 }

@@ -163,17 +163,15 @@ Result<void> Power::take_down(PowerAim aim) {
 std::vector<std::pair<std::uint8_t, Result<void>>> de_energise(Session& session) {
   std::vector<std::pair<std::uint8_t, Result<void>>> out;
   if (session.energised().empty()) return out;
-  const auto& protect = session.options().protect;
-  if (protect) protect(true);
+  const auto hold = session.protect(Care::guarded);
   std::vector<PowerDownPlan> plans;
-  for (const auto node : session.energised()) {
+  for (const auto node : session.energised().nodes()) {
     plans.emplace_back();
     plans.back().node = node;
     plans.back().aim = PowerAim::stop_and_disable;
   }
   const auto done = take_down(session, plans);
   for (std::size_t i = 0; i < plans.size(); ++i) out.emplace_back(plans[i].node, done[i].outcome);
-  if (protect) protect(false);
   return out;
 }
 

@@ -10,14 +10,17 @@
 namespace servoctl::session {
 namespace {
 
-/// A signal that comes between the question and the wait would otherwise be noticed at the end of the wait
-/// only.
+/// Whoever cancels by a simulated clock, which only waits move on, is asked so often.
 constexpr Duration kCancelSlice = std::chrono::milliseconds(250);
 
 }  // namespace
 
 Session::Session(std::unique_ptr<can::Bus> bus, std::string url, Options options)
-    : bus_(std::move(bus)), opened_at_(bus_->now()), url_(std::move(url)), options_(std::move(options)) {}
+    : bus_(std::move(bus)),
+      opened_at_(bus_->now()),
+      url_(std::move(url)),
+      options_(std::move(options)),
+      energised_(options_.protection) {}
 
 std::vector<Result<Bytes>> Session::transfer(std::span<const SdoRequest> requests) {
   return TransferRun(*this, requests).run();
@@ -37,6 +40,7 @@ Result<void> Session::download(std::uint8_t node, ObjectAddress object, Bytes da
 
 Result<std::optional<can::Frame>> Session::receive(TimePoint deadline) {
   if (options_.cancelled) {
+    // A signal that comes after this question ends the wait below at once: see wait_or_signal().
     if (options_.cancelled()) return fail(Errc::interrupted, "interrupted");
     // A stale time ends the wait too early at most, and saves asking the clock once a frame.
     deadline = std::min(deadline, received_at_ + kCancelSlice);

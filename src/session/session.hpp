@@ -5,7 +5,6 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -22,6 +21,7 @@
 #include "canopen/node_watch.hpp"
 #include "canopen/sdo_client.hpp"
 #include "session/known_identities.hpp"
+#include "session/protection.hpp"
 #include "session/sync_production.hpp"
 
 namespace servoctl::session {
@@ -41,11 +41,12 @@ struct Options {
   std::function<bool()> cancelled;  ///< Asked in every wait; may be empty.
   /// Told every frame that is received, in every wait; may be empty. See Hearing.
   std::function<void(const can::Frame& frame, TimePoint time)> heard;
-  /// Told true before a drive is energised and false when it is at rest again: until then a signal must not
-  /// end the process at once. May be empty.
-  std::function<void(bool energised)> protect;
   /// Told, a line at a time, what a way out does while the bus is lost; may be empty.
   std::function<void(std::string_view line)> tell;
+  /// What tells this process from others that start at the same time: see claim_producer().
+  std::uint64_t claim_seed = 0;
+  /// Held while a drive is energised: a signal must not end the process at once then. May be null.
+  Protection* protection = nullptr;
   /// Told how many bytes of a long transfer have gone, of how many in all where that is known, on the bus's
   /// clock; may be empty.
   std::function<void(std::size_t done, std::optional<std::size_t> total, TimePoint now)> progress;
@@ -98,7 +99,9 @@ class Session {
   void stop_guarding();
 
   /// Drives that were left energised through this session and not seen without power since.
-  std::set<std::uint8_t>& energised() { return energised_; }
+  EnergisedNodes& energised() { return energised_; }
+  /// What Options::protection says, for as long as the answer lives.
+  Protection::Hold protect(Care care) { return {options_.protection, care}; }
   /// Values written to the flash of a node since the bus was opened, where each write wears it.
   std::size_t& flash_writes(std::uint8_t node) { return flash_writes_[node]; }
 
@@ -108,6 +111,10 @@ class Session {
     heartbeat_ = {node, period, TimePoint::min()};
   }
   void stop_heartbeat() { heartbeat_.reset(); }
+  /// Under which node-ID servoctl produces heartbeats now; empty when it does not.
+  std::optional<std::uint8_t> heartbeat_node() const {
+    return heartbeat_ ? std::optional(heartbeat_->node) : std::nullopt;
+  }
 
   /// servoctl as SYNC producer: the first one at once, in every wait from now on.
   void produce_sync(const canopen::SyncProducer::Options& options) {
@@ -155,7 +162,7 @@ class Session {
   std::vector<can::ControllerReport> reports_;
   std::optional<can::ControllerReport> last_report_;
   std::array<std::size_t, 128> flash_writes_{};
-  std::set<std::uint8_t> energised_;
+  EnergisedNodes energised_;
   /// When the last frame arrived, or receive() ended without one; asking the clock costs a system call on
   /// some machines.
   TimePoint received_at_{};

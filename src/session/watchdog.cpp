@@ -40,17 +40,10 @@ Result<void> hear_others(Session& session) {
   return session.listen();
 }
 
-/// Node-ID for servoctl: not the drive's, not one that was heard or that the drive watches already.
 Result<std::optional<std::uint8_t>> free_producer(Session& session, std::uint8_t node,
-                                                  const std::vector<std::uint64_t>& entries) {
+                                                  const std::set<std::uint8_t>& watched) {
   if (const auto heard = hear_others(session); !heard) return tl::unexpected<Error>(heard.error());
-  for (std::uint8_t id = canopen::kLastNode; id >= canopen::kFirstNode; --id) {
-    const bool watched =
-        std::any_of(entries.begin(), entries.end(), [&](auto e) { return !is_free(e) && node_of(e) == id; });
-    if (id != node && !watched && !session.watch().state(id) && !answers(session, id))
-      return std::optional(id);
-  }
-  return std::optional<std::uint8_t>();
+  return next_producer(session, node, watched);
 }
 
 Result<WatchdogPlan> plan_heartbeat(Session& session, const drive::Profile& profile, std::uint8_t node,
@@ -60,21 +53,23 @@ Result<WatchdogPlan> plan_heartbeat(Session& session, const drive::Profile& prof
     if (has(profile, {objects::kConsumerHeartbeatIndex, sub}))
       requests.push_back({.node = node, .object = {objects::kConsumerHeartbeatIndex, sub}});
   const auto answers = session.transfer(requests);
-  std::vector<std::uint64_t> entries;
+  bool any = false;
   WatchdogPlan plan;
   for (std::size_t i = 0; i < answers.size(); ++i) {
     if (!answers[i] && answers[i].error().code != Errc::sdo_abort)
       return tl::unexpected<Error>(answers[i].error());
     if (!answers[i]) continue;
-    entries.push_back(load_le(*answers[i]));
-    if (plan.entry == 0 && is_free(entries.back())) plan.entry = requests[i].object.sub;
+    any = true;
+    const auto entry = load_le(*answers[i]);
+    if (!is_free(entry)) plan.watched.insert(node_of(entry));
+    if (plan.entry == 0 && is_free(entry)) plan.entry = requests[i].object.sub;
   }
   if (plan.entry == 0) {
-    if (!entries.empty()) plan.remark = "all entries of 1016h are taken";
+    if (any) plan.remark = "all entries of 1016h are taken";
     return plan;
   }
   const auto id =
-      producer ? Result<std::optional<std::uint8_t>>(producer) : free_producer(session, node, entries);
+      producer ? Result<std::optional<std::uint8_t>>(producer) : free_producer(session, node, plan.watched);
   if (!id) return tl::unexpected<Error>(id.error());
   if (!*id) {
     plan.remark = "no node-ID is free for the heartbeat of servoctl";
@@ -137,11 +132,23 @@ Result<void> plan_guarding(Session& session, const drive::Profile& profile, std:
 
 }  // namespace
 
+Result<std::optional<std::uint8_t>> next_producer(Session& session, std::uint8_t node,
+                                                  const std::set<std::uint8_t>& watched) {
+  for (std::uint8_t id = canopen::kLastNode; id >= canopen::kFirstNode; --id)
+    if (id != node && watched.count(id) == 0 && !session.watch().state(id) && !answers(session, id))
+      return std::optional(id);
+  return std::optional<std::uint8_t>();
+}
+
 Result<WatchdogPlan> plan_watchdog(Session& session, const drive::Profile& profile, std::uint8_t node,
                                    std::optional<std::uint8_t> producer) {
   if (producer && *producer == node)
     return fail(Errc::usage, fmt::format("{} is the drive's own node-ID", node),
                 "give servoctl another one, such as 127");
+  if (producer && session.watch().state(*producer))
+    return fail(Errc::refused,
+                fmt::format("--master-node {}: somebody was heard under this number", *producer),
+                "a node-ID belongs to one only; leave it out, and servoctl takes one that is free");
   auto plan = plan_heartbeat(session, profile, node, producer);
   if (!plan) return plan;
   if (plan->kind == WatchdogPlan::Kind::none && has(profile, objects::kGuardTime) &&

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "drive/profile.hpp"
@@ -19,13 +20,14 @@ struct WatchdogPlan {
                ///< or masks the alarm of it.
   };
   Kind kind = Kind::none;
-  Duration time{};            ///< From the last message until the drive reacts.
-  std::uint8_t producer = 0;  ///< Node-ID under which servoctl sends heartbeats.
-  std::uint8_t entry = 0;     ///< Sub-index of 1016h.
-  std::string reaction = {};  ///< What the drive does then, by 6007h; empty when it does not tell.
-  bool reaction_off = false;  ///< 6007h is 0, no action: it has to be set as well.
-  bool assumed = false;       ///< The manual does not say what the motor does when the master is lost.
-  std::string remark = {};    ///< Why there is none, or on what it depends; may be empty.
+  Duration time{};                      ///< From the last message until the drive reacts.
+  std::uint8_t producer = 0;            ///< Node-ID under which servoctl sends heartbeats.
+  std::uint8_t entry = 0;               ///< Sub-index of 1016h.
+  std::set<std::uint8_t> watched = {};  ///< Node-IDs that the drive watches already.
+  std::string reaction = {};            ///< What the drive does then, by 6007h; empty when it does not tell.
+  bool reaction_off = false;            ///< 6007h is 0, no action: it has to be set as well.
+  bool assumed = false;     ///< The manual does not say what the motor does when the master is lost.
+  std::string remark = {};  ///< Why there is none, or on what it depends; may be empty.
 };
 
 /// 6007h, and its value for a fault (CiA 402-2, abort connection option code).
@@ -40,9 +42,15 @@ inline constexpr Duration kListening = std::chrono::seconds(1);
 
 /// Finds out which watchdog the drive has; only reads. `producer`: servoctl's node-ID, where the user names
 /// one; else the highest that nobody was heard under since the bus was opened, for which it waits up to
-/// kListening.
+/// kListening. The number is servoctl's own only after claim_producer(). Errc::refused when somebody was
+/// heard under the number that the user names.
 Result<WatchdogPlan> plan_watchdog(Session& session, const drive::Profile& profile, std::uint8_t node,
                                    std::optional<std::uint8_t> producer);
+
+/// The highest node-ID under which nobody was heard and nobody answers, but for the drive's own and those it
+/// watches; empty when there is none.
+Result<std::optional<std::uint8_t>> next_producer(Session& session, std::uint8_t node,
+                                                  const std::set<std::uint8_t>& watched);
 
 /// `heartbeat: the drive stops by itself after 500 ms without servoctl (fault)`.
 std::string to_string(const WatchdogPlan& plan);

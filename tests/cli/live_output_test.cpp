@@ -13,6 +13,8 @@
 #include <csignal>
 #include <cstdlib>
 
+#include "base/signal_wait.hpp"
+
 namespace servoctl::cli {
 namespace {
 
@@ -77,6 +79,29 @@ TEST_F(LiveOutputTest, WhatIsTooMuchToKeepIsLeftOutInWholeLinesAndCounted) {
   EXPECT_EQ(output.take_left_out(), 0U);
   const auto all = read_all() + output.take_waiting();
   EXPECT_EQ(all, lines(2000 - static_cast<int>(left_out)));
+}
+
+TEST_F(LiveOutputTest, AReaderWhoTakesNothingIsWaitedForOnce) {
+  make_pipe();
+  LiveOutput output(ends[1]);
+  output.open();
+  const auto begin = steady_now();
+  for (int i = 0; i < 200; ++i) output.offer(line(i), std::chrono::milliseconds(300));
+  const auto waited = steady_now() - begin;
+  EXPECT_GE(waited, std::chrono::milliseconds(300));
+  EXPECT_LT(waited, std::chrono::seconds(3)) << "and not at every line";
+  EXPECT_EQ(read_all() + output.take_waiting(), lines(200));
+}
+
+TEST_F(LiveOutputTest, ASignalEndsTheWait) {
+  make_pipe();
+  LiveOutput output(ends[1]);
+  output.open();
+  note_signal();
+  const auto begin = steady_now();
+  output.offer(lines(200), std::chrono::seconds(15));
+  EXPECT_LT(steady_now() - begin, std::chrono::seconds(5));
+  EXPECT_EQ(read_all() + output.take_waiting(), lines(200));
 }
 
 TEST_F(LiveOutputTest, OthersMayStillWaitAtTheSamePipe) {

@@ -139,10 +139,12 @@ TEST_F(MotionTrouble, AClosedPipeEndsTheMotion) {
 }
 
 TEST_F(MotionTrouble, SignalsAreHeldBackUntilTheDriveIsAtRest) {
-  std::vector<std::pair<bool, bool>> told;  // What protect() was told, and whether the drive was energised.
-  bench.session->options().protect = [&](bool on) { told.emplace_back(on, bench.energised()); };
+  std::vector<std::pair<Care, bool>> told;  // What was told, and whether the drive was energised.
+  Protection protection([&](Care worst) { told.emplace_back(worst, bench.energised()); });
+  bench.session->options().protection = &protection;
   ASSERT_TRUE(bench.jog(jog_for("60rpm", 200ms)).outcome);
-  const std::vector<std::pair<bool, bool>> expected{{true, false}, {false, false}};
+  bench.session->options().protection = nullptr;
+  const std::vector<std::pair<Care, bool>> expected{{Care::guarded, false}, {Care::none, false}};
   EXPECT_EQ(told, expected);
 }
 

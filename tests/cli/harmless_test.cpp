@@ -1,0 +1,200 @@
+// --read-only and --dry-run: every command on every family, and every frame that it sends.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "can/trace.hpp"
+#include "cli/batch_command.hpp"
+#include "commands/command.hpp"
+#include "recording_console.hpp"
+#include "tests/source_dir.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using Words = std::vector<std::string>;
+
+constexpr std::uint8_t kDrives = 3;  ///< Nodes 1 and 2, and 3 for `sim`.
+
+/// One line of every command; PARAM, FAULTS … stand for what differs from family to family.
+const std::map<std::string, std::string> kSamples{
+    {"scan", "scan"},
+    {"info", "info -n 1"},
+    {"status", "status -n 1,2"},
+    {"read", "read 0x6041 0x1018:1 -n 1"},
+    {"write", "write 0x6040 15 -n 1 -y"},
+    {"objects", "objects"},
+    {"param list", "param list"},
+    {"param get", "param get PARAM -n 1"},
+    {"param set", "param set PARAM=2 --keep -n 1 -y"},
+    {"param search", "param search speed"},
+    {"param explain", "param explain PARAM"},
+    {"backup", "backup DIR/new.json -n 1"},
+    {"diff", "diff DIR/backup.json node:2"},
+    {"verify", "verify DIR/backup.json -n 1"},
+    {"restore", "restore DIR/backup.json -n 1 -y"},
+    {"clone", "clone --from 1 --to 2 -y"},
+    {"store", "store -n 1 -y"},
+    {"defaults", "defaults -n 1 -y"},
+    {"fault show", "fault show -n 1"},
+    {"fault list", "fault list"},
+    {"fault reset", "fault reset -n 1 -y"},
+    {"fault clear-history", "fault clear-history -n 1 -y"},
+    {"enable", "enable -n 1 -y"},
+    {"disable", "disable -n 1,2"},
+    {"quick-stop", "quick-stop -n 1,2"},
+    {"mode", "mode 1 -n 1"},
+    {"jog", "jog 30rpm --for 1s --turn 10000 -n 1 -y"},
+    {"move", "move 90deg --relative --speed 30rpm --turn 10000 -n 1 -y"},
+    {"home", "home 35 --turn 10000 -n 1 -y"},
+    {"torque", "torque 5% --for 1s --limit 30rpm --turn 10000 -n 1 -y"},
+    {"nmt start", "nmt start -n 1 -y"},
+    {"nmt stop", "nmt stop -n 1 -y"},
+    {"nmt preop", "nmt preop -n 1 -y"},
+    {"nmt reset", "nmt reset -n 1 -y"},
+    {"nmt reset-comm", "nmt reset-comm -n 1 -y"},
+    {"nmt watch", "nmt watch --guard 100ms --for 1s -n 1"},
+    {"pdo show", "pdo show -n 1"},
+    {"pdo map", "pdo map TPDO1 0x6041 -n 1 -y"},
+    {"pdo enable", "pdo enable TPDO2 -n 1 -y"},
+    {"pdo disable", "pdo disable TPDO1 -n 1 -y"},
+    {"pdo clear", "pdo clear TPDO1 -n 1 -y"},
+    {"pdo preset", "pdo preset pv -n 1 -y"},
+    {"pdo apply", "pdo apply DIR/pdos.toml -n 1 -y"},
+    {"pdo save", "pdo save DIR/saved.toml -n 1"},
+    {"pdo watch", "pdo watch --for 1s -n 1"},
+    {"pdo send", "pdo send RPDO1 15 -n 1 -y"},
+    {"test comm", "test comm -n 1"},
+    {"test io", "test io --for 1s -n 1"},
+    {"test jog", "test jog 30rpm --turn 10000 -n 1 -y"},
+    {"test home", "test home --turn 10000 -n 1 -y"},
+    {"test all", "test all 30rpm --turn 10000 -n 1 -y"},
+    {"report", "report -n 1"},
+    {"sync once", "sync once -y"},
+    {"sync start", "sync start --for 1s -y"},
+    {"sync stop", "sync stop"},
+    {"watch", "watch 0x6041 --for 1s -n 1"},
+    {"scope", "scope 0x6041 0x6064 --for 1s -n 1"},
+    {"monitor", "monitor --for 1s"},
+    {"decode", "decode DIR/recording.log"},
+    {"replay", "replay DIR/recording.log --speed 100 -n 1 -y"},
+    {"drives", "drives"},
+    {"eds check", "eds check EDS"},
+    {"run", "run DIR/lines.servoctl"},
+    {"sim", "sim FAMILY@3"},
+    {"help", "help jog"},
+    {"completion", "completion bash"},
+};
+
+void replace(std::string& text, std::string_view from, std::string_view to) {
+  for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
+}
+
+/// Whether it comes from a simulated drive, or is an SDO request that only reads.
+bool is_harmless(const can::Frame& frame) {
+  if (frame.extended || frame.error) return false;
+  if (frame.id > 0x600 && frame.id <= 0x600U + kDrives && !frame.remote) {
+    const auto command = frame.data[0] >> 5U;  // CiA 301, 7.2.4.3: client command specifier.
+    return command == 2 || command == 3 || command == 4 || command == 5;
+  }
+  const auto node = frame.id & 0x7FU;
+  const auto service = frame.id - node;
+  const bool of_a_drive = service == 0x080 || service == 0x180 || service == 0x280 || service == 0x380 ||
+                          service == 0x480 || service == 0x580 || service == 0x700;
+  return of_a_drive && node >= 1 && node <= kDrives && !frame.remote;
+}
+
+class Harmless : public testing::TestWithParam<std::string> {
+ protected:
+  Harmless() {
+    fs::create_directories(dir_);
+    std::ofstream(dir_ / "recording.log") << "(0000000001.000000) can0 601#2B4060000F000000\n"
+                                             "(0000000001.001000) can0 581#6040600000000000\n"
+                                             "(0000000001.002000) can0 000#0101\n"
+                                             "(0000000001.003000) can0 201#0F00\n"
+                                             "(0000000001.004000) can0 080#\n";
+    std::ofstream(dir_ / "pdos.toml") << "[TPDO1]\nmap = [\"0x6041\"]\n";
+    std::ofstream(dir_ / "lines.servoctl") << "read 0x6041\nwrite 0x6040 15 -y\n";
+    EXPECT_EQ(perform("backup DIR/backup.json -n 1", {}), 0) << console.err_text;
+  }
+  ~Harmless() override { fs::remove_all(dir_); }
+
+  /// The exit code; frames are those that were on the bus.
+  int perform(std::string line, const std::string& option) {
+    const auto family = GetParam();
+    const std::map<std::string, std::string> parameters{
+        {"gsd600", "Pn0214"}, {"da200", "P0.03"}, {"sv2", "PA-05"}, {"ts", "Fn_33"}};
+    const auto parameter = parameters.find(family);
+    replace(line, "PARAM", parameter == parameters.end() ? "none" : parameter->second);
+    replace(line, "DIR", dir_.string());
+    replace(line, "FAMILY", family);
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(source_dir()) / "eds"))
+      if (entry.path().filename() == family + ".eds") replace(line, "EDS", entry.path().string());
+    Words words;
+    std::istringstream in(line);
+    for (std::string word; in >> word;) words.push_back(word);
+    if (!option.empty()) words.push_back(option);
+    console.err_text.clear();
+    int questions_left = 3'000;
+    Shell::Options options;
+    options.drive_folders = {fs::path(source_dir()) / "eds"};
+    options.state_folder = dir_ / "state";
+    options.clock = sim::SimBus::Clock::virtual_time;
+    options.defaults.bus = "sim:" + family + "@1," + family + "@2";
+    options.defaults.drive = family;
+    options.defaults.trace = dir_ / "trace.log";
+    options.cancelled = [&] { return words.front() == "sim" && questions_left-- <= 0; };
+    fs::remove(dir_ / "trace.log");
+    int code = 0;
+    {
+      Shell shell(console, std::move(options));
+      code = is_batch(words) ? run_batch(shell, words, nullptr) : shell.run(words);
+    }
+    frames.clear();
+    std::ifstream trace(dir_ / "trace.log");
+    for (std::string text; std::getline(trace, text);)
+      if (const auto logged = can::parse_log_line(text)) frames.push_back(logged->frame);
+    return code;
+  }
+
+  void expect_harmless(const std::string& option, bool each_is_understood) {
+    std::size_t in_all = 0;
+    for (const auto* command : commands::registry()) {
+      const auto sample = kSamples.find(std::string(command->path));
+      ASSERT_NE(sample, kSamples.end()) << "give '" << command->path << "' a sample line";
+      const auto code = perform(sample->second, option);
+      // Not every family has every object; one has all.
+      if (each_is_understood)
+        EXPECT_NE(code, exit_code(Errc::usage)) << sample->second << "\n" << console.err_text;
+      for (const auto& frame : frames)
+        EXPECT_TRUE(is_harmless(frame)) << sample->second << " " << option << ": " << can::to_string(frame);
+      in_all += frames.size();
+    }
+    EXPECT_GT(in_all, 500U) << "most of them read something";
+  }
+
+  fs::path dir_ =
+      fs::temp_directory_path() / ("servoctl-harmless-" + std::to_string(::getpid()) + "-" + GetParam());
+  RecordingConsole console;
+  std::vector<can::Frame> frames;
+};
+
+TEST_P(Harmless, ReadOnlySendsNothingButReadingRequests) {
+  expect_harmless("--read-only", GetParam() == "gsd600");
+}
+
+TEST_P(Harmless, ADryRunSendsNothingButReadingRequests) {
+  expect_harmless("--dry-run", GetParam() == "gsd600");
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, Harmless, testing::Values("gsd600", "dm", "da200", "ts", "sv2", "cia402"),
+                         [](const auto& family) { return family.param; });
+
+}  // namespace
+}  // namespace servoctl::cli
