@@ -1,4 +1,5 @@
 #include "commands/command.hpp"
+#include "commands/completion_words.hpp"
 #include "commands/shell_completion.hpp"
 #include "drive/naming.hpp"
 
@@ -17,7 +18,8 @@ constexpr Parameter kParameters[] = {
 
 std::string lines(const std::vector<std::string>& words) {
   std::string out;
-  for (const auto& word : words) out += (out.empty() ? "" : "\n") + word;
+  for (const auto& word : words)
+    if (can_be_offered(word)) out += (out.empty() ? "" : "\n") + word;
   return out;
 }
 

@@ -1,8 +1,17 @@
 #include "commands/completion_words.hpp"
 
+#include <algorithm>
+
+#include "base/printable.hpp"
 #include "base/text.hpp"
 
 namespace servoctl::commands {
+
+bool can_be_offered(std::string_view name) {
+  constexpr std::string_view kOwnMeaning = " \"#$&'()*;<>?[\\]^`{|}~!";
+  return !name.empty() && name.front() != '-' && name.find_first_of(kOwnMeaning) == std::string_view::npos &&
+         printable(name) == name;
+}
 
 std::string shell_quoted(std::string_view text) {
   std::string out = "'";

@@ -10,6 +10,10 @@
 namespace servoctl::commands {
 
 /// The text in single quotes, for any shell.
+/// Whether a name may be offered where a command line is completed: it stands for itself there, in a shell
+/// and at the prompt. Names come from files.
+bool can_be_offered(std::string_view name);
+
 std::string shell_quoted(std::string_view text);
 
 /// Names of the options, with their short names when only those that take a value are asked for.

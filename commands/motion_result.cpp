@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/csv.hpp"
 #include "base/file.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
@@ -167,7 +168,8 @@ Result<void> write_csv(const std::string& path, const std::vector<MotionSample>&
   for (const auto channel : kEvery) {
     const auto unit = units.unit(session::object_of(channel));
     if (units.has(session::object_of(channel)))
-      out += fmt::format(",{}{}", session::name(channel), unit.empty() ? "" : " (" + unit + ")");
+      out +=
+          "," + csv_cell(fmt::format("{}{}", session::name(channel), unit.empty() ? "" : " (" + unit + ")"));
   }
   out += '\n';
   for (const auto& sample : samples) {

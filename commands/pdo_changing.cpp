@@ -218,7 +218,7 @@ class Changing {
         settled = false;
       }
     if (settled) return before.settle();
-    if (auto notice = before.notice(); !notice.empty()) context_->notices.push_back(std::move(notice));
+    for (auto& notice : before.notices()) context_->notices.push_back(std::move(notice));
   }
 
   void add_astray(const Job& job, const session::RestoreOutcome& outcome) {

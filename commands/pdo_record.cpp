@@ -1,42 +1,113 @@
 #include "commands/pdo_record.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <cctype>
+#include <utility>
 
+#include "base/bytes.hpp"
 #include "commands/backup_file.hpp"
+#include "session/open_bus.hpp"
 
 namespace servoctl::commands {
 namespace {
 
 namespace fs = std::filesystem;
+using session::Identity;
 
-/// A bus as a part of a file's name; a long one (a simulated cabinet) is cut.
+/// Tells names apart that are the same without their punctuation (FNV-1a).
+std::uint32_t hash_of(std::string_view text) {
+  std::uint32_t out = 0x811C9DC5;
+  for (const char c : text) out = (out ^ static_cast<unsigned char>(c)) * 0x01000193;
+  return out;
+}
+
+/// A bus as a part of a file's name: the same for every way to write it, and for no other bus.
 std::string name_of_bus(std::string_view url) {
   constexpr std::size_t kMost = 100;
-  std::string out(url.substr(0, kMost));
+  const auto bus = session::canonical_url(url);
+  auto out = bus.substr(0, kMost);
   for (auto& c : out)
     if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '-';
+  return out == bus ? out : fmt::format("{}-{:08x}", out, hash_of(bus));
+}
+
+std::string name_of_drive(const Identity& drive) {
+  std::string out;
+  const auto add = [&](std::string_view mark, const std::optional<std::uint32_t>& number) {
+    if (number) out += fmt::format("-{}{:X}", mark, *number);
+  };
+  add("v", drive.vendor_id);
+  add("p", drive.product_code);
+  add("s", drive.serial);
   return out;
+}
+
+/// What tells one drive from another; a drive that refuses an object does not tell it. Errors: there is no
+/// answer.
+Result<Identity> read_drive(session::Session& session, std::uint8_t node) {
+  Identity out;
+  out.node = node;
+  const std::pair<std::uint8_t, std::optional<std::uint32_t>*> parts[] = {
+      {1, &out.vendor_id}, {2, &out.product_code}, {4, &out.serial}};
+  for (const auto& [sub, place] : parts) {
+    const auto answer = session.upload(node, {0x1018, sub});
+    if (!answer && answer.error().code != Errc::sdo_abort) return tl::unexpected<Error>(answer.error());
+    if (answer && !answer->empty() && answer->size() <= 4)
+      *place = static_cast<std::uint32_t>(load_le(*answer));
+  }
+  return out;
+}
+
+bool is_other_drive(const Identity& one, const Identity& other) {
+  const auto differ = [](const auto& a, const auto& b) { return a && b && *a != *b; };
+  return differ(one.vendor_id, other.vendor_id) || differ(one.product_code, other.product_code) ||
+         differ(one.serial, other.serial);
+}
+
+/// Such as `vendor 0x2E, product 0x26, serial 7`.
+std::string text_of(const Identity& drive) {
+  std::string out;
+  const auto add = [&](const std::string& part) { out += (out.empty() ? "" : ", ") + part; };
+  if (drive.vendor_id) add(fmt::format("vendor 0x{:X}", *drive.vendor_id));
+  if (drive.product_code) add(fmt::format("product 0x{:X}", *drive.product_code));
+  if (drive.serial) add(fmt::format("serial {}", *drive.serial));
+  return out.empty() ? "unknown" : out;
 }
 
 }  // namespace
 
-PdoRecord::PdoRecord(const Context& context, std::uint8_t node) : context_(&context), node_(node) {
-  if (!context.state_folder.empty())
-    file_ = context.state_folder /
-            fmt::format("pdos-before-{}-node-{}.json", name_of_bus(context.session->url()), node);
-}
+PdoRecord::PdoRecord(const Context& context, std::uint8_t node)
+    : context_(&context),
+      node_(node),
+      name_(fmt::format("pdos-before-{}-node-{}", name_of_bus(context.session->url()), node)) {}
 
-/// The journal is written last and removed first.
-bool PdoRecord::exists() const {
+/// Of any drive that has been this node. The journal is written last and removed first.
+std::vector<fs::path> PdoRecord::found() const {
+  std::vector<fs::path> out;
+  if (context_->state_folder.empty()) return out;
   std::error_code none;
-  return !file_.empty() && fs::exists(journal_of(file_), none);
+  for (fs::directory_iterator at(context_->state_folder, none), end; !none && at != end; at.increment(none)) {
+    const auto name = at->path().filename().string();
+    const bool ours = name.starts_with(name_) && name.size() > name_.size() &&
+                      (name[name_.size()] == '.' || name[name_.size()] == '-');
+    if (ours && name.ends_with(".json") && fs::exists(journal_of(at->path()), none))
+      out.push_back(at->path());
+  }
+  std::sort(out.begin(), out.end());
+  return out;
 }
 
 Result<void> PdoRecord::begin(const session::Values& present, bool keep, bool unlock) {
-  if (file_.empty() || exists()) return {};
+  if (context_->state_folder.empty()) return {};
+  auto drive = read_drive(*context_->session, node_);
+  if (!drive) return tl::unexpected<Error>(drive.error());
+  for (const auto& older : found())
+    if (const auto backup = read_backup(older); backup && !is_other_drive(backup->identity, *drive))
+      return {};
+  file_ = context_->state_folder / (name_ + name_of_drive(*drive) + ".json");
   session::Snapshot snapshot;
-  snapshot.identity.node = node_;
+  snapshot.identity = std::move(*drive);
   for (const auto& [object, data] : present) snapshot.entries.push_back({object, data, {}});
   RestoreJournal journal;
   journal.checksum = checksum(make_backup(*context_, snapshot));
@@ -50,9 +121,22 @@ Result<void> PdoRecord::begin(const session::Values& present, bool keep, bool un
 
 Result<std::optional<RestoreJournal>> PdoRecord::take_up(const fs::path& file) {
   std::error_code none;
-  if (!exists() || !fs::equivalent(file, file_, none)) return std::optional<RestoreJournal>();
-  mine_ = true;
-  return read_journal(journal_of(file_));
+  for (const auto& record : found()) {
+    if (!fs::equivalent(file, record, none)) continue;
+    const auto backup = read_backup(record);
+    if (!backup) return tl::unexpected<Error>(backup.error());
+    const auto drive = read_drive(*context_->session, node_);
+    if (!drive) return tl::unexpected<Error>(drive.error());
+    if (is_other_drive(backup->identity, *drive))
+      return fail(Errc::refused,
+                  fmt::format("node {} is another drive ({}) than the one whose change was cut off ({})",
+                              node_, text_of(*drive), text_of(backup->identity)),
+                  "put that drive back to its node, or give this one the PDOs by `pdo save` and `pdo apply`");
+    mine_ = true;
+    file_ = record;
+    return read_journal(journal_of(record));
+  }
+  return std::optional<RestoreJournal>();
 }
 
 void PdoRecord::settle() {
@@ -63,20 +147,34 @@ void PdoRecord::settle() {
   mine_ = false;
 }
 
-std::string PdoRecord::notice() const {
-  if (!exists()) return {};
-  const auto backup = read_backup(file_);
+std::string PdoRecord::notice_of(const fs::path& record, const std::optional<Identity>& drive) const {
+  const auto backup = read_backup(record);
+  const auto since = backup ? ", begun at " + backup->time + "," : std::string();
+  if (backup && drive && is_other_drive(backup->identity, *drive))
+    return fmt::format(
+        "node {}: a change of the PDOs of another drive that was node {} here ({}){} did not come to its "
+        "end; {} "
+        "holds what they were, for that drive (delete the file when that is not wanted)",
+        node_, node_, text_of(backup->identity), since, record.string());
   return fmt::format(
       "node {}: a change of its PDOs{} did not come to its end; `pdo apply {} -n {}{}` puts back what they "
       "were (delete the file when that is not wanted)",
-      node_, backup ? ", begun at " + backup->time + "," : "", file_.string(), node_,
-      backup ? " -d " + backup->family : "");
+      node_, since, record.string(), node_, backup ? " -d " + backup->family : "");
+}
+
+std::vector<std::string> PdoRecord::notices() const {
+  const auto records = found();
+  std::vector<std::string> out;
+  if (records.empty()) return out;
+  const auto drive = read_drive(*context_->session, node_);
+  for (const auto& record : records)
+    out.push_back(notice_of(record, drive ? std::optional(*drive) : std::nullopt));
+  return out;
 }
 
 void tell_cut_off_changes(Context& context) {
   for (const auto node : context.nodes)
-    if (auto notice = PdoRecord(context, node).notice(); !notice.empty())
-      context.notices.push_back(std::move(notice));
+    for (auto& notice : PdoRecord(context, node).notices()) context.notices.push_back(std::move(notice));
 }
 
 }  // namespace servoctl::commands

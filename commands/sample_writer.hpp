@@ -4,6 +4,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/printable.hpp"
 #include "commands/command.hpp"
 #include "report/json_writer.hpp"
 
@@ -22,7 +23,7 @@ class SampleWriter {
   bool wants_records() const { return context_->wants_records || context_->keeps_samples; }
 
   void add_line(std::string_view line) {
-    lines_ += line;
+    lines_ += printable(line);
     end_line();
   }
   /// Adds a record; `fill` is given a JsonWriter and writes the members.

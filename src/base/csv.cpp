@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "base/number.hpp"
+
 namespace servoctl {
 namespace {
 
@@ -72,6 +74,34 @@ tl::unexpected<Error> fail_at(std::string_view file, std::uint32_t line, const s
   return fail(std::move(error));
 }
 
+/// Whether a spreadsheet would take the text for a formula, were it not for apostrophes before it.
+bool is_formula(std::string_view text) {
+  text.remove_prefix(std::min(text.find_first_not_of('\''), text.size()));
+  if (text.empty()) return false;
+  if (text.front() == '\t' || text.front() == '\r' || text.front() == '\n') return true;
+  text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n'"), text.size()));
+  if (text.empty()) return false;
+  if (std::string_view("=+-@").find(text.front()) != std::string_view::npos) return true;
+  // Their full-width forms do the same.
+  constexpr std::string_view kWide[] = {"＝", "＋", "－", "＠"};
+  return std::any_of(std::begin(kWide), std::end(kWide), [&](auto mark) { return text.starts_with(mark); });
+}
+
+std::string quoted(std::string_view text) {
+  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"') out += '"';
+    out += c;
+  }
+  return out + '"';
+}
+
+void take_apostrophes(std::vector<std::string>& cells) {
+  for (auto& cell : cells)
+    if (cell.starts_with('\'') && is_formula(cell)) cell.erase(0, 1);
+}
+
 }  // namespace
 
 std::size_t CsvTable::column(std::string_view name) const {
@@ -86,6 +116,7 @@ Result<CsvTable> parse_csv(std::string_view text, std::string_view file) {
     const auto line = splitter.line();
     if (!splitter.next(cells)) return fail_at(file, line, "a quote is opened here and never closed");
     if (cells.size() == 1 && cells.front().empty()) continue;
+    take_apostrophes(cells);
     if (table.columns.empty()) {
       table.columns = cells;
       auto sorted = cells;
@@ -107,13 +138,8 @@ Result<CsvTable> parse_csv(std::string_view text, std::string_view file) {
 }
 
 std::string csv_cell(std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"') out += '"';
-    out += c;
-  }
-  return out + '"';
+  if (is_formula(text) && !parse_real(text)) return quoted("'" + std::string(text));
+  return quoted(text);
 }
 
 }  // namespace servoctl

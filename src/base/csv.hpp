@@ -23,11 +23,15 @@ struct CsvTable {
   std::size_t column(std::string_view name) const;
 };
 
-/// Reads the whole text. `file` is used in messages only. A record with too few or too many cells, an
-/// unclosed quote or a column named twice is an error of Errc::file with its line.
+/// Reads the whole text; an apostrophe that csv_cell() would have put before a cell is no part of it. `file`
+/// is used in messages only. A record with too few or too many cells, an unclosed quote or a column named
+/// twice is an error of Errc::file with its line.
 Result<CsvTable> parse_csv(std::string_view text, std::string_view file);
 
-/// A cell as parse_csv() reads it: in quotes where it holds a comma, a quote or a line break.
+/// A cell as parse_csv() reads it: in quotes where it holds a comma, a quote or a line break. What a
+/// spreadsheet would take for a formula (a text, not a number, that begins with `=`, `+`, `-` or `@`, perhaps
+/// behind blanks or apostrophes, and one that begins with a tab or a line break) is written with an
+/// apostrophe before it, which parse_csv() takes away: `=1+1` is `'=1+1`, `'=x` is `''=x`, `-5` is `-5`.
 std::string csv_cell(std::string_view text);
 
 }  // namespace servoctl

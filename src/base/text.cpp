@@ -1,52 +1,18 @@
 #include "base/text.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstdint>
 #include <numeric>
 #include <utility>
+
+#include "base/utf8.hpp"
 
 namespace servoctl {
 namespace {
 
 char lower_char(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
-struct CodePoint {
-  char32_t value = 0;
-  std::size_t size = 1;  ///< Bytes it takes.
-};
-
-CodePoint decode_utf8(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned char first = byte(0);
-  const std::size_t size = first < 0x80 ? 1 : first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : first >= 0xC2 ? 2 : 0;
-  if (size <= 1 || size > text.size()) return {size == 1 ? first : U'\uFFFD', 1};
-  char32_t value = first & (0xFFU >> (size + 1));
-  for (std::size_t i = 1; i < size; ++i) {
-    if ((byte(i) & 0xC0U) != 0x80) return {U'\uFFFD', 1};
-    value = value << 6U | (byte(i) & 0x3FU);
-  }
-  constexpr char32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000};
-  const bool surrogate = value >= 0xD800 && value <= 0xDFFF;
-  if (value < kLeast[size] || value > 0x10FFFF || surrogate) return {U'\uFFFD', 1};
-  return {value, size};
-}
-
-std::size_t columns(char32_t c) {
-  static constexpr std::array<std::pair<char32_t, char32_t>, 9> kWide{{{0x1100, 0x115F},
-                                                                       {0x2E80, 0x303E},
-                                                                       {0x3041, 0xA4CF},
-                                                                       {0xAC00, 0xD7A3},
-                                                                       {0xF900, 0xFAFF},
-                                                                       {0xFE30, 0xFE6F},
-                                                                       {0xFF00, 0xFF60},
-                                                                       {0xFFE0, 0xFFE6},
-                                                                       {0x20000, 0x3FFFD}}};
-  if (c >= 0x0300 && c <= 0x036F) return 0;
-  for (const auto& range : kWide)
-    if (c >= range.first && c <= range.second) return 2;
-  return 1;
-}
+/// A byte that is no UTF-8 is shown as one character.
+std::size_t columns_of(const CodePoint& c) { return c.value ? columns(*c.value) : 1; }
 
 }  // namespace
 
@@ -88,7 +54,7 @@ std::size_t display_width(std::string_view text) {
   std::size_t width = 0;
   while (!text.empty()) {
     const auto c = decode_utf8(text);
-    width += columns(c.value);
+    width += columns_of(c);
     text.remove_prefix(c.size);
   }
   return width;
@@ -104,43 +70,6 @@ std::string pad_left(std::string_view text, std::size_t width) {
   return std::string(width > used ? width - used : 0, ' ') + std::string(text);
 }
 
-std::string printable(std::string_view text) {
-  static constexpr char kDigits[] = "0123456789ABCDEF";
-  std::string out;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte >= 0x20 && byte != 0x7F)
-      out += c;
-    else if (c == '\n')
-      out += "\\n";
-    else if (c == '\t')
-      out += "\\t";
-    else
-      out += std::string("\\x") + kDigits[byte >> 4U] + kDigits[byte & 0x0FU];
-  }
-  return out;
-}
-
-bool is_utf8(std::string_view text) {
-  while (!text.empty()) {
-    const auto c = decode_utf8(text);
-    if (c.size == 1 && c.value >= 0x80) return false;
-    text.remove_prefix(c.size);
-  }
-  return true;
-}
-
-std::string valid_utf8(std::string_view text) {
-  std::string out;
-  while (!text.empty()) {
-    const auto c = decode_utf8(text);
-    const bool valid = c.value != 0xFFFE && c.value != 0xFFFF && (c.size > 1 || c.value < 0x80);
-    out += valid ? text.substr(0, c.size) : std::string_view("\xEF\xBF\xBD");
-    text.remove_prefix(c.size);
-  }
-  return out;
-}
-
 std::string clip(std::string_view text, std::size_t width) {
   if (display_width(text) <= width) return std::string(text);
   if (width == 0) return {};
@@ -148,8 +77,8 @@ std::string clip(std::string_view text, std::size_t width) {
   std::size_t at = 0;
   while (at < text.size()) {
     const auto c = decode_utf8(text.substr(at));
-    if (used + columns(c.value) > width - 1) break;
-    used += columns(c.value);
+    if (used + columns_of(c) > width - 1) break;
+    used += columns_of(c);
     at += c.size;
   }
   return std::string(text.substr(0, at)) + "…";

@@ -29,15 +29,6 @@ std::size_t display_width(std::string_view text);
 std::string pad_right(std::string_view text, std::size_t width);
 std::string pad_left(std::string_view text, std::size_t width);
 
-/// `text` with control characters written out (`\\n`, `\\x1B`): what a drive sends must not move the cursor.
-std::string printable(std::string_view text);
-
-/// Whether the text is UTF-8 throughout.
-bool is_utf8(std::string_view text);
-
-/// `text` in valid UTF-8 that XML allows (no control characters are looked at): what is none becomes U+FFFD.
-std::string valid_utf8(std::string_view text);
-
 /// At most `width` columns of `text`; where something is cut, the last column is `…`.
 std::string clip(std::string_view text, std::size_t width);
 

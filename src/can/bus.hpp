@@ -43,6 +43,9 @@ class Bus {
   /// nobody is to answer. Zero, as at the beginning: every frame at once.
   virtual void gather(Duration /*delay*/) {}
 
+  /// Whatever is kept back for a file is written to it now; see trace_to().
+  virtual void flush_trace() {}
+
   /// A descriptor that becomes readable when receive() has something to give, for use in a poll loop; -1 if
   /// none.
   virtual int poll_fd() const { return -1; }

@@ -75,12 +75,13 @@ std::optional<LogFrame> parse_log_line(std::string_view line) {
 }
 
 TraceBus::TraceBus(std::unique_ptr<Bus> inner, Descriptor file, std::string file_name,
-                   std::string interface_name, Duration clock_offset)
+                   std::string interface_name, Duration clock_offset, TraceFailed failed)
     : inner_(std::move(inner)),
       file_(std::move(file)),
       file_name_(std::move(file_name)),
       interface_name_(std::move(interface_name)),
-      clock_offset_(clock_offset) {}
+      clock_offset_(clock_offset),
+      failed_(std::move(failed)) {}
 
 TraceBus::~TraceBus() { flush_to_slow_reader(); }
 
@@ -94,7 +95,6 @@ Result<void> TraceBus::send(const Frame& frame) {
 }
 
 Result<std::optional<Frame>> TraceBus::receive(TimePoint deadline) {
-  if (failure_) return fail(*std::exchange(failure_, std::nullopt));
   auto result = inner_->receive(std::min(deadline, flush_due()));
   const bool woken_to_flush = result && !*result && now() >= flush_due() && now() < deadline;
   flush_when_due();
@@ -137,15 +137,20 @@ void TraceBus::flush() {
       stalled_ = true;
       oldest_ = now();  // Asked again when that is due.
     } else if (errno != EINTR) {
-      failure_ =
-          fail(Errc::file, fmt::format("cannot write the trace {}: {}", file_name_, system_text(errno)),
-               "the trace ends here; the bus goes on without it")
-              .value();
-      file_ = Descriptor();
+      give_up(errno);
       rest = {};
     }
   }
   buffer_.erase(0, buffer_.size() - rest.size());
+}
+
+/// No frame waits for the trace, and none is kept for it any more.
+void TraceBus::give_up(int error) {
+  file_ = Descriptor();
+  if (failed_)
+    failed_(fail(Errc::file, fmt::format("cannot write the trace {}: {}", file_name_, system_text(error)),
+                 "the trace ends here; the bus goes on without it")
+                .value());
 }
 
 /// What is left then is lost, because nobody read it.
@@ -171,7 +176,7 @@ namespace {
 /// Never waits for a reader: neither here nor when it is written.
 Result<Descriptor> open_trace(const std::filesystem::path& file) {
   constexpr int kFlags = O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK | O_NOCTTY;
-  Descriptor log(::open(file.c_str(), kFlags, 0644));
+  Descriptor log(::open(file.c_str(), kFlags, 0666));
   if (log) return log;
   if (errno == ENXIO)
     return fail(Errc::file,
@@ -184,14 +189,14 @@ Result<Descriptor> open_trace(const std::filesystem::path& file) {
 }  // namespace
 
 Result<std::unique_ptr<Bus>> trace_to(std::unique_ptr<Bus> inner, const std::filesystem::path& file,
-                                      std::string_view interface_name, TraceClock clock) {
+                                      std::string_view interface_name, TraceClock clock, TraceFailed failed) {
   auto log = open_trace(file);
   if (!log) return tl::unexpected<Error>(log.error());
   // Taken once, so that a step of the system clock does not tear the trace apart.
   const auto wall = std::chrono::duration_cast<Duration>(std::chrono::system_clock::now().time_since_epoch());
   const auto offset = clock == TraceClock::wall ? wall - inner->now().time_since_epoch() : Duration::zero();
   return std::make_unique<TraceBus>(std::move(inner), std::move(*log), file.string(),
-                                    std::string(interface_name), offset);
+                                    std::string(interface_name), offset, std::move(failed));
 }
 
 }  // namespace servoctl::can

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,15 +22,19 @@ enum class TraceClock {
   bus,   ///< Zero of the bus's own now(): for simulated buses.
 };
 
+/// Told what kept a trace from being written; Errc::file.
+using TraceFailed = std::function<void(const Error& error)>;
+
 /// A bus that passes everything on to `inner` and writes every frame, sent and received, to `file` in the
 /// form of `candump -L`, which canplayer and log2asc read: `(1736412345.123456) can0 601#4041600000000000`.
 /// An existing file is replaced. A frame reaches the file at most 100 ms late while the bus is in use, as
-/// next_event() asks for. A pipe or terminal that nobody reads is not waited for: a megabyte is kept for it,
-/// frames beyond that are left out and counted in take_notices(). Errc::file when the file cannot be made, or
-/// is a named pipe that nobody has opened for reading. When it cannot be written later on, the
-/// next receive() says so, once, and the bus goes on without a trace.
+/// next_event() asks for; flush_trace() and the end of the bus bring what is left. A pipe or terminal that nobody
+/// reads is not waited for: a megabyte is kept for it, frames beyond that are left out and counted in
+/// take_notices(). Errc::file when the file cannot be made, or is a named pipe that nobody has opened for reading.
+/// When it cannot be written later on, `failed` is told, once, and the bus goes on without a trace.
 Result<std::unique_ptr<Bus>> trace_to(std::unique_ptr<Bus> inner, const std::filesystem::path& file,
-                                      std::string_view interface_name, TraceClock clock = TraceClock::wall);
+                                      std::string_view interface_name, TraceClock clock = TraceClock::wall,
+                                      TraceFailed failed = {});
 
 /// One line of a trace.
 struct LogFrame {
@@ -50,7 +55,7 @@ std::optional<LogFrame> parse_log_line(std::string_view line);
 class TraceBus final : public Bus {
  public:
   TraceBus(std::unique_ptr<Bus> inner, Descriptor file, std::string file_name, std::string interface_name,
-           Duration clock_offset);
+           Duration clock_offset, TraceFailed failed);
   ~TraceBus() override;
 
   TimePoint now() const override { return inner_->now(); }
@@ -62,11 +67,13 @@ class TraceBus final : public Bus {
   int poll_fd() const override { return inner_->poll_fd(); }
   TimePoint next_event() const override;
   std::vector<std::string> take_notices() override;
+  void flush_trace() override { flush(); }
 
  private:
   void record(const Frame& frame, TimePoint time);
   void flush();
   void flush_to_slow_reader();
+  void give_up(int error);
   void flush_when_due();
   TimePoint flush_due() const;
 
@@ -79,7 +86,7 @@ class TraceBus final : public Bus {
   TimePoint oldest_{};    ///< When the first line in the buffer was put there.
   bool stalled_ = false;  ///< The reader had no room when it was asked last.
   std::size_t left_out_ = 0;
-  std::optional<Error> failure_;
+  TraceFailed failed_;
 };
 
 }  // namespace servoctl::can

@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "base/printable.hpp"
 #include "base/text.hpp"
 #include "can/descriptor.hpp"
 #include "can/socketcan.hpp"
@@ -36,7 +37,9 @@ Error no_bus() {
 
 Result<session::Session*> BusHolder::open(const Settings& settings) {
   if (settings.bus.empty()) return fail(no_bus());
-  if (session_ == nullptr || session_->url() != settings.bus || bus_options_.trace != settings.trace) {
+  if (session_ == nullptr ||
+      session::canonical_url(session_->url()) != session::canonical_url(settings.bus) ||
+      bus_options_.trace != settings.trace) {
     if (session_) stop_and_disable();
     stop_sync();
     drop();
@@ -55,15 +58,30 @@ Result<void> BusHolder::connect(const std::string& url) {
   // Boot-ups of drives that are simulated in this process are no news.
   if (auto heard = session->listen(); !heard) return heard;
   (void)session->take_events();
-  if (auto left = left_energised_.extract(url)) session->energised() = std::move(left.mapped());
+  if (auto left = left_energised_.extract(session::canonical_url(url)))
+    session->energised() = std::move(left.mapped());
   session_ = std::move(session);
   return {};
+}
+
+/// What breaks while a line runs is told at once: a recording may go on for hours.
+void BusHolder::on_trace_failed(const Error& error) {
+  trace_failure_ = error;
+  if (!flushing_)
+    console_->err(fmt::format("notice: {}; {}\n", printable(error.message), printable(error.hint)));
+}
+
+std::optional<Error> BusHolder::take_trace_failure() {
+  flushing_ = true;
+  if (session_) session_->bus().flush_trace();
+  flushing_ = false;
+  return std::exchange(trace_failure_, std::nullopt);
 }
 
 /// Closes the bus; what is still energised stays known.
 void BusHolder::drop() {
   if (session_ && !session_->energised().empty())
-    left_energised_.insert_or_assign(session_->url(), std::move(session_->energised()));
+    left_energised_.insert_or_assign(session::canonical_url(session_->url()), std::move(session_->energised()));
   session_.reset();
 }
 

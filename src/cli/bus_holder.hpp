@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
+#include <set>
 #include <string>
 
 #include "cli/console.hpp"
@@ -19,6 +21,7 @@ class BusHolder {
   /// `session_options` hold for every bus that is opened, `bus_options.trace` is that of the settings.
   BusHolder(Console& console, session::BusOptions bus_options, session::Options session_options)
       : console_(&console), bus_options_(std::move(bus_options)), options_(std::move(session_options)) {
+    bus_options_.trace_failed = [this](const Error& error) { on_trace_failed(error); };
     console_->set_service([this] { return serve(); });
   }
   BusHolder(const BusHolder&) = delete;
@@ -30,6 +33,11 @@ class BusHolder {
   Result<session::Session*> open(const Settings& settings);
   /// The bus as it is open now; null when none is.
   session::Session* session() { return session_.get(); }
+
+  /// What kept the trace from being written since the last call; what is left for it is written first.
+  std::optional<Error> take_trace_failure();
+  /// Closes the bus.
+  void close() { drop(); }
 
   /// Ends the SYNC that is produced, and says so.
   void stop_sync();
@@ -47,13 +55,16 @@ class BusHolder {
   Result<void> connect_again(const std::string& url, const std::set<std::uint8_t>& nodes);
   void stop_and_disable();
   void drop();
+  void on_trace_failed(const Error& error);
   void warn(std::uint8_t node, std::string_view why);
 
   Console* console_;
   session::BusOptions bus_options_;
   session::Options options_;
+  std::optional<Error> trace_failure_;  ///< Outlives the bus, which may tell of it at its very end.
+  bool flushing_ = false;
   std::unique_ptr<session::Session> session_;
-  std::map<std::string, session::EnergisedNodes> left_energised_;  ///< By the URL of a bus that is not open.
+  std::map<std::string, session::EnergisedNodes> left_energised_;  ///< By canonical_url() of one not open.
 };
 
 }  // namespace servoctl::cli

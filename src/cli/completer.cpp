@@ -6,6 +6,7 @@
 #include "base/text.hpp"
 #include "can/socketcan.hpp"
 #include "cli/prompt_words.hpp"
+#include "commands/completion_words.hpp"
 #include "commands/help.hpp"
 #include "drive/naming.hpp"
 
@@ -42,7 +43,7 @@ class Candidates {
       : last_(std::move(last)), shell_(&shell), family_(std::move(family)) {}
 
   void add(std::string_view word) {
-    if (starts_with_nocase(word, last_) &&
+    if (starts_with_nocase(word, last_) && commands::can_be_offered(word) &&
         std::find(out_.words.begin(), out_.words.end(), word) == out_.words.end())
       out_.words.emplace_back(word);
   }

@@ -50,8 +50,8 @@ void StandardConsole::show(LiveOutput& output, std::string_view text) const {
   output.offer(text, waits ? kPatience : Duration::zero());
 }
 
-void StandardConsole::out(std::string_view text) { show(out_, text); }
-void StandardConsole::err(std::string_view text) { show(err_, text); }
+void StandardConsole::write_out(std::string_view text) { show(out_, text); }
+void StandardConsole::write_err(std::string_view text) { show(err_, text); }
 
 void StandardConsole::set_care(session::Care care) {
   const bool was_live = std::exchange(care_, care) != session::Care::none;
@@ -73,7 +73,7 @@ void StandardConsole::finish() {
 }
 
 void StandardConsole::show_progress(std::string_view line) {
-  if (::isatty(STDERR_FILENO) == 1) err("\r\033[K" + std::string(line));
+  if (::isatty(STDERR_FILENO) == 1) write_err("\r\033[K" + printable(line));
 }
 
 bool StandardConsole::ask(std::string_view question) {

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/printable.hpp"
 #include "base/time.hpp"
 #include "cli/live_output.hpp"
 #include "commands/keys.hpp"
@@ -21,8 +22,12 @@ class Console {
   Console& operator=(const Console&) = delete;
   virtual ~Console() = default;
 
-  virtual void out(std::string_view text) = 0;  ///< Data.
-  virtual void err(std::string_view text) = 0;  ///< Errors, notices, progress.
+  /// Data. Whatever it holds, nothing but printable_lines() of it leaves the program.
+  void out(std::string_view text) { write_out(printable_lines(text)); }
+  /// Errors, notices, progress; as out().
+  void err(std::string_view text) { write_err(printable_lines(text)); }
+  /// Empties the line the cursor is in; only where somebody looks.
+  virtual void wipe_line() {}
   /// Shows this line in place of the one shown before; an empty one wipes it. Only where somebody looks.
   virtual void show_progress(std::string_view line) = 0;
   /// Asks a yes-or-no question; false when there is nobody to ask or the answer is no.
@@ -47,6 +52,8 @@ class Console {
   void set_service(std::function<Duration()> service) { service_ = std::move(service); }
 
  protected:
+  virtual void write_out(std::string_view text) = 0;
+  virtual void write_err(std::string_view text) = 0;
   Duration serve() const { return service_ ? service_() : Duration::max(); }
 
  private:
@@ -56,8 +63,7 @@ class Console {
 /// Standard streams of the process.
 class StandardConsole final : public Console {
  public:
-  void out(std::string_view text) override;
-  void err(std::string_view text) override;
+  void wipe_line() override { write_out("\r\033[K"); }
   void show_progress(std::string_view line) override;
   bool ask(std::string_view question) override;
   void pause(std::string_view text) override;
@@ -73,6 +79,10 @@ class StandardConsole final : public Console {
   void finish();
   /// The first error (errno) that kept data from being written; 0 when all of it was.
   int write_error() const { return out_.error(); }
+
+ protected:
+  void write_out(std::string_view text) override;
+  void write_err(std::string_view text) override;
 
  private:
   bool line_is_there() const;

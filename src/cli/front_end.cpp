@@ -9,6 +9,7 @@
 #include <exception>
 #include <iostream>
 
+#include "base/printable.hpp"
 #include "cli/batch_command.hpp"
 #include "cli/console.hpp"
 #include "cli/line_runner.hpp"
@@ -59,7 +60,7 @@ std::vector<std::string> as_run(std::vector<std::string> words, std::size_t at) 
   return words;
 }
 
-int run_words(const std::vector<std::string>& words, Shell& shell, StandardConsole& console) {
+int run_lines(Shell& shell, const std::vector<std::string>& words, StandardConsole& console) {
   const auto first = match_command(words).first;
   if (first < words.size() && words[first] == "-") return run_batch(shell, as_run(words, first), &std::cin);
   if (is_batch(words)) return run_batch(shell, words, &std::cin);
@@ -87,7 +88,7 @@ int run(const std::vector<std::string>& words, StandardConsole& console) {
   }
   install_signal_handlers();
   try {
-    return run_words(words, shell, console);
+    return shell.close(run_lines(shell, words, console));
   } catch (...) {
     // Memory that ran out, or a bug: what is energised is not left to itself.
     shell.let_go();
@@ -109,7 +110,7 @@ int run_program(const std::vector<std::string>& words) {
               << "); what was shown is not complete\n  hint: what the command did on the bus is done\n";
     return code != 0 ? code : exit_code(Errc::file);
   } catch (const std::exception& e) {
-    std::cerr << "error: servoctl failed: " << e.what()
+    std::cerr << "error: servoctl failed: " << printable(e.what())
               << "\n  hint: this is a bug; please report it with the command line\n";
     return exit_code(Errc::bug);
   }

@@ -1,5 +1,6 @@
 #include "cli/outcome.hpp"
 
+#include "base/printable.hpp"
 #include "commands/records.hpp"
 
 namespace servoctl::cli {
@@ -13,9 +14,9 @@ std::string errors_text(std::span<const Error> errors) {
   std::string out;
   for (std::size_t i = 0; i < errors.size(); ++i) {
     if (i > 0 && errors[i].message == errors[i - 1].message) continue;
-    out += "error: " + errors[i].message + "\n";
+    out += "error: " + printable(errors[i].message) + "\n";
     const bool again = i + 1 < errors.size() && errors[i + 1].hint == errors[i].hint;
-    if (!errors[i].hint.empty() && !again) out += "  hint: " + errors[i].hint + "\n";
+    if (!errors[i].hint.empty() && !again) out += "  hint: " + printable(errors[i].hint) + "\n";
   }
   return out;
 }
@@ -54,7 +55,7 @@ int show(Console& console, const Outcome& outcome) {
 }
 
 void show_remarks(Console& console, const Outcome& outcome) {
-  for (const auto& notice : outcome.notices) console.err("notice: " + notice + "\n");
+  for (const auto& notice : outcome.notices) console.err("notice: " + printable(notice) + "\n");
   console.err(errors_text(outcome.errors));
 }
 

@@ -10,6 +10,8 @@
 #include <cstring>
 #include <optional>
 
+#include "base/file.hpp"
+#include "base/printable.hpp"
 #include "base/signal_wait.hpp"
 #include "cli/completer.hpp"
 #include "cli/line_runner.hpp"
@@ -31,7 +33,7 @@ class Prompt {
   Prompt& operator=(const Prompt&) = delete;
   ~Prompt() {
     rl_callback_handler_remove();
-    if (!history_.empty()) write_history(history_.c_str());
+    if (!history_.empty()) save_history();
     active_ = nullptr;
   }
 
@@ -53,6 +55,7 @@ class Prompt {
     text_ = prompt_text();
     rl_callback_handler_install(text_.c_str(), on_line);
   }
+  void save_history() const;
   std::string prompt_text() const;
   bool wait_for_key();
   bool terminal_takes() const;
@@ -78,7 +81,17 @@ std::string Prompt::prompt_text() const {
   if (!settings.bus.empty()) out += " " + settings.bus.substr(0, settings.bus.find('?'));
   if (!settings.nodes.empty()) out += " node " + settings.nodes;
   if (!settings.drive.empty()) out += " " + settings.drive;
-  return out + "> ";
+  return printable(out) + "> ";
+}
+
+/// The library writes a file from its beginning: one of ours, which then replaces the other as a whole.
+void Prompt::save_history() const {
+  const auto own = fmt::format("{}.{}", history_, ::getpid());
+  const bool saved = write_history(own.c_str()) == 0;
+  if (const auto lines = saved ? read_file(own) : Result<std::string>(std::string()); saved && lines)
+    // What was typed is worth no word when it cannot be kept.
+    (void)write_file_atomically(history_, *lines);
+  ::unlink(own.c_str());
 }
 
 int Prompt::run() {
@@ -115,7 +128,7 @@ bool Prompt::wait_for_key() {
   if (wait_or_signal(fds, left) < 0) return false;
   if (session != nullptr)
     if (const auto heard = session->listen(); !heard && heard.error().code == Errc::bus) {
-      console_->err("\r\033[K");
+      console_->wipe_line();
       shell_->report_error(heard.error(), false);
       shell_->lose_bus();
       rl_forced_update_display();
@@ -136,8 +149,8 @@ void Prompt::show_notices() {
       settings.drive.empty() ? Result<const drive::Profile*>(nullptr) : shell_->profile(settings.drive);
   const auto notices = shell_->take_notices(loaded ? *loaded : nullptr, settings.chinese);
   if (notices.empty()) return;
-  console_->out("\r\033[K");
-  for (const auto& notice : notices) console_->out("* " + notice + "\n");
+  console_->wipe_line();
+  for (const auto& notice : notices) console_->out("* " + printable(notice) + "\n");
   rl_forced_update_display();
 }
 

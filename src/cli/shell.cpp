@@ -7,6 +7,7 @@
 #include <numeric>
 #include <span>
 
+#include "base/printable.hpp"
 #include "base/text.hpp"
 #include "canopen/cob_id.hpp"
 #include "cli/batch_lines.hpp"
@@ -127,8 +128,9 @@ Result<Value> Shell::execute(Run& run, const commands::Arguments& arguments) {
   context.stays_open = stays_open_;
   context.drive_folders = options_.drive_folders;
   context.state_folder = options_.state_folder;
-  context.confirm = [this, &run](std::string_view question) -> Result<void> {
+  context.confirm = [this, &run](std::string_view asked) -> Result<void> {
     if (run.settings.yes) return {};
+    const auto question = printable(asked);
     if (!console_->can_ask())
       return fail(Errc::refused, fmt::format("this needs a confirmation: {}", question),
                   "add --yes when you mean it");
@@ -156,7 +158,7 @@ Result<Value> Shell::execute(Run& run, const commands::Arguments& arguments) {
     if (run.settings.samples)
       console_->out(report::to_json(sample) + "\n");
     else if (!run.settings.json && !line.empty())
-      console_->out(std::string(line) + "\n");
+      console_->out(printable(line) + "\n");
   };
   context.tell = [this](std::string_view text) {
     progress_.end();
@@ -309,6 +311,7 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
       const auto text = error.abort_code ? texts.find(*error.abort_code) : texts.end();
       if (text != texts.end()) error.message += " — " + text->second;
     }
+  if (auto failure = bus_.take_trace_failure()) errors.push_back(std::move(*failure));
   // A lost interface does not come back by itself: the next line opens it again.
   if (!errors.empty() && errors.front().code == Errc::bus) bus_.lose();
   return {.command = std::string(run.command->path),
@@ -317,6 +320,14 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
           .result = result ? *result : Value(),
           .errors = std::move(errors),
           .notices = std::move(run.context.notices)};
+}
+
+int Shell::close(int code) {
+  bus_.close();
+  const auto failure = bus_.take_trace_failure();
+  if (!failure) return code;
+  const auto mine = report_error(*failure, false);
+  return code == 0 ? mine : code;
 }
 
 int Shell::report_error(const Error& error, bool json, std::string_view command) {

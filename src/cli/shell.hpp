@@ -69,6 +69,8 @@ class Shell {
   /// Stops and disables the drives that were left energised, and says so: for a prompt that ends, and a file
   /// that stops in the middle. A single `enable` is left as it is.
   void let_go() { bus_.let_go(); }
+  /// Closes the bus. The exit code of the program: `code`, or that of what went wrong here.
+  int close(int code);
 
   /// The family's data, loaded once. Errors as load_profile().
   Result<const drive::Profile*> profile(const std::string& family);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/number.hpp"
+#include "base/printable.hpp"
 #include "base/text.hpp"
 
 namespace servoctl::od {
@@ -90,7 +91,7 @@ Result<Value> value_of(const IniKey& key, DataType type, std::string_view text, 
 
 }  // namespace
 
-std::string shown(std::string_view text) { return printable(clip(text.substr(0, 160), 40)); }
+std::string shown(std::string_view text) { return clip(printable(text.substr(0, 160)), 40); }
 
 std::string_view without_comment(const IniKey& key, Findings& findings) {
   const auto at = key.value.find_first_of(";#");

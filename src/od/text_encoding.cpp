@@ -8,6 +8,8 @@
 #include <cstring>
 #include <optional>
 
+#include "base/utf8.hpp"
+
 namespace servoctl::od {
 namespace {
 
@@ -28,28 +30,6 @@ std::size_t next_high(std::string_view bytes, std::size_t from) {
   }
   while (from < bytes.size() && at(bytes, from) < 0x80) ++from;
   return from;
-}
-
-/// Bytes of the UTF-8 character at `i`, 0 when it is none (overlong forms and surrogates are none).
-std::size_t utf8_length(std::string_view bytes, std::size_t i) {
-  const auto first = at(bytes, i);
-  const std::size_t length = first < 0xC2 ? 0 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : first < 0xF5 ? 4 : 0;
-  if (length == 0 || i + length > bytes.size()) return 0;
-  for (std::size_t k = 1; k < length; ++k)
-    if ((at(bytes, i + k) & 0xC0U) != 0x80) return 0;
-  const auto second = at(bytes, i + 1);
-  const bool bad = (first == 0xE0 && second < 0xA0) || (first == 0xED && second > 0x9F) ||
-                   (first == 0xF0 && second < 0x90) || (first == 0xF4 && second > 0x8F);
-  return bad ? 0 : length;
-}
-
-bool is_utf8(std::string_view bytes) {
-  for (auto i = next_high(bytes, 0); i < bytes.size(); i = next_high(bytes, i)) {
-    const auto length = utf8_length(bytes, i);
-    if (length == 0) return false;
-    i += length;
-  }
-  return true;
 }
 
 /// A Chinese character or punctuation mark of GB 2312. Two equal bytes are rather a ruled line of CP437.

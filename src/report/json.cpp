@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "base/text.hpp"
+#include "base/utf8.hpp"
 #include "report/json_writer.hpp"
 #include "report/value.hpp"
 
@@ -19,28 +19,41 @@ using Json = nlohmann::ordered_json;
 /// Bytes that stand in JSON as they are, whatever stands beside them.
 constexpr auto kPlain = [] {
   std::array<bool, 256> out{};
-  for (std::size_t byte = 0x20; byte < 0x80; ++byte) out[byte] = byte != '"' && byte != '\\';
+  for (std::size_t byte = 0x20; byte < 0x7F; ++byte) out[byte] = byte != '"' && byte != '\\';
   return out;
 }();
 
 bool is_plain(char c) { return kPlain[static_cast<unsigned char>(c)]; }
 
-void append_escaped(char c, std::string& out) {
-  switch (c) {
-    case '"': out += "\\\""; return;
-    case '\\': out += "\\\\"; return;
-    case '\b': out += "\\b"; return;
-    case '\f': out += "\\f"; return;
-    case '\n': out += "\\n"; return;
-    case '\r': out += "\\r"; return;
-    case '\t': out += "\\t"; return;
+void append_unit(std::uint32_t unit, std::string& out) {
+  fmt::format_to(std::back_inserter(out), "\\u{:04x}", unit);
+}
+
+/// The first character of the text, and how many bytes it took. What would move a cursor or hide on a
+/// terminal is the same character, written as an escape; a byte that is no UTF-8 becomes U+FFFD.
+std::size_t append_escaped(std::string_view text, std::string& out) {
+  switch (text.front()) {
+    case '"': out += "\\\""; return 1;
+    case '\\': out += "\\\\"; return 1;
+    case '\b': out += "\\b"; return 1;
+    case '\f': out += "\\f"; return 1;
+    case '\n': out += "\\n"; return 1;
+    case '\r': out += "\\r"; return 1;
+    case '\t': out += "\\t"; return 1;
     default: break;
   }
-  const auto byte = static_cast<unsigned char>(c);
-  if (byte < 0x20)
-    fmt::format_to(std::back_inserter(out), "\\u{:04x}", byte);
-  else
-    out += c;
+  const auto c = decode_utf8(text);
+  if (!c.value) {
+    out += "\xEF\xBF\xBD";
+  } else if (!is_hidden_or_control(*c.value)) {
+    out += text.substr(0, c.size);
+  } else if (*c.value <= 0xFFFF) {
+    append_unit(*c.value, out);
+  } else {
+    append_unit(0xD7C0U + (*c.value >> 10U), out);
+    append_unit(0xDC00U + (*c.value & 0x3FFU), out);
+  }
+  return c.size;
 }
 
 /// Writes a value by its kind.
@@ -139,13 +152,9 @@ void JsonWriter::value(double number) {
 }
 
 void JsonWriter::value(std::string_view text) {
-  // Names come from files and drives: a byte that is no UTF-8 becomes U+FFFD instead of an exception.
-  const bool plain = std::all_of(text.begin(), text.end(), is_plain);
-  if (!plain && !is_utf8(text))
-    return written(Json(std::string(text)).dump(-1, ' ', false, Json::error_handler_t::replace));
-  if (plain) return quoted(text, "\"");
+  if (std::all_of(text.begin(), text.end(), is_plain)) return quoted(text, "\"");
   begin('"');
-  for (const char c : text) append_escaped(c, *out_);
+  while (!text.empty()) text.remove_prefix(append_escaped(text, *out_));
   *out_ += '"';
 }
 

@@ -39,7 +39,7 @@ class JsonWriter {
   }
   /// A whole number is written without ".0", so that 40 Hz reads 40 as in text; null where it is no number.
   void value(double number);
-  /// A byte that is no UTF-8 becomes U+FFFD.
+  /// A byte that is no UTF-8 becomes U+FFFD; what is not printable() is written as an escape.
   void value(std::string_view text);
   void value(const std::string& text) { value(std::string_view(text)); }
   void value(const char* text) { value(std::string_view(text)); }

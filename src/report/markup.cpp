@@ -1,12 +1,12 @@
 #include "report/markup.hpp"
 
-#include "base/text.hpp"
+#include "base/printable.hpp"
 
 namespace servoctl::report {
 
 std::string escaped(std::string_view text) {
   std::string out;
-  for (const char c : valid_utf8(printable(text))) switch (c) {
+  for (const char c : printable(text)) switch (c) {
       case '&': out += "&amp;"; break;
       case '<': out += "&lt;"; break;
       case '>': out += "&gt;"; break;

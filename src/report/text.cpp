@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "base/printable.hpp"
 #include "base/text.hpp"
 #include "report/line.hpp"
 #include "report/plot.hpp"
@@ -58,6 +59,12 @@ namespace {
 /// A line for a place where a line break would spoil the layout.
 std::string cell_text(const Value& value) { return printable(line_text(value)); }
 
+/// A heading, as it is shown.
+template <class T>
+std::string title_of(const T& named) {
+  return printable(named.title.empty() ? named.key : named.title);
+}
+
 bool is_block(const Value& value) {
   return std::holds_alternative<Table>(value.data()) || std::holds_alternative<Record>(value.data()) ||
          std::holds_alternative<Plot>(value.data());
@@ -110,7 +117,7 @@ class TableText {
 
   static Column measure(const Table& table, std::size_t index) {
     const auto& column = table.columns[index];
-    Column out{index, display_width(column.title.empty() ? column.key : column.title), !table.rows.empty()};
+    Column out{index, display_width(title_of(column)), !table.rows.empty()};
     for (const auto& row : table.rows) {
       out.width = std::max(out.width, display_width(cell_text(row[index])));
       out.right = out.right && (is_number(row[index]) || row[index].is_null());
@@ -135,8 +142,7 @@ class TableText {
     std::string line;
     for (const auto& column : columns_) {
       const auto& head = table.columns[column.index];
-      const auto cell =
-          row == nullptr ? (head.title.empty() ? head.key : head.title) : cell_text((*row)[column.index]);
+      const auto cell = row == nullptr ? title_of(head) : cell_text((*row)[column.index]);
       const auto clipped = clip(cell, column.width);
       if (!line.empty()) line += std::string(kGap, ' ');
       line += column.right ? pad_left(clipped, column.width) : pad_right(clipped, column.width);
@@ -151,19 +157,18 @@ class TableText {
 
 std::string record_text(const Record& record, std::size_t width) {
   std::size_t left = 0;
-  const auto title = [](const Field& f) { return f.title.empty() ? f.key : f.title; };
   for (const auto& field : record)
     if (field.show != Show::json && !is_block(field.value))
-      left = std::max(left, display_width(title(field)));
+      left = std::max(left, display_width(title_of(field)));
   std::string out;
   std::string blocks;  // Below the lines, whatever their place.
   for (const auto& field : record) {
     if (field.show == Show::json || field.value.is_null()) continue;
     if (is_block(field.value))
-      blocks += "\n" + title(field) + ":\n" + to_text(field.value, width);
+      blocks += "\n" + title_of(field) + ":\n" + to_text(field.value, width);
     else
-      out +=
-          pad_right(title(field), left + kGap) + wrapped(cell_text(field.value), left + kGap, width) + '\n';
+      out += pad_right(title_of(field), left + kGap) + wrapped(cell_text(field.value), left + kGap, width) +
+             '\n';
   }
   return out + blocks;
 }
@@ -183,7 +188,7 @@ std::string to_text(const Value& value, std::size_t width) {
       out += (out.empty() || !is_block(element) ? "" : "\n") + to_text(element, width);
     return out;
   }
-  return line_text(value) + '\n';
+  return printable_lines(line_text(value)) + '\n';
 }
 
 }  // namespace servoctl::report

@@ -38,7 +38,13 @@ Result<std::unique_ptr<can::Bus>> open_bus(std::string_view url, const BusOption
   const bool simulated =
       name == "replay" || (name == "sim" && options.clock == sim::SimBus::Clock::virtual_time);
   return can::trace_to(std::move(*bus), options.trace, name,
-                       simulated ? can::TraceClock::bus : can::TraceClock::wall);
+                       simulated ? can::TraceClock::bus : can::TraceClock::wall, options.trace_failed);
+}
+
+std::string canonical_url(std::string_view url) {
+  constexpr std::string_view kPlain = "socketcan:";
+  if (url.starts_with(kPlain)) url.remove_prefix(kPlain.size());
+  return std::string(url);
 }
 
 std::optional<can::LinkState> link_of(std::string_view url) {

@@ -4,10 +4,12 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "can/bus.hpp"
 #include "can/link.hpp"
+#include "can/trace.hpp"
 #include "sim/sim_bus.hpp"
 
 namespace servoctl::session {
@@ -16,6 +18,7 @@ namespace servoctl::session {
 struct BusOptions {
   std::span<const std::filesystem::path> drive_folders;  ///< Where simulated drives find their data.
   std::filesystem::path trace;                           ///< Every frame goes into this file; empty: none.
+  can::TraceFailed trace_failed = {};                    ///< See can::trace_to().
   sim::SimBus::Clock clock = sim::SimBus::Clock::real_time;
 };
 
@@ -24,6 +27,9 @@ struct BusOptions {
 /// Errc::usage for a URL that is not understood, Errc::bus with the mending command for an interface that is
 /// missing or down.
 Result<std::unique_ptr<can::Bus>> open_bus(std::string_view url, const BusOptions& options);
+
+/// The URL in the one form in which the same bus has the same: `socketcan:can0` is `can0`.
+std::string canonical_url(std::string_view url);
 
 /// What the kernel knows of the CAN interface behind a URL; empty for any other bus.
 std::optional<can::LinkState> link_of(std::string_view url);

@@ -129,11 +129,6 @@ TEST(Clip, CutsNoCharacterInTwo) {
   EXPECT_EQ(clip("abc", 0), "");
 }
 
-TEST(Printable, WritesControlCharactersOut) {
-  EXPECT_EQ(printable("a\nb\tc\x1B[2J\x7F"), "a\\nb\\tc\\x1B[2J\\x7F");
-  EXPECT_EQ(printable("位置 é"), "位置 é");
-}
-
 TEST(Split, KeepsEmptyPartsButMakesNoneOfNothing) {
   EXPECT_EQ(split(std::string_view("a,,b"), ','), (std::vector<std::string_view>{"a", "", "b"}));
   EXPECT_EQ(split(std::string_view("a,"), ','), (std::vector<std::string_view>{"a", ""}));

@@ -199,16 +199,37 @@ TEST_F(Trace, IsCompleteWhenTheBusFails) {
 
 TEST_F(Trace, ThatCannotBeWrittenSaysSoOnceAndLeavesTheBusUsable) {
   auto inner = std::make_unique<ScriptedBus>(kStart);
-  const auto bus = trace_to(std::move(inner), "/dev/full", "can0").value();
+  std::vector<Error> told;
+  auto bus = trace_to(std::move(inner), "/dev/full", "can0", TraceClock::bus, [&](const Error& error) {
+               told.push_back(error);
+             }).value();
   ASSERT_TRUE(bus->send(frame_of("080#")));
   EXPECT_TRUE(bus->receive(kStart + milliseconds(200)));
-  const auto told = bus->receive(kStart + milliseconds(300));
-  ASSERT_FALSE(told);
-  EXPECT_EQ(told.error().code, Errc::file);
-  EXPECT_NE(told.error().message.find("/dev/full"), std::string::npos);
-  EXPECT_TRUE(bus->send(frame_of("080#")));
-  EXPECT_TRUE(bus->receive(kStart + milliseconds(900)));
-  EXPECT_TRUE(bus->receive(kStart + milliseconds(900)));
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_EQ(told.front().code, Errc::file);
+  EXPECT_NE(told.front().message.find("/dev/full"), std::string::npos);
+  for (int i = 3; i < 10; ++i) {
+    EXPECT_TRUE(bus->send(frame_of("080#")));
+    EXPECT_TRUE(bus->receive(kStart + i * milliseconds(100)));
+  }
+  bus.reset();
+  EXPECT_EQ(told.size(), 1U);
+}
+
+TEST_F(Trace, WhoseLastFramesCannotBeWrittenSaysSoAtItsEnd) {
+  for (const bool flushed : {false, true}) {
+    SCOPED_TRACE(flushed);
+    std::vector<Error> told;
+    auto bus = trace_to(std::make_unique<ScriptedBus>(kStart), "/dev/full", "can0", TraceClock::bus,
+                        [&](const Error& error) { told.push_back(error); })
+                   .value();
+    ASSERT_TRUE(bus->send(frame_of("080#")));
+    EXPECT_TRUE(told.empty());
+    if (flushed) bus->flush_trace();
+    EXPECT_EQ(told.size(), flushed ? 1U : 0U);
+    bus.reset();
+    EXPECT_EQ(told.size(), 1U);
+  }
 }
 
 /// A named pipe in place of the file, and who has it open for reading.

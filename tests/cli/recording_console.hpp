@@ -10,8 +10,6 @@ namespace servoctl::cli {
 /// A console that keeps what it is given. Answers no question unless told to.
 class RecordingConsole final : public Console {
  public:
-  void out(std::string_view text) override { out_text += text; }
-  void err(std::string_view text) override { err_text += text; }
   void show_progress(std::string_view line) override { progress.emplace_back(line); }
   bool ask(std::string_view question) override {
     questions.emplace_back(question);
@@ -29,6 +27,10 @@ class RecordingConsole final : public Console {
   bool answer = false;
   bool person = false;
   std::size_t columns = 0;
+
+ protected:
+  void write_out(std::string_view text) override { out_text += text; }
+  void write_err(std::string_view text) override { err_text += text; }
 };
 
 }  // namespace servoctl::cli

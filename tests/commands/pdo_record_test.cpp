@@ -83,7 +83,12 @@ class World {
     return run("pdo apply", arguments);
   }
   bool has_record() const { return !fs::is_empty(folder_); }
-  fs::path record() const { return folder_ / "pdos-before-can0-node-1.json"; }
+  fs::path folder() const { return folder_; }
+  fs::path record() const {
+    for (const auto& entry : fs::directory_iterator(folder_))
+      if (entry.path().extension() == ".json") return entry.path();
+    return {};
+  }
 
   session::Values read() {
     session::Session quiet(std::make_unique<TroubledBus>(bus_, drive_, Trouble{}, 1), "can0", {});
@@ -201,7 +206,7 @@ TEST(PdoRecord, StaysWhenTheDriveFallsSilentAndGoesWhenItRefuses) {
 
 TEST(PdoRecord, ThatCannotBeWrittenKeepsTheChangeFromBeginning) {
   World world(kTs);
-  fs::remove_all(world.record().parent_path());
+  fs::remove_all(world.folder());
   EXPECT_FALSE(world.map());
   EXPECT_FALSE(world.error.empty());
   EXPECT_EQ(world.read(), world.before);

@@ -68,7 +68,7 @@ TEST_P(ReplayEveryFamily, SaysThatADriveIsLeftEnergised) {
   ASSERT_TRUE(replay(kEnable));
   EXPECT_EQ(drive().power_state(), DriveState::operation_enabled);
   EXPECT_TRUE(is_noticed("node 1 IS ENERGISED"));
-  EXPECT_EQ(session->energised().contains(1), 1U) << "a prompt that ends disables it";
+  EXPECT_TRUE(session->energised().contains(1)) << "a prompt that ends disables it";
 }
 
 INSTANTIATE_TEST_SUITE_P(Families, ReplayEveryFamily, testing::Values("gsd600", "dm", "sv2", "da200", "ts"));

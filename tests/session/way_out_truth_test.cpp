@@ -48,7 +48,7 @@ TEST_P(WayOutInTrouble, ALinkThatStaysDownIsWaitedForAndTold) {
   ASSERT_FALSE(done.outcome);
   EXPECT_FALSE(done.end.verified);
   EXPECT_GE(bench.session->now() - bench.bus->outage.from, 10s);
-  EXPECT_EQ(bench.session->energised().contains(1), 1U);
+  EXPECT_TRUE(bench.session->energised().contains(1));
 }
 
 TEST_P(WayOutInTrouble, DrivesThatWereLeftEnergisedAreStoppedOverALinkThatComesBack) {
