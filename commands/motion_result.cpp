@@ -7,6 +7,7 @@
 #include "base/csv.hpp"
 #include "base/file.hpp"
 #include "base/number.hpp"
+#include "base/printable.hpp"
 #include "base/text.hpp"
 #include "commands/notice.hpp"
 #include "drive/cia402.hpp"
@@ -136,8 +137,8 @@ report::Table preflight_table(const std::vector<session::PreflightItem>& items) 
 std::string preflight_text(const std::vector<session::PreflightItem>& items) {
   std::string out;
   for (const auto& item : items)
-    out += fmt::format("{}  {}{}{}\n", pad_right(session::name(item.weight), 7), item.what,
-                       item.what.empty() ? "" : ": ", item.text);
+    out += fmt::format("{}  {}{}{}\n", pad_right(session::name(item.weight), 7), printable(item.what),
+                       item.what.empty() ? "" : ": ", printable(item.text));
   return out;
 }
 

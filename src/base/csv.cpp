@@ -87,7 +87,7 @@ bool is_formula(std::string_view text) {
   return std::any_of(std::begin(kWide), std::end(kWide), [&](auto mark) { return text.starts_with(mark); });
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
   std::string out = "\"";
   for (const char c : text) {
@@ -138,8 +138,8 @@ Result<CsvTable> parse_csv(std::string_view text, std::string_view file) {
 }
 
 std::string csv_cell(std::string_view text) {
-  if (is_formula(text) && !parse_real(text)) return quoted("'" + std::string(text));
-  return quoted(text);
+  if (is_formula(text) && !parse_real(text)) return in_quotes("'" + std::string(text));
+  return in_quotes(text);
 }
 
 }  // namespace servoctl

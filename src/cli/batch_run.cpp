@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/printable.hpp"
 #include "cli/prompt_words.hpp"
 #include "commands/records.hpp"
 
@@ -39,7 +40,7 @@ class BatchRun {
   int finish() {
     const auto left = count_ - done_ - failed_;
     if (!settings_.json) {
-      shell_->console().err(fmt::format("{}: {} of {} lines done", *file_, done_, count_) +
+      shell_->console().err(fmt::format("{}: {} of {} lines done", printable(*file_), done_, count_) +
                             (failed_ > 0 ? fmt::format(", {} failed", failed_) : "") +
                             (left > 0 ? fmt::format(", {} not run", left) : "") + "\n");
       return first_error_ ? exit_code(first_error_->code) : 0;

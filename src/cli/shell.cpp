@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <numeric>
 #include <span>
+#include <utility>
 
 #include "base/printable.hpp"
 #include "base/text.hpp"
@@ -311,7 +312,15 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
       const auto text = error.abort_code ? texts.find(*error.abort_code) : texts.end();
       if (text != texts.end()) error.message += " — " + text->second;
     }
-  if (auto failure = bus_.take_trace_failure()) errors.push_back(std::move(*failure));
+  if (auto failure = bus_.take_trace_failure()) {
+    // The line was carried out; those that follow are too.
+    if (stays_open_) {
+      run.context.notices.push_back(failure->message + "; " + failure->hint);
+      incomplete_trace_ = std::move(failure);
+    } else {
+      errors.push_back(std::move(*failure));
+    }
+  }
   // A lost interface does not come back by itself: the next line opens it again.
   if (!errors.empty() && errors.front().code == Errc::bus) bus_.lose();
   return {.command = std::string(run.command->path),
@@ -324,7 +333,8 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
 
 int Shell::close(int code) {
   bus_.close();
-  const auto failure = bus_.take_trace_failure();
+  auto failure = bus_.take_trace_failure();
+  if (!failure) failure = std::exchange(incomplete_trace_, std::nullopt);
   if (!failure) return code;
   const auto mine = report_error(*failure, false);
   return code == 0 ? mine : code;

@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -107,6 +108,7 @@ class Shell {
   session::Protection protection_;
   BusHolder bus_;
   bool stays_open_ = false;
+  std::optional<Error> incomplete_trace_;  ///< Told as a notice of a line; the exit code comes at the end.
   std::map<std::string, std::unique_ptr<drive::Profile>> profiles_;
 };
 

@@ -43,9 +43,7 @@ std::size_t append_escaped(std::string_view text, std::string& out) {
     default: break;
   }
   const auto c = decode_utf8(text);
-  if (!c.value) {
-    out += "\xEF\xBF\xBD";
-  } else if (!is_hidden_or_control(*c.value)) {
+  if (!c.value || !is_hidden_or_control(*c.value)) {
     out += text.substr(0, c.size);
   } else if (*c.value <= 0xFFFF) {
     append_unit(*c.value, out);
@@ -54,6 +52,12 @@ std::size_t append_escaped(std::string_view text, std::string& out) {
     append_unit(0xDC00U + (*c.value & 0x3FFU), out);
   }
   return c.size;
+}
+
+/// In UTF-8: what is none becomes U+FFFD.
+std::string mended(std::string_view text) {
+  return Json::parse(Json(std::string(text)).dump(-1, ' ', false, Json::error_handler_t::replace))
+      .get<std::string>();
 }
 
 /// Writes a value by its kind.
@@ -153,6 +157,7 @@ void JsonWriter::value(double number) {
 
 void JsonWriter::value(std::string_view text) {
   if (std::all_of(text.begin(), text.end(), is_plain)) return quoted(text, "\"");
+  if (!is_utf8(text)) return value(mended(text));
   begin('"');
   while (!text.empty()) text.remove_prefix(append_escaped(text, *out_));
   *out_ += '"';

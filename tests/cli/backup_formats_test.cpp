@@ -238,6 +238,25 @@ TEST_F(BackupTest, AsATableMayComeInTheEncodingsOfSpreadsheets) {
   }
 }
 
+TEST_F(BackupTest, ATableKeepsTextsFromBeingRunAndBringsThemBack) {
+  std::filesystem::copy(std::filesystem::path(source_dir()) / "tests/cli/data/drives/lab", folder / "lab",
+                        std::filesystem::copy_options::recursive);
+  for (const auto* text : {"=1+1", "@abc", "+a-b", "'=1'", "-123"}) {
+    SCOPED_TRACE(text);
+    use("sim:lab@1", "lab");
+    ASSERT_EQ(run(fmt::format("write 2000 \"{}\"", text)), 0) << console.err_text;
+    ASSERT_EQ(run("backup %text.csv"), 0) << console.err_text;
+    const bool number = std::string_view(text) == "-123";
+    EXPECT_NE(slurp("text.csv").find(fmt::format(",{}{},", number ? "" : "'", text)), std::string::npos)
+        << slurp("text.csv");
+    ASSERT_EQ(run("write 2000 none"), 0) << console.err_text;
+    EXPECT_EQ(run("verify %text.csv"), 1);
+    ASSERT_EQ(run("restore %text.csv --yes"), 0) << console.err_text;
+    ASSERT_EQ(run("read 2000 --json"), 0);
+    EXPECT_NE(console.out_text.find(fmt::format("\"{}\"", text)), std::string::npos) << console.out_text;
+  }
+}
+
 TEST_F(BackupTest, InAFormatWithoutChecksumIsRefusedByLineAndEntry) {
   ASSERT_EQ(run("backup %all.json"), 0);
   const std::string head = "index,sub,value\n";

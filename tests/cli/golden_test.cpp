@@ -8,6 +8,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "base/printable.hpp"
 #include "cli/line_runner.hpp"
 #include "cli/shell.hpp"
 #include "cli/words.hpp"
@@ -40,12 +41,23 @@ Case script_case(std::string name, const std::string& path, const std::string& f
   return out;
 }
 
+/// What must not stand in a file people read.
+std::string with_controls(std::string line) {
+  constexpr std::pair<std::string_view, std::string_view> kControls[] = {
+      {"{ESC}", "\x1B"}, {"{9B}", "\x9B"}, {"{RLO}", "\u202E"}};
+  for (const auto& [mark, control] : kControls)
+    for (auto at = line.find(mark); at != std::string::npos; at = line.find(mark))
+      line.replace(at, mark.size(), control);
+  return line;
+}
+
 std::vector<Case> read_cases() {
   std::vector<Case> out;
   std::ifstream file(kFolder / "cases.txt");
   std::string line;
   while (std::getline(file, line)) {
     if (line.empty() || line.front() == '#') continue;
+    line = with_controls(line);
     const auto colon = line.find(": ");
     Case c{line.substr(0, colon), {}};
     auto rest = line.substr(colon + 2);
@@ -77,7 +89,7 @@ std::string play(const Case& c, bool json) {
     console.err_text.clear();
     const auto typed = json ? line + " --json" : line;
     const int code = runner.run(typed);
-    out += fmt::format("$ {}\n", typed) + console.out_text;
+    out += fmt::format("$ {}\n", printable(typed)) + console.out_text;
     if (!console.err_text.empty()) out += "[stderr]\n" + console.err_text;
     out += fmt::format("[exit {}]\n\n", code);
   }

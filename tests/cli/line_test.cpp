@@ -84,6 +84,11 @@ class ShellTest : public testing::Test {
     o.defaults.drive = "gsd600";
     return o;
   }
+  int run(std::string_view line) {
+    console.out_text.clear();
+    console.err_text.clear();
+    return LineRunner(shell).run(line);
+  }
   bool offers(std::string_view line, std::string_view word) {
     const auto words = complete(line, shell).words;
     return std::find(words.begin(), words.end(), word) != words.end();
@@ -125,6 +130,51 @@ TEST_F(ShellTest, TellsEmergenciesThatComeWhileACommandRuns) {
   EXPECT_EQ(shell.run({"read", "0x6041", "-n", "9", "--bus", "sim:gsd600@1?fault=0xFF00@100ms"}), 4);
   EXPECT_NE(console.err_text.find("notice: node 1: EMCY 0xFF00 Servo alarm"), std::string::npos)
       << console.err_text;
+}
+
+TEST_F(ShellTest, TellsATraceThatCannotBeWrittenAndDoesWhatItWasAskedFor) {
+  // A short line is told of when its last frames are written, a long one while it runs.
+  EXPECT_EQ(run("read 0x6041 -n 1 --trace /dev/full"), 7);
+  EXPECT_NE(console.out_text.find("0x6041"), std::string::npos) << console.out_text;
+  EXPECT_NE(console.err_text.find("error: cannot write the trace /dev/full: No space left on device\n"
+                                  "  hint: the trace ends here; the bus goes on without it\n"),
+            std::string::npos)
+      << console.err_text;
+  EXPECT_EQ(run("read 0x6041 -n 1 --trace /dev/full"), 0) << "the bus goes on without it";
+  EXPECT_EQ(run("watch 0x6041 -n 1 --for 1s --trace /dev/full -b sim:gsd600@1,gsd600@2"), 7);
+  EXPECT_NE(console.err_text.find("notice: cannot write the trace"), std::string::npos) << console.err_text;
+  EXPECT_GE(std::count(console.out_text.begin(), console.out_text.end(), '\n'), 10) << "it watched on";
+}
+
+TEST_F(ShellTest, EndsWithExitSevenWhenTheTraceFailsAtTheVeryEnd) {
+  for (const auto& [code, in_the_end] : {std::pair(0, 7), std::pair(5, 5)}) {
+    console.err_text.clear();
+    shell.defaults().trace = "/dev/full";
+    const auto session = shell.open(shell.defaults());
+    ASSERT_TRUE(session);
+    ASSERT_TRUE((*session)->send(*can::parse_frame("000#0101")));
+    EXPECT_EQ(shell.close(code), in_the_end);
+    EXPECT_NE(console.err_text.find("cannot write the trace /dev/full"), std::string::npos);
+  }
+  shell.defaults().trace.clear();
+  ASSERT_TRUE(shell.open(shell.defaults()));
+  EXPECT_EQ(shell.close(0), 0);
+}
+
+TEST_F(ShellTest, RunsTheLinesOfAFileToTheirEndWithoutATraceThatFails) {
+  shell.stay_open(true);
+  EXPECT_EQ(run("read 0x6041 -n 1 --trace /dev/full"), 0);
+  EXPECT_NE(console.err_text.find("notice: cannot write the trace /dev/full"), std::string::npos)
+      << console.err_text;
+  EXPECT_EQ(run("read 0x6041 -n 1 --trace /dev/full"), 0);
+  EXPECT_EQ(console.err_text, "");
+  EXPECT_EQ(shell.close(0), 7);
+}
+
+TEST_F(ShellTest, KeepsTheBusOpenHoweverItsInterfaceIsWritten) {
+  EXPECT_EQ(session::canonical_url("socketcan:can0"), "can0");
+  EXPECT_EQ(session::canonical_url("can0"), "can0");
+  EXPECT_EQ(session::canonical_url("local:socketcan"), "local:socketcan");
 }
 
 TEST_F(ShellTest, KeepsTheBusOpenBetweenLines) {

@@ -5,6 +5,7 @@
 #include "base/file.hpp"
 #include "base/text.hpp"
 #include "commands/command.hpp"
+#include "commands/completion_words.hpp"
 #include "commands/help.hpp"
 #include "commands/shell_completion.hpp"
 #include "tests/source_dir.hpp"
@@ -38,6 +39,15 @@ TEST(CompletionScripts, KnowEveryCommandOptionAndChoice) {
     }
     for (const auto& p : global_options()) EXPECT_TRUE(knows(p.name.substr(2))) << shell << " " << p.name;
   }
+}
+
+TEST(CompletionWords, OfFilesAreOfferedOnlyWhereTheyStandForThemselves) {
+  for (const auto* word :
+       {"Pn0214", "P0.03", "PA-21", "Fn_33", "homing_speeds.switch", "0x6041:0", "sim:", "位置"})
+    EXPECT_TRUE(can_be_offered(word)) << word;
+  for (const auto* word : {"", "-rf", "$(reboot)", "`id`", "a b", "a;b", "a\nb", "a\x1B[2J", "a'b", "a\"b",
+                           "a\u202Eb", "~", "a\x9B"})
+    EXPECT_FALSE(can_be_offered(word)) << word;
 }
 
 TEST(Help, OfEveryCommandNamesItsParametersAndFitsEightyColumns) {

@@ -51,7 +51,7 @@ class World {
   bool run(std::string_view command, const Arguments& arguments, const Trouble& trouble = {}) {
     auto bus = std::make_unique<TroubledBus>(bus_, drive_, trouble, 1);
     const auto* counted = bus.get();
-    session::Session session(std::move(bus), "can0", {});
+    session::Session session(std::move(bus), url, {});
     Context context;
     context.session = &session;
     context.profile = &profile_;
@@ -82,6 +82,16 @@ class World {
     arguments.add("file", record().string());
     return run("pdo apply", arguments);
   }
+  /// The drive at the node is exchanged for one of another serial number.
+  void become_another() {
+    memory_.cells("1") = {{ObjectAddress{0x1018, 4}, Bytes{0x63, 0, 0, 0}}};
+    power_cycle();
+  }
+  int records() const {
+    int out = 0;
+    for (const auto& entry : fs::directory_iterator(folder_)) out += entry.path().extension() == ".json";
+    return out;
+  }
   bool has_record() const { return !fs::is_empty(folder_); }
   fs::path folder() const { return folder_; }
   fs::path record() const {
@@ -107,6 +117,9 @@ class World {
     EXPECT_TRUE(quiet.send(*can::parse_frame("000#8101")));
     (void)quiet.wait([] { return false; }, quiet.now() + 1s);
   }
+
+  /// The bus as the next lines name it.
+  std::string url = "can0";
 
   session::Values before;
   session::Values means_before;
@@ -174,6 +187,7 @@ INSTANTIATE_TEST_SUITE_P(Families, KilledChange,
                          [](const auto& each) { return std::string(each.param.family); });
 
 const Case kTs{"ts", "RPDO2", {"0x6040", "0x607A"}};
+const Case kDm{"dm", "TPDO3", {"0x6064", "0x6041"}, false, "0x3A5"};  // It tells a serial number.
 
 TEST(PdoRecord, OfAnEarlierChangeIsNotReplacedByThatOfALaterOne) {
   World world(kTs);
@@ -202,6 +216,51 @@ TEST(PdoRecord, StaysWhenTheDriveFallsSilentAndGoesWhenItRefuses) {
     EXPECT_EQ(world.has_record(), kind == &Trouble::silent_at);
     EXPECT_EQ(world.notices.find("did not come to its end") != std::string::npos, world.has_record());
   }
+}
+
+/// A world in which a change was cut off in the middle.
+void cut_off(World& world) {
+  World measure(kDm);
+  ASSERT_TRUE(measure.map());
+  Trouble trouble;
+  trouble.kill_at = measure.frames - 4;
+  ASSERT_FALSE(world.map(trouble));
+  ASSERT_TRUE(world.has_record());
+}
+
+TEST(PdoRecord, IsFoundWhateverWayTheInterfaceIsWritten) {
+  World world(kDm);
+  cut_off(world);
+  world.url = "socketcan:can0";
+  ASSERT_TRUE(world.run("pdo show", {}));
+  EXPECT_NE(world.notices.find("did not come to its end"), std::string::npos);
+  world.url = "can1";
+  ASSERT_TRUE(world.run("pdo show", {}));
+  EXPECT_EQ(world.notices.find("did not come to its end"), std::string::npos);
+  world.url = "socketcan:can0";
+  ASSERT_TRUE(world.put_back()) << world.error;
+  EXPECT_EQ(world.read(), world.before);
+}
+
+TEST(PdoRecord, OfAnotherDriveAtTheNodeIsNotPutBack) {
+  World world(kDm);
+  cut_off(world);
+  world.become_another();
+  const auto of_the_other = world.read();
+  ASSERT_TRUE(world.run("pdo show", {}));
+  EXPECT_NE(world.notices.find("of another drive that was node 1"), std::string::npos) << world.notices;
+  EXPECT_FALSE(world.put_back());
+  EXPECT_NE(world.error.find("is another drive"), std::string::npos) << world.error;
+  EXPECT_EQ(world.read(), of_the_other);
+  EXPECT_TRUE(world.has_record());
+}
+
+TEST(PdoRecord, OfAnotherDriveDoesNotKeepThisOneFromHavingItsOwn) {
+  World world(kDm);
+  cut_off(world);
+  world.become_another();
+  cut_off(world);
+  EXPECT_EQ(world.records(), 2);
 }
 
 TEST(PdoRecord, ThatCannotBeWrittenKeepsTheChangeFromBeginning) {

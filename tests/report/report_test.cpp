@@ -24,6 +24,15 @@ TEST(Text, AlignsTablesAndLeavesJsonColumnsOut) {
             "index   name         value\n0x6040  Controlword      6\n0x607A  目标位置         -\n");
 }
 
+TEST(Text, IsAlignedByWhatIsShownOfHostileCellsAndHeadings) {
+  Table t;
+  t.columns = {{"name"}, {"a\x1B[2J"}};
+  t.rows = {{"x\u202Ey", 1}, {"z", 2}};
+  EXPECT_EQ(to_text(t), "name      a\\x1B[2J\nx\\u202Ey         1\nz                2\n");
+  EXPECT_EQ(to_text(Record{{"k\x9B", "v\n\x07"}}), "k\\x9B  v\\n\\x07\n");
+  EXPECT_EQ(to_text(Value("two\nlines\x1B[2J")), "two\nlines\\x1B[2J\n");
+}
+
 TEST(Json, KeepsNumbersNumbersAndTheOrderOfFields) {
   EXPECT_EQ(to_json(table()),
             R"([{"name":"Controlword","raw":6,"value":6},{"name":"目标位置","raw":-20,"value":null}])");
