@@ -74,8 +74,9 @@ def attack(number):
         program.stdin.flush()
         if batch:
             program.stdin.close()  # It is read as a whole.
-        if not until(lambda: all((status(env, n) or {}).get("energised") for n in NODES), 20):
-            return f"{what}: the drives are not enabled"
+        if not until(lambda: all((status(env, n) or {}).get("energised") for n in NODES), 40):
+            log.seek(0)
+            return f"{what}: the drives are not enabled: {log.read()[-600:]}"
         give_trouble(env, trouble, sims, victim)
         if way.startswith("SIG"):
             program.send_signal(getattr(signal, way))
