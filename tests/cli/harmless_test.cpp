@@ -99,7 +99,7 @@ void replace(std::string& text, std::string_view from, std::string_view to) {
 /// Whether it comes from a simulated drive, or is an SDO request that only reads.
 bool is_harmless(const can::Frame& frame) {
   if (frame.extended || frame.error) return false;
-  if (frame.id > 0x600 && frame.id <= 0x600U + kDrives && !frame.remote) {
+  if (frame.id > 0x600 && frame.id <= 0x67F && !frame.remote) {
     const auto command = frame.data[0] >> 5U;  // CiA 301, 7.2.4.3: client command specifier.
     return command == 2 || command == 3 || command == 4 || command == 5;
   }

@@ -46,7 +46,7 @@ class TwoMasters {
     MotionOptions options;
     options.turn = 131072;
     if (on_sample) options.on_sample = [this, i](const MotionSample& sample) { on_sample(i, sample); };
-    Motion motion(*sessions[i], *wire.cell.profiles[i], static_cast<std::uint8_t>(i + 1), options);
+    Motion motion(*sessions[i], *wire.cell.profiles.front(), static_cast<std::uint8_t>(i + 1), options);
     auto& report = reports[i];
     report.outcome = motion.prepare();
     if (report.outcome) {
