@@ -8,9 +8,14 @@ namespace servoctl::commands {
 
 Result<std::optional<Duration>> duration_option(const Arguments& arguments, std::string_view name) {
   if (!arguments.has(name)) return std::optional<Duration>();
-  const auto time = parse_duration(arguments.text(name));
-  if (!time || *time == Duration::zero())
-    return fail(Errc::usage, fmt::format("'{}' is no time for {}", arguments.text(name), name),
+  auto time = read_duration(arguments.text(name));
+  if (!time) {
+    auto error = time.error();
+    error.message = fmt::format("{}: {}", name, error.message);
+    return fail(std::move(error));
+  }
+  if (*time == Duration::zero())
+    return fail(Errc::usage, fmt::format("{}: '{}' is no time at all", name, arguments.text(name)),
                 "write 500ms or 10s");
   return std::optional(*time);
 }

@@ -51,9 +51,10 @@ Result<std::optional<std::uint8_t>> byte_option(const Arguments& arguments, std:
 Result<std::optional<std::uint16_t>> steps_option(const Arguments& arguments, std::string_view name,
                                                   Duration step) {
   if (!arguments.has(name)) return std::optional<std::uint16_t>();
-  const auto time = parse_duration(arguments.text(name));
+  const auto time = read_duration(arguments.text(name));
+  if (!time) return fail(Errc::usage, fmt::format("{}: {}", name, time.error().message), time.error().hint);
   const auto most = std::chrono::duration<double, std::milli>(step * 0xFFFF);
-  if (!time || *time % step != Duration::zero() || *time / step > 0xFFFF)
+  if (*time % step != Duration::zero() || *time / step > 0xFFFF)
     return fail(Errc::usage, fmt::format("{}: '{}' is no time of this kind", name, arguments.text(name)),
                 fmt::format("in steps of {}, at most {:g} ms", to_string(step), most.count()));
   return std::optional(static_cast<std::uint16_t>(*time / step));

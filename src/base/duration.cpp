@@ -1,10 +1,12 @@
 #include "base/duration.hpp"
 
+#include <fmt/format.h>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <utility>
 
+#include "base/number.hpp"
 #include "base/text.hpp"
 
 namespace servoctl {
@@ -22,12 +24,22 @@ std::optional<Duration> parse_duration(std::string_view text) {
   const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc{}) return std::nullopt;
   const auto unit = trim(text.substr(static_cast<std::size_t>(stop - text.data())));
-  double factor = unit.empty() ? 1e3 : 0;
+  double factor = 0;
   for (const auto& row : kUnits)
     if (row.first == unit) factor = row.second;
   const double micros = number * factor;
   if (factor == 0 || !std::isfinite(micros) || micros < 0 || micros > kDay) return std::nullopt;
-  return Duration(static_cast<Duration::rep>(std::llround(micros)));
+  const Duration out(static_cast<Duration::rep>(std::llround(micros)));
+  return micros > 0 && out == Duration::zero() ? std::nullopt : std::optional(out);
+}
+
+Result<Duration> read_duration(std::string_view text) {
+  if (const auto time = parse_duration(text)) return *time;
+  text = trim(text);
+  if (parse_real(text) || parse_integer(text))
+    return fail(Errc::usage, fmt::format("'{}': a time needs its unit", text),
+                fmt::format("write {0}s or {0}ms, whichever is meant", text));
+  return fail(Errc::usage, fmt::format("'{}' is no time", text), "write 500ms, 2s or 1min; a day at most");
 }
 
 std::string to_string(Duration duration) {

@@ -118,8 +118,9 @@ class Planner {
   Result<void> wait(const Statement& statement) {
     const auto words = words_of(statement);
     if (!words) return tl::unexpected<Error>(words.error());
-    const auto time = words->size() == 1 ? parse_duration(words->front()) : std::nullopt;
-    if (!time) return fail(Errc::usage, "'wait' takes a time", "wait 500ms, wait 2s");
+    if (words->size() != 1) return fail(Errc::usage, "'wait' takes a time", "wait 500ms, wait 2s");
+    const auto time = read_duration(words->front());
+    if (!time) return fail(Errc::usage, "wait: " + time.error().message, time.error().hint);
     add(statement, Step::Kind::wait, "wait " + words->front()).duration = *time;
     return {};
   }

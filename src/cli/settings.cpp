@@ -43,10 +43,12 @@ Result<Settings> apply_options(Settings base, const commands::Arguments& argumen
   text("--node", base.nodes);
   text("--drive", base.drive);
   if (arguments.has("--timeout")) {
-    const auto timeout = parse_duration(arguments.text("--timeout"));
+    const auto timeout = read_duration(arguments.text("--timeout"));
     if (!timeout || *timeout == Duration::zero())
-      return fail(Errc::usage, fmt::format("--timeout: '{}' is no time", arguments.text("--timeout")),
-                  "write 500ms or 2s");
+      return fail(Errc::usage,
+                  timeout ? fmt::format("--timeout: '{}' is no time at all", arguments.text("--timeout"))
+                          : "--timeout: " + timeout.error().message,
+                  timeout ? "write 500ms or 2s" : timeout.error().hint);
     base.timeout = *timeout;
   }
   if (arguments.has("--retries")) {

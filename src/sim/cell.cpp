@@ -59,7 +59,7 @@ std::optional<SimDrive::Alarm> alarm_of(const drive::Profile& profile, std::stri
 
 Result<void> plan_fault(Cell& cell, std::string_view text, TimePoint now) {
   const auto at = text.find('@');
-  const auto delay = parse_duration(at == std::string_view::npos ? "0" : text.substr(at + 1));
+  const auto delay = parse_duration(at == std::string_view::npos ? "0s" : text.substr(at + 1));
   for (const auto& drive : cell.drives) {
     const auto alarm = alarm_of(drive->profile(), text.substr(0, at));
     if (!alarm || !delay)
@@ -76,12 +76,12 @@ Result<void> apply_option(Cell& cell, std::string_view option, TimePoint now) {
   const auto value = equals == std::string_view::npos ? std::string_view() : option.substr(equals + 1);
   if (key == "state") return {};
   if (key == "fault") return plan_fault(cell, value, now);
-  const auto time = parse_duration(value);
+  const auto time = read_duration(value);
   if (key != "silent" && key != "delay") {
     const std::string keys[] = {"state", "fault", "silent", "delay"};
     return bad_spec(fmt::format("'{}' is no option of a simulated bus: there are {}", key, one_of(keys)));
   }
-  if (!time) return bad_spec(fmt::format("'{}' is no time, such as 500ms", value));
+  if (!time) return bad_spec(fmt::format("{}: {}; {}", key, time.error().message, time.error().hint));
   for (const auto& drive : cell.drives) {
     if (key == "silent") drive->fall_silent_at(now + *time);
     if (key == "delay") drive->misbehaviour().answer_delay = *time;

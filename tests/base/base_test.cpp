@@ -97,13 +97,23 @@ RC_GTEST_PROP(ObjectAddress, IsPrintedInTheFormThatIsRead, (std::uint16_t index,
   RC_ASSERT(parse_object_address(to_string(ObjectAddress{index, sub})) == (ObjectAddress{index, sub}));
 }
 
-TEST(Duration, IsReadWithAndWithoutUnit) {
+TEST(Duration, OfABareNumberIsAskedForItsUnit) {
+  for (const auto* text : {"2", "0", "250", "1.5", "0x10"}) {
+    const auto time = read_duration(text);
+    ASSERT_FALSE(time) << text;
+    EXPECT_EQ(time.error().message, "'" + std::string(text) + "': a time needs its unit");
+    EXPECT_NE(time.error().hint.find(std::string(text) + "ms"), std::string::npos);
+  }
+  EXPECT_EQ(read_duration("2s").value(), 2s);
+  EXPECT_EQ(read_duration("soon").error().message, "'soon' is no time");
+}
+
+TEST(Duration, IsReadWithItsUnit) {
   EXPECT_EQ(parse_duration("250ms"), 250ms);
-  EXPECT_EQ(parse_duration("250"), 250ms);
   EXPECT_EQ(parse_duration("1.5s"), 1500ms);
   EXPECT_EQ(parse_duration("100 us"), 100us);
   EXPECT_EQ(parse_duration("2min"), 2min);
-  for (const auto* text : {"", "soon", "-1s", "1h", "1e99s", "5 parsecs"})
+  for (const auto* text : {"", "soon", "-1s", "1h", "1e99s", "5 parsecs", "nans", "infs", "+-1s", "0.1us"})
     EXPECT_FALSE(parse_duration(text)) << text;
   EXPECT_EQ(to_string(Duration(2s)), "2 s");
   EXPECT_EQ(to_string(Duration(250ms)), "250 ms");
