@@ -156,6 +156,7 @@ Value motion(const Rules& rules) {
       {"halt", r.halt, Show::everywhere, "halt bit"},
       {"quick_stop_stays_enabled", number_list(rules.quick_stop_stays_enabled), Show::everywhere,
        "605Ah that stays energised"},
+      {"inputs_active_low", number_list(r.inputs_active_low), Show::everywhere, "60FDh bits, 0 when on"},
       {"speed_limit", text_list(r.speed_limit), Show::everywhere, "speed limit in torque mode"}};
 }
 

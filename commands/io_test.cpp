@@ -24,8 +24,10 @@ constexpr Duration kEvery = std::chrono::milliseconds(10);
 class InputNames {
  public:
   explicit InputNames(const Context& context) : context_(&context) {
-    if (context.profile != nullptr) functions_ = context.profile->rules.motion.inputs;
+    if (context.profile != nullptr) rules_ = context.profile->rules.motion;
   }
+  /// Whether the switch of this input is actuated.
+  bool is_actuated(std::uint32_t levels, unsigned bit) const { return rules_.is_actuated(levels, bit); }
 
   std::string id(unsigned bit) const {
     const auto function = function_of(bit);
@@ -52,13 +54,13 @@ class InputNames {
   static constexpr std::array<std::string_view, 3> kNamesZh{"负限位", "正限位", "原点"};
 
   std::optional<std::size_t> function_of(unsigned bit) const {
-    for (std::size_t i = 0; i < std::min(functions_.size(), kIds.size()); ++i)
-      if (functions_[i] == bit) return i;
+    for (std::size_t i = 0; i < std::min(rules_.inputs.size(), kIds.size()); ++i)
+      if (rules_.inputs[i] == bit) return i;
     return std::nullopt;
   }
 
   const Context* context_;
-  std::vector<std::uint8_t> functions_ = drive::MotionRules{}.inputs;
+  drive::MotionRules rules_;
 };
 
 /// Watches the inputs of one drive while somebody actuates them.
@@ -101,17 +103,23 @@ class InputWatch {
     seen_high_ |= levels;
     seen_low_ |= ~levels;
     for (unsigned bit = 0; bit < kBits; ++bit) {
-      const bool level = (levels >> bit & 1U) != 0;
       if (before && (*before >> bit & 1U) == (levels >> bit & 1U)) continue;
       if (before) ++changes_[bit];
-      if (before || is_expected(bit)) tell(bit, level, time);
+      if (before || is_expected(bit)) tell(bit, levels, time);
     }
   }
 
-  void tell(unsigned bit, bool level, Duration time) {
-    Record record{
-        {"time", seconds_of(time)}, {"node", node_}, {"input", names_.id(bit)}, {"level", level ? 1 : 0}};
-    context_->emit(record, fmt::format("{:10.3f}  {} {}", seconds_of(time), names_.name(bit), level ? 1 : 0));
+  void tell(unsigned bit, std::uint32_t levels, Duration time) {
+    const int level = (levels >> bit & 1U) != 0 ? 1 : 0;
+    const bool on = names_.is_actuated(levels, bit);
+    Record record{{"time", seconds_of(time)},
+                  {"node", node_},
+                  {"input", names_.id(bit)},
+                  {"level", level},
+                  {"actuated", on}};
+    const auto text = say(*context_, on ? "actuated" : "not actuated", on ? "已动作" : "未动作");
+    context_->emit(record,
+                   fmt::format("{:10.3f}  {} {} ({})", seconds_of(time), names_.name(bit), level, text));
     if (context_->keeps_samples) events_.emplace_back(std::move(record));
   }
 

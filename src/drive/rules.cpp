@@ -1,5 +1,7 @@
 #include "drive/rules.hpp"
 
+#include <algorithm>
+
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "drive/rules_reader.hpp"
@@ -118,6 +120,16 @@ std::optional<std::uint32_t> Numbering::number(std::string_view id) const {
 ObjectAddress Numbering::object(std::uint32_t number) const {
   return {static_cast<std::uint16_t>(index + number / block),
           static_cast<std::uint8_t>(number % block + first_sub)};
+}
+
+bool Rules::is_assumed(std::string_view key) const {
+  return std::find(assumed.begin(), assumed.end(), key) != assumed.end();
+}
+
+bool MotionRules::is_actuated(std::uint32_t inputs_word, unsigned bit) const {
+  const bool high = (inputs_word >> bit & 1U) != 0;
+  return high ==
+         (std::find(inputs_active_low.begin(), inputs_active_low.end(), bit) == inputs_active_low.end());
 }
 
 Result<Rules> parse_rules(std::string_view toml, std::string_view file, Rules base) {

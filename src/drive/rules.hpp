@@ -76,6 +76,7 @@ struct NmtRules {
   std::uint32_t max_nodes = 127;
   std::vector<Setting> needs;  ///< What must be set before the drive listens to CANopen at all.
   bool disables_outside_operational = false;
+  std::vector<std::string> lost_alarms;  ///< Panel texts of what the manual calls a lost communication.
 };
 
 /// What may be changed of a PDO, and when (CiA 301, 7.5.2.33 to 7.5.2.38, and the vendor's narrower rules).
@@ -143,8 +144,13 @@ struct MotionRules {
   bool handshake = true;  ///< Bit 4 of the controlword takes a target; false: 607Ah is followed at once.
   std::string position_speed = "0x6081";  ///< Object that holds the speed of a move to a position.
   std::string rated_speed;                ///< Object or parameter that holds the rated speed of the motor.
-  std::vector<std::uint8_t> inputs{0, 1, 2};  ///< Bits of 60FDh: negative limit, positive limit, home.
-  std::vector<std::int64_t> no_homing;        ///< Values of 6098h that do nothing.
+  std::string rated_torque;  ///< Object or parameter with the rated torque in the unit of 6071h, if not in %.
+  std::vector<std::uint8_t> inputs{0, 1, 2};    ///< Bits of 60FDh: negative limit, positive limit, home.
+  std::vector<std::uint8_t> inputs_active_low;  ///< Bits of 60FDh that are 0 while their switch is actuated.
+
+  /// Whether the switch behind this bit of 60FDh is actuated: an axis at its limit, or on its home switch.
+  bool is_actuated(std::uint32_t inputs_word, unsigned bit) const;
+  std::vector<std::int64_t> no_homing;  ///< Values of 6098h that do nothing.
   /// Values of 6098h that move like another method of CiA 402-2 than the one of the same number.
   std::map<std::int64_t, std::int64_t> homing_like;
   std::optional<Condition> software_limits;  ///< 607Dh acts only while this holds.
@@ -176,10 +182,14 @@ struct FaultRules {
 
 /// A setting that makes motion more dangerous than it looks, often from the factory.
 struct Caution {
-  std::string name;  ///< Parameter or object; empty: it always holds.
-  std::optional<std::int64_t> value;
+  std::string name;                       ///< Parameter or object; empty: it always holds.
+  std::optional<std::int64_t> value;      ///< It holds while `name` has this value,
+  std::optional<std::int64_t> not_value;  ///< or has any but this one.
   std::string text;
   std::string text_zh;
+
+  bool is_conditional() const { return value || not_value; }
+  bool holds(std::int64_t now) const { return value ? now == *value : !not_value || now != *not_value; }
 };
 
 /// What `<family>.toml` says: the rules of a family that no table can carry. Parameters are named by their
@@ -216,6 +226,8 @@ struct Rules {
 
   std::map<std::uint32_t, std::string> abort_texts_zh;
   std::vector<std::string> assumed;  ///< Sections, or keys as `section.key`, the manual does not state.
+  /// Whether this very entry stands among them.
+  bool is_assumed(std::string_view key) const;
 };
 
 /// Reads a rules file on top of `base`, the rules of its parent. Errc::file with file and line for a syntax

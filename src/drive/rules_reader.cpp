@@ -1,5 +1,7 @@
 #include "drive/rules_reader.hpp"
 
+#include <algorithm>
+
 #include "base/number.hpp"
 #include "drive/pdo_recipe_reader.hpp"
 
@@ -143,6 +145,7 @@ Result<void> read_nmt(const TableReader& reader, Rules& rules) {
                       {"guarding_alarm", into(out.guarding_alarm)},
                       {"max_nodes", into(out.max_nodes)},
                       {"needs", list_into(out.needs)},
+                      {"lost_alarms", into(out.lost_alarms)},
                       {"disables_outside_operational", into(out.disables_outside_operational)}});
 }
 
@@ -246,6 +249,13 @@ Result<void> read_motion(const TableReader& reader, Rules& rules) {
        {"handshake", into(out.handshake)},
        {"position_speed", into(out.position_speed)},
        {"rated_speed", into(out.rated_speed)},
+       {"rated_torque", into(out.rated_torque)},
+       {"inputs_active_low",
+        [&](const auto& n) {
+          return into(out.inputs_active_low)(n) &&
+                 std::all_of(out.inputs_active_low.begin(), out.inputs_active_low.end(),
+                             [](std::uint8_t bit) { return bit < 32; });
+        }},
        {"inputs", [&](const auto& n) { return into(out.inputs)(n) && out.inputs.size() == 3; }},
        {"no_homing", into(out.no_homing)},
        {"homing_like", homing_like},
@@ -284,6 +294,7 @@ Result<void> read_fault(const TableReader& reader, Rules& rules) {
 Result<void> read_caution(const TableReader& reader, Caution& out) {
   return reader.read({{"name", into(out.name)},
                       {"value", into(out.value)},
+                      {"not", into(out.not_value)},
                       {"text", into(out.text)},
                       {"text_zh", into(out.text_zh)}});
 }

@@ -96,32 +96,51 @@ class Preflight {
     return {};
   }
 
-  /// What a set bit means differs from drive to drive, so it is shown and does not stop.
+  /// Limits are shown and do not stop: which motion they are in the way of is not known.
   void add_inputs(std::uint32_t word) {
     constexpr std::array<std::string_view, 3> kNames{"negative limit", "positive limit", "home switch"};
-    const auto& bits = units_->profile().rules.motion.inputs;
+    const auto& rules = units_->profile().rules;
     std::string text;
     bool limit = false;
     for (std::size_t i = 0; i < kNames.size(); ++i) {
-      if ((word >> bits[i] & 1U) == 0) continue;
+      if (!rules.motion.is_actuated(word, rules.motion.inputs[i])) continue;
       text += (text.empty() ? "" : ", ") + std::string(kNames[i]);
       limit = limit || i < 2;
     }
-    add(limit ? Weight::caution : Weight::good, "inputs",
-        fmt::format("60FDh is 0x{:08X}: {}", word, text.empty() ? "no limit, no home switch" : text));
+    if (text.empty()) text = "no limit, no home switch";
+    if (rules.is_assumed("motion.inputs_active_low"))
+      text += " (assumed: the manual does not say which level means that)";
+    add(limit ? Weight::caution : Weight::good, "inputs", fmt::format("60FDh is 0x{:08X}: {}", word, text));
   }
 
+  /// The number a caution depends on; empty where nothing tells it.
+  Result<std::optional<std::int64_t>> number(const std::string& name) {
+    const auto object = units_->object(name);
+    if (!object) return std::optional<std::int64_t>();
+    const auto answer = session_->upload(node_, *object);
+    if (!answer && answer.error().code != Errc::sdo_abort) return tl::unexpected<Error>(answer.error());
+    if (!answer || answer->empty()) return std::optional<std::int64_t>();
+    const auto meaning = drive::fitted(units_->meaning(*object), answer->size());
+    const auto value = od::decode(meaning.type, *answer);
+    if (value && meaning.type_known && meaning.encoding == od::Encoding::plain && od::is_signed(meaning.type))
+      return std::optional(static_cast<std::int64_t>(od::to_double(*value)));
+    return std::optional(static_cast<std::int64_t>(load_le(*answer)));
+  }
+
+  /// What cannot be read may hold.
   Result<void> look_at_cautions() {
-    const auto& cautions = units_->profile().rules.cautions;
-    for (const auto& caution : cautions) {
-      if (caution.value) {
-        const auto object = units_->object(caution.name);
-        if (!object) continue;
-        const auto value = session_->upload(node_, *object);
-        if (!value && value.error().code != Errc::sdo_abort) return tl::unexpected<Error>(value.error());
-        if (!value || static_cast<std::int64_t>(load_le(*value)) != *caution.value) continue;
+    for (const auto& caution : units_->profile().rules.cautions) {
+      std::string unread;
+      if (caution.is_conditional()) {
+        const auto now = number(caution.name);
+        if (!now) return tl::unexpected<Error>(now.error());
+        if (*now && !caution.holds(**now)) continue;
+        if (!*now)
+          unread = chinese_ ? fmt::format("{} 无法读取，请在面板上查看：", caution.name)
+                            : fmt::format("{} cannot be read (look at the panel): ", caution.name);
       }
-      add(Weight::caution, "", chinese_ && !caution.text_zh.empty() ? caution.text_zh : caution.text);
+      add(Weight::caution, "",
+          unread + (chinese_ && !caution.text_zh.empty() ? caution.text_zh : caution.text));
     }
     return {};
   }

@@ -156,8 +156,8 @@ Result<WatchdogPlan> plan_watchdog(Session& session, const drive::Profile& profi
     if (const auto done = plan_guarding(session, profile, node, *plan); !done)
       return tl::unexpected<Error>(done.error());
   }
-  const auto& assumed = profile.rules.assumed;
-  plan->assumed = std::find(assumed.begin(), assumed.end(), "watchdog") != assumed.end();
+  plan->assumed = profile.rules.is_assumed("watchdog");
+  plan->alarms = profile.rules.nmt.lost_alarms;
   if (plan->kind == WatchdogPlan::Kind::none || !has(profile, objects::kAbortConnectionOption)) return plan;
   const auto option = session.upload(node, objects::kAbortConnectionOption);
   if (!option) return plan;
@@ -184,8 +184,14 @@ std::string to_string(const WatchdogPlan& plan) {
                          servoctl::to_string(plan.time), then);
     case WatchdogPlan::Kind::none: break;
   }
-  return "none: nothing stops the drive when the cable is cut or servoctl dies" +
-         (plan.remark.empty() ? "" : "; " + plan.remark);
+  auto none =
+      plan.alarms.empty()
+          ? std::string("none: nothing stops the drive when the cable is cut or servoctl dies")
+          : fmt::format(
+                "none that servoctl can arm: the manual names alarm {} for a lost communication, "
+                "but not whether and when the motor stops; when servoctl alone dies it may keep turning",
+                fmt::join(plan.alarms, ", "));
+  return none + (plan.remark.empty() ? "" : "; " + plan.remark);
 }
 
 }  // namespace servoctl::session

@@ -4,6 +4,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "drive/profile.hpp"
 #include "drive/standard_objects.hpp"
@@ -26,8 +27,9 @@ struct WatchdogPlan {
   std::set<std::uint8_t> watched = {};  ///< Node-IDs that the drive watches already.
   std::string reaction = {};            ///< What the drive does then, by 6007h; empty when it does not tell.
   bool reaction_off = false;            ///< 6007h is 0, no action: it has to be set as well.
-  bool assumed = false;     ///< The manual does not say what the motor does when the master is lost.
-  std::string remark = {};  ///< Why there is none, or on what it depends; may be empty.
+  bool assumed = false;  ///< The manual does not say what the motor does when the master is lost.
+  std::vector<std::string> alarms = {};  ///< What the manual calls a lost communication; it tells no more.
+  std::string remark = {};               ///< Why there is none, or on what it depends; may be empty.
 };
 
 /// 6007h, and its value for a fault (CiA 402-2, abort connection option code).

@@ -80,10 +80,11 @@ void Axis::publish() {
   write(objects::kPositionActual, position_);
   const double here = place();
   write(encoder_, here * per_turn(drive::Measure::pulses_per_turn));
+  const auto& motion = profile_->rules.motion;
   std::uint32_t inputs = 0;
+  for (const auto bit : motion.inputs_active_low) inputs |= 1U << bit;
   for (const auto input : {Input::negative_limit, Input::positive_limit, Input::home})
-    if (track_.is_pressed(input, here))
-      inputs |= 1U << profile_->rules.motion.inputs[static_cast<std::size_t>(input)];
+    if (track_.is_pressed(input, here)) inputs ^= 1U << motion.inputs[static_cast<std::size_t>(input)];
   values_->set_number(objects::kDigitalInputs, inputs);
   write(objects::kVelocityActual, turning() / speed_factor(objects::kVelocityActual));
   write(objects::kTorqueActual, torque_);

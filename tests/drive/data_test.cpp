@@ -150,6 +150,12 @@ TEST_P(DriveData, NamesRulesAfterParametersAndObjectsThatExist) {
        {&rules.nmt.needs, &rules.store.store, &rules.store.restore, &rules.fault.reset})
     for (const auto& setting : *settings) names.push_back(setting.name);
   for (const auto& caution : rules.cautions) names.push_back(caution.name);
+  names.push_back(rules.motion.rated_torque);
+  names.push_back(rules.motion.rated_speed);
+  for (const auto& alarm : rules.nmt.lost_alarms)
+    EXPECT_TRUE(std::any_of(profile.faults.begin(), profile.faults.end(), [&](const auto& fault) {
+      return fault.panel == alarm;
+    })) << alarm;
   names.insert(names.end(), rules.motion.speed_limit.begin(), rules.motion.speed_limit.end());
   for (const auto& name : names) {
     if (name.empty() || profile.parameter(name) != nullptr) continue;
