@@ -133,6 +133,13 @@ Result<HomeTest> parse_home_test(const Arguments& arguments, std::string_view me
   return out;
 }
 
+Result<void> check_home_test(const Context& context, const Arguments& arguments, const HomeTest& test) {
+  session::Home home;
+  home.method = test.method;
+  return check_motion(context, arguments,
+                      [&](session::Motion& motion) { return session::plan_home(motion, home); });
+}
+
 Result<MotionTest> test_home(Context& context, const Arguments& arguments, const HomeTest& test) {
   Homings homings(context, test);
   const auto plan = [&](session::Motion& motion) {

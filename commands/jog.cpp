@@ -14,7 +14,8 @@ constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
     {.name = "--for", .help = "how long", .kind = Kind::duration},
     {.name = "--turns", .help = "how many turns of the motor", .kind = Kind::number},
     {.name = "--until-key",
-     .help = "while an arrow key is held; any other key ends (default on a terminal)",
+     .help =
+         "while an arrow key is held; any other key ends, and so do 5 s without one (default on a terminal)",
      .kind = Kind::flag},
     kAccelerationOption,
     kCsvOption,
@@ -81,7 +82,9 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
       auto keys = context.open_keys();
       if (keys == nullptr) return m.finish(missing);
       if (context.tell)
-        context.tell("hold right or up to turn, left or down to turn back; any other key ends\n");
+        context.tell(
+            "hold right or up to turn, left or down to turn back; any other key ends, and so do 5 s without "
+            "one\n");
       auto held = std::make_shared<HeldKey>(std::move(keys), m.session());
       jog->keys = [held] { return (*held)(); };
     }

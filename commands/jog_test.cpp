@@ -223,6 +223,13 @@ Result<JogTest> parse_jog_test(const Arguments& arguments, std::string_view spee
   return out;
 }
 
+Result<void> check_jog_test(const Context& context, const Arguments& arguments, const JogTest& test) {
+  session::Jog jog;
+  jog.speed = test.speed;
+  return check_motion(context, arguments,
+                      [&](session::Motion& motion) { return session::plan_jog(motion, jog); });
+}
+
 Result<MotionTest> test_jog(Context& context, const Arguments& arguments, const JogTest& test) {
   Timetable timetable(test.length);
   session::Jog jog;

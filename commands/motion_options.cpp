@@ -61,7 +61,10 @@ Value planned(const Context& context, const session::Motion& motion, const sessi
 
 Result<void> ask(Context& context, std::uint8_t node, const session::MotionPlan& plan,
                  const std::vector<session::PreflightItem>& items) {
-  if (context.tell) context.tell(preflight_text(items));
+  if (context.tell) {
+    context.tell(preflight_text(items));
+    for (const auto& note : plan.notes) context.tell(fmt::format("note     {}\n", note));
+  }
   return context.confirm(
       fmt::format("The motor of node {} will move: {}. Is the machine clear?", node, plan.summary));
 }
@@ -101,6 +104,21 @@ Result<session::MotionOptions> motion_options(const Context& context, const Argu
                 "write 1..127");
   out.producer = static_cast<std::uint8_t>(*id);
   return out;
+}
+
+Result<void> check_motion(const Context& context, const Arguments& arguments,
+                          const std::function<Result<session::MotionPlan>(session::Motion&)>& plan) {
+  const auto node = one_node(context);
+  if (!node) return tl::unexpected<Error>(node.error());
+  auto options = motion_options(context, arguments);
+  if (!options) return tl::unexpected<Error>(options.error());
+  session::Motion motion(*context.session, *context.profile, *node, std::move(*options));
+  auto ready = motion.prepare();
+  if (ready)
+    if (const auto planned = plan(motion); !planned) ready = tl::unexpected<Error>(planned.error());
+  const bool of_the_question =
+      !ready && (ready.error().code == Errc::usage || ready.error().code == Errc::refused);
+  return of_the_question ? ready : Result<void>{};
 }
 
 Result<Value> run_motion(Context& context, const Arguments& arguments, const MotionRun& run) {

@@ -19,7 +19,9 @@ inline constexpr Parameter kTurnOption{.name = "--turn",
 inline constexpr std::array kMotionOptions{
     Parameter{
         .name = "--limit", .help = "greatest speed; raises the safe one knowingly", .kind = Kind::value},
-    Parameter{.name = "--max-torque", .help = "stop above this torque", .kind = Kind::value},
+    Parameter{.name = "--max-torque",
+              .help = "stop above this torque; raises the ceiling of `torque`",
+              .kind = Kind::value},
     Parameter{
         .name = "--max-following-error", .help = "stop above this following error", .kind = Kind::value},
     Parameter{.name = "--window", .help = "stop when it has moved farther than this", .kind = Kind::value},
@@ -62,6 +64,11 @@ MotionRun motion_run(const Kind& kind, Result<session::MotionPlan> (*plan)(sessi
             return run(motion, kind, planned);
           }};
 }
+
+/// Whether the motion could be made as it is asked for: options, units, limits of the drive. Only
+/// reads; what an unreachable drive would say is left to the motion itself.
+Result<void> check_motion(const Context& context, const Arguments& arguments,
+                          const std::function<Result<session::MotionPlan>(session::Motion&)>& plan);
 
 /// Looks, shows the pre-flight list, asks, moves, and tells how the drive was left. With --dry-run the drive
 /// is looked at and nothing is written.

@@ -70,6 +70,11 @@ Error unverified(std::uint8_t node, const session::MotionReport& done) {
                               "do not go near the machine before its power is off");
 }
 
+std::string_view result_text(const session::MotionReport& done) {
+  if (!done.outcome) return "stopped";
+  return done.differences.empty() ? "done" : "done, but";
+}
+
 Error ended(std::uint8_t node, const session::MotionReport& done) {
   auto error = done.outcome.error();
   error.message += fmt::format("; the drive is in {}", end_text(done.end, done.watchdog));
@@ -102,6 +107,11 @@ Value motion_result(Context& context, std::uint8_t node, const session::MotionPl
     context.errors.push_back(unverified(node, done));
   else if (!done.outcome)
     context.errors.push_back(ended(node, done));
+  else if (!done.differences.empty())
+    context.errors.push_back(session::drive_error(
+        Errc::negative, node, fmt::format("done, but {}", fmt::join(done.differences, "; ")),
+        "look at the limits the drive has (`param list`, 607Fh, 6080h, 6072h), its gear and its load"));
+  for (const auto& text : done.unchecked) context.notices.push_back(fmt::format("node {}: {}", node, text));
   for (const auto& left : done.end.left)
     context.errors.push_back(session::drive_error(
         Errc::negative, node, left,
@@ -113,7 +123,9 @@ Value motion_result(Context& context, std::uint8_t node, const session::MotionPl
       done.samples.empty() ? 0 : seconds_since(done.samples.back(), done.samples.front().time);
   Record out{{"node", node},
              {"motion", plan.summary},
-             {"result", done.outcome ? "done" : "stopped"},
+             {"result", result_text(done)},
+             {"differences", report::List(done.differences.begin(), done.differences.end()), Show::json},
+             {"unchecked", report::List(done.unchecked.begin(), done.unchecked.end()), Show::json},
              {"seconds", std::round(length * 1000) / 1000},
              {"end", end, Show::text, "drive"},
              {"end", end_record(done.end), Show::json},

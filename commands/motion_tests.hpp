@@ -29,6 +29,9 @@ struct JogTest {
 /// `--for`, `--tolerance`, `--stop-within`. Errc::usage.
 Result<JogTest> parse_jog_test(const Arguments& arguments, std::string_view speed);
 
+/// Whether it can be run as it is asked for, which only reads; so can check_home_test().
+Result<void> check_jog_test(const Context& context, const Arguments& arguments, const JogTest& test);
+
 /// Turns the motor one way and then the other.
 Result<MotionTest> test_jog(Context& context, const Arguments& arguments, const JogTest& test);
 
@@ -46,6 +49,8 @@ struct HomeTest {
 
 /// `--repeat`, `--spread`. Errc::usage.
 Result<HomeTest> parse_home_test(const Arguments& arguments, std::string_view method);
+
+Result<void> check_home_test(const Context& context, const Arguments& arguments, const HomeTest& test);
 
 /// Homes the axis several times over.
 Result<MotionTest> test_home(Context& context, const Arguments& arguments, const HomeTest& test);

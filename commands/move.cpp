@@ -32,7 +32,9 @@ const Command kMove{
     .summary = "Go to a position",
     .details =
         "Profile position with the set-point handshake, watched and ended like `jog`. The motion counts as "
-        "done when the drive reports the target reached, stands still, and is where it was sent. "
+        "done when the drive reports the target reached, stands still, and is where it was sent; a way that "
+        "is "
+        "less than the drive's counts can say is refused. "
         "Afterwards it is without power and holds nothing. Example: "
         "`move 90deg --speed 30rpm -n 1`.",
     .parameters = kParameters,

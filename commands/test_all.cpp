@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "base/file.hpp"
 #include "commands/comm_test.hpp"
 #include "commands/io_test.hpp"
 #include "commands/motion_options.hpp"
@@ -39,17 +40,27 @@ class AllTests {
     if (!home) return tl::unexpected<Error>(home.error());
     const auto inputs = parse_inputs(*context_, arguments_->text("--expect"));
     if (!inputs) return tl::unexpected<Error>(inputs.error());
+    if (const std::string path(arguments_->text("--junit")); !path.empty() && !context_->dry_run)
+      if (const auto possible = check_writable(path); !possible)
+        return tl::unexpected<Error>(possible.error());
     if (const auto done = add(test_communication(*context_, *node, {})); !done)
       return tl::unexpected<Error>(done.error());
     // A motor is not moved by way of a bus that has just failed.
-    const bool may_move = passed(results_.back());
+    bool may_move = passed(results_.back());
+    const bool heard = may_move;
+    // Nothing is begun that a limit would end half way.
+    if (may_move)
+      if (const auto possible = check(*jog, *home); !possible) {
+        context_->errors.push_back(possible.error());
+        may_move = false;
+      }
     if (!inputs->empty() && may_move)
       if (const auto done = add(test_inputs(*context_, *node, {*inputs})); !done)
         return tl::unexpected<Error>(done.error());
     // What was found before is told even when a motion is refused, or not confirmed.
     if (may_move)
       if (const auto done = move(*jog, *home); !done) context_->errors.push_back(done.error());
-    if (!may_move)
+    if (!heard)
       context_->notices.push_back(
           fmt::format("node {}: nothing was moved, because the test of the communication failed", *node));
     if (context_->dry_run) return report::Value(std::move(plans_));
@@ -73,10 +84,22 @@ class AllTests {
     return {};
   }
 
+  bool homes() const { return !arguments_->has("--no-home") && context_->profile->rules.motion.homing; }
+
+  Result<void> check(const JogTest& jog, const HomeTest& home) const {
+    if (auto possible = check_jog_test(*context_, *arguments_, jog); !possible || !homes()) return possible;
+    auto possible = check_home_test(*context_, *arguments_, home);
+    if (possible) return possible;
+    auto error = possible.error();
+    error.message = "the test home could not be run, so nothing is: " + error.message;
+    error.hint += "; or add --no-home";
+    return fail(std::move(error));
+  }
+
   Result<void> move(const JogTest& jog, const HomeTest& home) {
     if (const auto done = add(test_jog(*context_, *arguments_, jog)); !done) return done;
     if (!context_->dry_run && !passed(results_.back())) return {};
-    if (arguments_->has("--no-home") || !context_->profile->rules.motion.homing) return {};
+    if (!homes()) return {};
     return add(test_home(*context_, *arguments_, home));
   }
 
@@ -98,7 +121,8 @@ const Command kTestAll{
     .summary = "Test communication, inputs, both directions and homing, with a verdict",
     .details =
         "Runs `test comm`, `test io` where --expect names inputs, `test jog` and, where the family homes and "
-        "--no-home is not given, `test home` by the drive's present method. After a failure nothing more is "
+        "--no-home is not given, `test home` by the drive's present method. What a limit or an option would "
+        "refuse of any of them is refused before the first one moves. After a failure nothing more is "
         "moved. Each motion shows what is known and asks, as it would alone. Exit code 1 when a test fails. "
         "Example: `test all 60rpm -n 1 -d gsd600 --yes --json >axis-1.json`, then `report axis-1.html "
         "--tests axis-1.json -n 1 -d gsd600`.",

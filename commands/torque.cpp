@@ -31,7 +31,9 @@ const Command kTorque{
     .details =
         "Torque mode, watched and ended like `jog`. --limit is the speed the motor must not exceed: it goes "
         "to the "
-        "drive where the family has a limit for this mode, and servoctl stops above it in any case. Example: "
+        "drive where the family has a limit for this mode, and servoctl stops above it in any case. More "
+        "than "
+        "the rated torque, or than 6072h, needs --max-torque. Example: "
         "`torque 5% --limit 60rpm --for 1s -n 1`.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,

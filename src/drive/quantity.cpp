@@ -19,9 +19,11 @@ struct NumberWithUnit {
 };
 std::optional<NumberWithUnit> split_unit(std::string_view text) {
   NumberWithUnit out;
-  const auto* begin = text.data() + (!text.empty() && text.front() == '+' ? 1 : 0);
+  const bool plus = !text.empty() && text.front() == '+';
+  if (plus && text.size() > 1 && text[1] == '-') return std::nullopt;
+  const auto* begin = text.data() + (plus ? 1 : 0);
   const auto [stop, error] = std::from_chars(begin, text.data() + text.size(), out.number);
-  if (error != std::errc{}) return std::nullopt;
+  if (error != std::errc{} || !std::isfinite(out.number)) return std::nullopt;
   out.unit = trim(text.substr(static_cast<std::size_t>(stop - text.data())));
   return out.unit.empty() ? std::nullopt : std::optional(out);
 }
@@ -57,21 +59,45 @@ tl::unexpected<Error> inconvertible(const Meaning& meaning, const NumberWithUnit
               std::move(hint));
 }
 
-Result<od::Value> from_physical(const Meaning& meaning, const NumberWithUnit& given, std::string_view text) {
+enum class Steps : std::uint8_t { exact, nearest };
+
+tl::unexpected<Error> too_large(std::string_view text) {
+  return fail(Errc::usage, fmt::format("'{}' is too large for this object", text));
+}
+
+/// A number that an object carries encoded; it has fewer digits than the number.
+Result<Quantity> encoded(const Meaning& meaning, double number) {
+  const auto value = od::encode_number(meaning.encoding, meaning.type, number);
+  if (!value) return tl::unexpected<Error>(value.error());
+  const double held = od::decode_number(meaning.encoding, *value);
+  const auto rounding =
+      judge_rounding({number * meaning.scale, held * meaning.scale, 0, std::string(meaning.unit)});
+  if (!rounding) return tl::unexpected<Error>(rounding.error());
+  return Quantity{*value, *rounding};
+}
+
+Result<Quantity> from_physical(const Meaning& meaning, const NumberWithUnit& given, std::string_view text,
+                               Steps steps) {
   const auto factor = in_own_unit(meaning, given.unit);
   if (!factor) return inconvertible(meaning, given, text);
   const double raw = tidy(given.number * *factor / meaning.scale);
-  if (meaning.encoding != od::Encoding::plain) return od::encode_number(meaning.encoding, meaning.type, raw);
-  if (od::is_real(meaning.type)) return od::Value(raw);
-  if (std::abs(raw) > 9.0e18)
-    return fail(Errc::usage, fmt::format("'{}' is too large for this object", text));
-  if (std::abs(raw - std::nearbyint(raw)) > kWhole)
+  if (!std::isfinite(raw)) return too_large(text);
+  if (meaning.encoding != od::Encoding::plain) return encoded(meaning, raw);
+  if (od::is_real(meaning.type)) return Quantity{od::Value(raw), {}};
+  if (std::abs(raw) > 9.0e18) return too_large(text);
+  const double whole = std::nearbyint(raw);
+  const double step = meaning.scale / *factor;
+  if (steps == Steps::exact && std::abs(raw - whole) > kWhole)
     return fail(Errc::usage,
                 fmt::format("'{}' is {:g} steps of {:g} {}: not a whole number", text, raw, meaning.scale,
                             meaning.unit),
-                fmt::format("the nearest value is {:g} {}",
-                            tidy(std::nearbyint(raw) * meaning.scale / *factor), given.unit));
-  return od::parse_value(meaning.type, fmt::format("{:.0f}", raw));
+                fmt::format("the nearest value is {:g} {}", tidy(whole * step), given.unit));
+  const auto rounding =
+      judge_rounding({given.number, tidy(whole * step), std::abs(step), std::string(given.unit)});
+  if (!rounding) return tl::unexpected<Error>(rounding.error());
+  const auto value = od::parse_value(meaning.type, fmt::format("{:.0f}", whole));
+  if (!value) return tl::unexpected<Error>(value.error());
+  return Quantity{*value, *rounding};
 }
 
 const od::EnumLabel* find_label(const Meaning& meaning, std::string_view text) {
@@ -180,27 +206,45 @@ Result<void> check_limits(const Meaning& meaning, const od::Value& value) {
               std::move(hint));
 }
 
-Result<od::Value> parse_quantity(const Meaning& meaning, std::string_view text) {
-  text = trim(text);
-  auto value = [&]() -> Result<od::Value> {
-    if (const auto* label = find_label(meaning, text))
-      return od::parse_value(meaning.type, fmt::format("{}", label->value));
-    if (meaning.encoding != od::Encoding::plain)
-      if (const auto real = parse_real(text))
-        return od::encode_number(meaning.encoding, meaning.type, *real / meaning.scale);
-    const bool number = od::is_integer(meaning.type) || od::is_real(meaning.type);
-    if (number && (!parse_integer(text) || ends_in_own_unit(meaning, text)))
-      if (const auto physical = split_unit(text)) return from_physical(meaning, *physical, text);
-    auto plain = od::parse_value(meaning.type, text);
-    if (!plain && meaning.labels != nullptr && !parse_integer(text))
-      return fail(Errc::usage, fmt::format("'{}' is no value of this object", text),
-                  "values: " + labels_text(meaning));
-    return plain;
-  }();
-  if (!value) return value;
-  if (const auto checked = check_limits(meaning, *value); !checked)
+namespace {
+
+Result<Quantity> read(const Meaning& meaning, std::string_view text, Steps steps) {
+  if (const auto* label = find_label(meaning, text)) {
+    const auto value = od::parse_value(meaning.type, fmt::format("{}", label->value));
+    if (!value) return tl::unexpected<Error>(value.error());
+    return Quantity{*value, {}};
+  }
+  if (meaning.encoding != od::Encoding::plain)
+    if (const auto real = parse_real(text)) return encoded(meaning, *real / meaning.scale);
+  const bool number = od::is_integer(meaning.type) || od::is_real(meaning.type);
+  if (number && (!parse_integer(text) || ends_in_own_unit(meaning, text)))
+    if (const auto physical = split_unit(text)) return from_physical(meaning, *physical, text, steps);
+  const auto plain = od::parse_value(meaning.type, text);
+  if (!plain && meaning.labels != nullptr && !parse_integer(text))
+    return fail(Errc::usage, fmt::format("'{}' is no value of this object", text),
+                "values: " + labels_text(meaning));
+  if (!plain) return tl::unexpected<Error>(plain.error());
+  return Quantity{*plain, {}};
+}
+
+Result<Quantity> read_checked(const Meaning& meaning, std::string_view text, Steps steps) {
+  auto quantity = read(meaning, trim(text), steps);
+  if (!quantity) return quantity;
+  if (const auto checked = check_limits(meaning, quantity->value); !checked)
     return tl::unexpected<Error>(checked.error());
-  return value;
+  return quantity;
+}
+
+}  // namespace
+
+Result<od::Value> parse_quantity(const Meaning& meaning, std::string_view text) {
+  const auto quantity = read_checked(meaning, text, Steps::exact);
+  if (!quantity) return tl::unexpected<Error>(quantity.error());
+  return quantity->value;
+}
+
+Result<Quantity> nearest_quantity(const Meaning& meaning, std::string_view text) {
+  return read_checked(meaning, text, Steps::nearest);
 }
 
 bool needs_bridge(const Meaning& meaning, std::string_view text) {

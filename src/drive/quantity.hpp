@@ -40,8 +40,37 @@ Meaning fitted(Meaning meaning, std::size_t bytes);
 /// Reads what a user writes for this object: a plain number is the raw number that the drive and its panel
 /// show; a number with a unit (`60rpm`, `250ms`, `12%`) is converted and must come out exact; an enum label
 /// stands for its value. Where the object carries an encoded number (`f32`), a decimal number is that number
-/// and a hexadecimal one its bits. Checked against type and limits. Errc::usage tells range and unit.
+/// and a hexadecimal one its bits. What is not zero does not become zero. Checked against type and limits.
+/// Errc::usage tells range and unit.
 Result<od::Value> parse_quantity(const Meaning& meaning, std::string_view text);
+
+/// Of what was asked, a value may lose so much in an object that holds whole steps; more is not what was
+/// asked.
+inline constexpr double kMostLoss = 0.01;
+/// Less is not worth a word.
+inline constexpr double kToldLoss = 0.001;
+
+/// A number that lies between two steps of its object, and the step that stands for it; in `unit`.
+struct Rounding {
+  double asked = 0;
+  double held = 0;
+  double step = 0;
+  std::string unit;
+};
+/// `61.5 rpm is 62 rpm: one step is 1 rpm`.
+std::string to_string(const Rounding& rounding);
+
+/// Whether `held` still is what was asked. Empty where nothing worth a word was lost; Errc::usage, with the
+/// steps beside it, when what was asked becomes nothing or loses more than kMostLoss.
+Result<std::optional<Rounding>> judge_rounding(const Rounding& rounding);
+
+/// A value and what it lost.
+struct Quantity {
+  od::Value value;
+  std::optional<Rounding> rounding;
+};
+/// As parse_quantity(), but a number with a unit may lie between two steps: judge_rounding() decides.
+Result<Quantity> nearest_quantity(const Meaning& meaning, std::string_view text);
 
 /// Whether the text carries a unit that only the drive's own measures can convert.
 bool needs_bridge(const Meaning& meaning, std::string_view text);

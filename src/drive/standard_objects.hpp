@@ -60,6 +60,7 @@ inline constexpr ObjectAddress kMaxMotorSpeed{0x6080, 0};
 inline constexpr ObjectAddress kProfileVelocity{0x6081, 0};
 inline constexpr ObjectAddress kProfileAcceleration{0x6083, 0};
 inline constexpr ObjectAddress kProfileDeceleration{0x6084, 0};
+inline constexpr ObjectAddress kMaxTorque{0x6072, 0};
 inline constexpr ObjectAddress kTorqueSlope{0x6087, 0};
 
 inline constexpr ObjectAddress kInterpolationPoint{0x60C1, 1};

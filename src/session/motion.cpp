@@ -7,6 +7,7 @@
 
 #include "drive/soft_ramp.hpp"
 #include "drive/standard_objects.hpp"
+#include "session/motion_kinds.hpp"
 #include "session/producer_claim.hpp"
 
 namespace servoctl::session {
@@ -18,9 +19,10 @@ constexpr double kNoiseRpm = 3;
 /// A motor is run away that turns so much faster than it was told to, and more than its noise.
 constexpr double kOverspeed = 1.5;
 constexpr double kNoiseOfOverspeed = 5;
+constexpr double kLongest = 86'400;    ///< Seconds; longer is for ever.
 constexpr double kDegreesASecond = 6;  ///< Of 1 rpm.
-/// What conversions of units may add to a number.
-constexpr double kRounding = 1 + 1e-6;
+/// What servoctl chose itself need not be met exactly; what is farther off is told.
+constexpr double kChosenLoss = 0.1;
 
 }  // namespace
 
@@ -41,75 +43,6 @@ Result<void> Motion::prepare() {
   if (!plan) return tl::unexpected<Error>(plan.error());
   watchdog_ = std::move(*plan);
   return {};
-}
-
-Result<void> Motion::read_limits() {
-  struct Row {
-    Channel channel;
-    const std::string* text;
-    std::optional<double>* out;
-  };
-  auto& limits = monitor_->limits();
-  for (const auto& row :
-       {Row{Channel::torque, &options_.max_torque, &limits.torque},
-        Row{Channel::following_error, &options_.max_following_error, &limits.following_error},
-        Row{Channel::position, &options_.window, &limits.travel}}) {
-    if (row.text->empty()) continue;
-    const auto object = object_of(row.channel);
-    if (!units_->has(object))
-      return fail(Errc::usage,
-                  fmt::format("this family does not tell its {} ({})", name(row.channel), to_string(object)),
-                  "leave this limit out");
-    const auto value = units_->parse_physical(object, *row.text);
-    if (!value) return tl::unexpected<Error>(value.error());
-    *row.out = std::abs(value->value);
-  }
-  if (options_.acceleration.empty()) return {};
-  const auto ramp = units_->parse(objects::kProfileAcceleration, options_.acceleration);
-  return ramp ? Result<void>{} : tl::unexpected<Error>(ramp.error());
-}
-
-/// A speed the drive holds, when it is told in the unit of the target velocity.
-std::optional<double> Motion::read_speed(ObjectAddress object) {
-  if (!units_->has(object) || units_->unit(object) != units_->unit(objects::kTargetVelocity))
-    return std::nullopt;
-  const auto answer = session_->upload(node_, object);
-  const auto value = answer ? units_->physical(object, *answer) : std::nullopt;
-  return value && value->value > 0 ? std::optional(value->value) : std::nullopt;
-}
-
-Result<double> Motion::find_speed_cap() {
-  const auto unit = units_->unit(objects::kTargetVelocity);
-  std::optional<double> most;
-  for (const auto object : {objects::kMaxProfileVelocity, objects::kMaxMotorSpeed})
-    if (const auto speed = read_speed(object)) most = std::min(*speed, most.value_or(*speed));
-  if (!options_.speed_limit.empty()) {
-    const auto asked = units_->parse_physical(objects::kTargetVelocity, options_.speed_limit);
-    if (!asked) return tl::unexpected<Error>(asked.error());
-    if (most && std::abs(asked->value) > *most)
-      return fail(error(Errc::refused,
-                        fmt::format("the limit of {:g} {} is above what the drive allows, {:g} {}",
-                                    asked->value, unit, *most, unit),
-                        "607Fh and 6080h hold it"));
-    return std::abs(asked->value);
-  }
-  const auto rated = units_->object(rules().rated_speed);
-  if (rated)
-    if (const auto speed = read_speed(*rated)) most = std::min(*speed, most.value_or(*speed));
-  if (unit == "rpm") return std::min(kSafeRpm, most.value_or(kSafeRpm));
-  if (most) return *most * kSafePart;
-  return fail(Errc::usage, "what speed is safe cannot be told from this drive",
-              fmt::format("add --limit SPEED in {}", unit.empty() ? "the drive's own unit" : unit));
-}
-
-Result<void> Motion::check_speed(double speed) const {
-  if (!speed_cap_) return tl::unexpected<Error>(speed_cap_.error());
-  if (std::abs(speed) <= *speed_cap_ * kRounding) return {};
-  const auto unit = units_->unit(objects::kTargetVelocity);
-  return fail(error(
-      Errc::refused,
-      fmt::format("{:g} {} is above the limit of {:g} {}", std::abs(speed), unit, *speed_cap_, unit),
-      fmt::format("`--limit {:g}{}` raises it, when the machine may move that fast", std::abs(speed), unit)));
 }
 
 Result<std::vector<PreflightItem>> Motion::look(bool chinese) {
@@ -137,21 +70,33 @@ void Motion::supervise_overspeed(double speed) {
   (void)supervise_speed(std::abs(speed) * kOverspeed + standstill_ * kNoiseOfOverspeed);
 }
 
-std::vector<MotionSetting> Motion::ramps(double speed, std::initializer_list<ObjectAddress> objects) const {
-  std::vector<MotionSetting> out;
+bool Motion::add_setting(ObjectAddress object, double value, MotionPlan& plan) const {
+  const auto data = units_->bytes(object, value);
+  if (!data) return false;
+  plan.settings.emplace_back(object, *data);
+  const auto held = units_->physical(object, *data);
+  if (held && std::abs(held->value - value) > std::abs(value) * kChosenLoss)
+    plan.notes.push_back(fmt::format("{} is set to {:g} {}: the nearest it can hold to {:g}",
+                                     to_string(object), held->value, held->unit, value));
+  return true;
+}
+
+Result<void> Motion::add_ramps(double speed, std::initializer_list<ObjectAddress> objects,
+                               MotionPlan& plan) const {
   for (const auto object : objects) {
     if (!units_->has(object)) continue;
     if (!options_.acceleration.empty()) {
-      if (const auto data = units_->parse(objects::kProfileAcceleration, options_.acceleration))
-        out.emplace_back(object, *data);
+      const auto asked = units_->parse(object, options_.acceleration);
+      if (!asked) return tl::unexpected<Error>(asked.error());
+      plan.settings.emplace_back(object, asked->data);
+      plan.tell(asked->rounding);
       continue;
     }
     const auto ramp =
         drive::soft_ramp(units_->unit(object), units_->unit(objects::kTargetVelocity), speed, kRampSeconds);
-    const auto data = ramp ? units_->bytes(object, *ramp) : std::nullopt;
-    if (data) out.emplace_back(object, *data);
+    if (ramp) (void)add_setting(object, *ramp, plan);
   }
-  return out;
+  return {};
 }
 
 std::optional<double> Motion::rate() const {
@@ -164,7 +109,7 @@ std::optional<double> Motion::rate() const {
 std::optional<Duration> Motion::duration(double way, double speed) const {
   const auto one = rate();
   if (!one || speed == 0) return std::nullopt;
-  const double seconds = std::abs(way / (speed * *one)) + 2 * kRampSeconds;
+  const double seconds = std::min(std::abs(way / (speed * *one)) + 2 * kRampSeconds, kLongest);
   return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(seconds));
 }
 

@@ -21,7 +21,7 @@ struct MotionOptions {
   std::optional<double> encoder;         ///< Encoder counts in one turn, where the drive does not tell.
   std::string speed_limit;               ///< Of 60FFh.
   std::string acceleration;              ///< Of 6083h.
-  std::string max_torque;                ///< Of 6077h.
+  std::string max_torque;                ///< Of 6077h; of a torque to push with as well (6071h).
   std::string max_following_error;       ///< Of 60F4h.
   std::string window;                    ///< Of 6064h.
   std::function<void(const MotionSample&)> on_sample;
@@ -37,11 +37,15 @@ struct MotionReport {
   std::vector<MotionSample> samples;
   std::vector<Series> series;
   std::vector<canopen::NodeEvent> events;
-  std::size_t by_pdo = 0;  ///< How many values of the samples TPDOs have brought.
+  std::size_t by_pdo = 0;                ///< How many values of the samples TPDOs have brought.
+  std::vector<std::string> differences;  ///< Where what was measured is not what was asked for.
+  std::vector<std::string> unchecked;    ///< What could not be measured.
 };
 
 /// An object and what is to be written to it.
 using MotionSetting = std::pair<ObjectAddress, Bytes>;
+
+struct MotionPlan;
 
 /// One motion of one drive, from the first look at it to its verified end. Used in this order: prepare(),
 /// begin(), then watch() as often as needed, finish().
@@ -83,8 +87,15 @@ class Motion {
   bool supervise_speed(double limit);
   /// The same for a motion at this speed: half as fast again, and the noise of a motor, are no reason.
   void supervise_overspeed(double speed);
-  /// 6083h and 6084h for this speed, as far as the family has them.
-  std::vector<MotionSetting> ramps(double speed, std::initializer_list<ObjectAddress> objects) const;
+  /// Puts 6083h and 6084h for this speed, as far as the family has them, into the plan.
+  Result<void> add_ramps(double speed, std::initializer_list<ObjectAddress> objects, MotionPlan& plan) const;
+  /// Puts a number that servoctl chose, in the unit of MotionUnits::physical(), into the plan, and a note
+  /// where the object has to hold quite another one. False where it cannot be said in this object.
+  bool add_setting(ObjectAddress object, double value, MotionPlan& plan) const;
+  /// The torque in the unit of 6071h that must not be exceeded: MotionOptions::max_torque, else the rated one
+  /// or what 6072h leaves of it. Errc::usage when none is known; Errc::refused when the user's is above
+  /// 6072h.
+  Result<double> torque_cap() const;
   /// What one of speed (60FFh) goes in a second, in the unit of 6064h; empty when their units do not fit.
   std::optional<double> rate() const;
   /// Time that the way takes at the speed with its ramps; empty when their units do not fit.
@@ -93,9 +104,13 @@ class Motion {
   void set_standstill(double speed);
   /// Below this the motor stands still, in the unit of 606Ch.
   bool stands_still(const MotionSample& sample) const;
+  double standstill() const { return standstill_; }
+  /// Whether the ramps are those of the user, whose length is not known.
+  bool has_own_ramps() const { return !options_.acceleration.empty(); }
 
   const MotionUnits& units() const { return *units_; }
   MotionMonitor& monitor() { return *monitor_; }
+  const MotionMonitor& monitor() const { return *monitor_; }
   MotionLimits& limits() { return monitor_->limits(); }
   const drive::MotionRules& rules() const { return profile_->rules.motion; }
   std::uint8_t node() const { return node_; }
@@ -110,7 +125,10 @@ class Motion {
   Result<void> look_again();
   Result<void> read_limits();
   Result<double> find_speed_cap();
-  std::optional<double> read_speed(ObjectAddress object);
+  /// A limit that the user gave: more than 0, because it holds either way.
+  Result<double> parse_limit(ObjectAddress object, std::string_view option, const std::string& text) const;
+  /// What an object of the drive says in the unit of `as`, when it can be said so and is above 0.
+  std::optional<double> read_as(ObjectAddress as, ObjectAddress object) const;
 
   Session* session_;
   const drive::Profile* profile_;

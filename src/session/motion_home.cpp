@@ -14,12 +14,18 @@ constexpr std::array<std::int64_t, 2> kAtOnce{35, 37};
 constexpr Duration kStart = std::chrono::seconds(1);
 constexpr double kNearDegrees = 1;
 constexpr double kNearCounts = 100;
+/// CiA 402-2, 6098h: no homing operation.
+constexpr std::int64_t kNoMethod = 0;
 /// To one end of the window, from there to the other one.
 constexpr double kWindows = 3;
 /// The index pulse comes once in a turn; the switch may have to be left first.
 constexpr double kTurns = 2;
 constexpr double kDegrees = 360;
 constexpr Duration kSettling = std::chrono::seconds(5);
+
+bool takes_present_position(const MotionPlan& plan) {
+  return std::find(kAtOnce.begin(), kAtOnce.end(), static_cast<std::int64_t>(plan.value)) != kAtOnce.end();
+}
 
 class Homing {
  public:
@@ -63,15 +69,10 @@ class Homing {
     begun_ = begun_ || !done;
     if (done && begun_) return motion_->stands_still(sample);
     if (begun_ || sample.time - started_at_ < kStart) return false;
-    if (takes_present_position() && motion_->stands_still(sample) && is_at_offset(sample)) return true;
+    if (takes_present_position(*plan_) && motion_->stands_still(sample) && is_at_offset(sample)) return true;
     return fail(motion_->error(Errc::negative,
                                "does not begin to look for home: what it says is from an earlier run",
                                "is this method one the drive knows (6098h)?"));
-  }
-
-  bool takes_present_position() const {
-    return std::find(kAtOnce.begin(), kAtOnce.end(), static_cast<std::int64_t>(plan_->value)) !=
-           kAtOnce.end();
   }
 
   /// Where it stands is home now, so its position is the offset; its sign differs from drive to drive.
@@ -101,7 +102,8 @@ Result<void> add(const Motion& motion, ObjectAddress object, const std::string& 
     return fail(motion.error(Errc::usage, fmt::format("this family has no object {}", to_string(object))));
   const auto data = motion.units().parse(object, text);
   if (!data) return tl::unexpected<Error>(data.error());
-  plan.settings.emplace_back(object, *data);
+  plan.settings.emplace_back(object, data->data);
+  plan.tell(data->rounding);
   return {};
 }
 
@@ -120,9 +122,12 @@ Result<void> check_method(Motion& motion, MotionPlan& plan) {
   if (!value) return tl::unexpected<Error>(value.error());
   const auto number = static_cast<std::int64_t>(od::to_double(*value));
   const auto& nothing = motion.rules().no_homing;
-  if (std::find(nothing.begin(), nothing.end(), number) != nothing.end())
-    return fail(
-        motion.error(Errc::refused, fmt::format("method {} means \"no homing\" on this family", number)));
+  if (number == kNoMethod || std::find(nothing.begin(), nothing.end(), number) != nothing.end())
+    return fail(motion.error(
+        Errc::refused, fmt::format("homing method {} (6098h) does nothing: no home would be found", number),
+        fmt::format(
+            "say which: `home METHOD -n {}`; `objects 0x6098` lists them, `write 0x6098 METHOD` sets one",
+            motion.node())));
   const auto* label = drive::label_of(meaning, *value);
   if (meaning.labels != nullptr && label == nullptr)
     return fail(motion.error(Errc::refused, fmt::format("this family has no homing method {}", number),
@@ -144,7 +149,13 @@ Result<Physical> speed_of(Motion& motion, ObjectAddress object, const MotionPlan
         "add --turn COUNTS, if the drive does not tell its encoder"));
   if (const auto allowed = motion.check_speed(speed->value); !allowed)
     return tl::unexpected<Error>(allowed.error());
-  return *speed;
+  if (speed->value > 0 || takes_present_position(plan)) return *speed;
+  const bool fast = object == objects::kHomingSpeedSwitch;
+  return fail(motion.error(Errc::refused,
+                           fmt::format("its homing speed ({}) is {:g} {}: it would never get there",
+                                       to_string(object), speed->value, speed->unit),
+                           fmt::format("add {}; `write {} …` sets it",
+                                       fast ? "--speed 30rpm" : "--search 6rpm", to_string(object))));
 }
 
 /// From the way that --window leaves it and its speeds; a way that is not known has a time of its own.

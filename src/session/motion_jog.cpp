@@ -3,6 +3,7 @@
 
 #include "base/duration.hpp"
 #include "drive/standard_objects.hpp"
+#include "session/motion_judgement.hpp"
 #include "session/motion_kinds.hpp"
 
 namespace servoctl::session {
@@ -24,16 +25,30 @@ class Jogging {
   Result<void> run() {
     if (!jog_->keys)
       if (const auto started = turn(1); !started) return started;
+    const auto told_at = motion_->session().now();
     const auto watched =
         motion_->watch([this](const MotionSample& s) { return look(s); }, jog_->length.value_or(longest()));
     if (!watched) return tl::unexpected<Error>(watched.error());
     if (!*watched && jog_->turns)
       return fail(motion_->error(Errc::negative, "did not turn that far in the time it needs",
                                  "is it blocked, or is its speed limited?"));
-    return rest();
+    const auto stopped_at = motion_->session().now();
+    auto rested = rest();
+    if (rested) judge(told_at, stopped_at);
+    return rested;
   }
+  MotionJudgement& judgement() { return judgement_; }
 
  private:
+  void judge(TimePoint told_at, TimePoint stopped_at) {
+    if (left_alone_)
+      judgement_.unchecked.push_back(fmt::format("no key was held for {}: it has ended by itself",
+                                                 servoctl::to_string(kLongestWithoutKey)));
+    if (jog_->keys) return;
+    judgement_.judge_speed(*motion_, *plan_, told_at, stopped_at);
+    if (jog_->turns) judgement_.judge_way(*motion_, *plan_);
+  }
+
   Duration longest() const {
     if (!jog_->turns) return kForEver;
     return motion_->duration(plan_->way, plan_->speed).value_or(kForEver) * 3 / 2 + kSettling;
@@ -60,6 +75,12 @@ class Jogging {
     const auto key = jog_->keys();
     if (key == HoldKey::stop) return true;
     const int wanted = key == HoldKey::plus ? 1 : key == HoldKey::minus ? -1 : 0;
+    const auto now = motion_->session().now();
+    if (wanted != 0 || !held_at_) held_at_ = now;
+    if (now - *held_at_ >= kLongestWithoutKey) {
+      left_alone_ = true;
+      return true;
+    }
     if (wanted == direction_) return false;
     if (const auto done = turn(wanted); !done) return tl::unexpected<Error>(done.error());
     return false;
@@ -119,6 +140,9 @@ class Jogging {
   std::optional<double> begin_;
   std::optional<double> last_;
   TimePoint last_time_{};
+  std::optional<TimePoint> held_at_;  ///< When a key was held last.
+  bool left_alone_ = false;
+  MotionJudgement judgement_;
 };
 
 /// The way of so many turns in the unit of the position.
@@ -143,14 +167,18 @@ Result<MotionPlan> plan_jog(Motion& motion, const Jog& jog) {
   plan.mode = *mode;
   const auto data = motion.units().parse(objects::kTargetVelocity, jog.speed);
   if (!data) return tl::unexpected<Error>(data.error());
-  const auto speed = motion.units().physical(objects::kTargetVelocity, *data).value_or(Physical{});
+  const auto& speed = data->value;
   if (speed.value == 0) return fail(Errc::usage, "a speed of 0 does not move anything", "say how fast");
   if (const auto allowed = motion.check_speed(speed.value); !allowed)
     return tl::unexpected<Error>(allowed.error());
-  plan.command = *data;
+  plan.command = data->data;
+  plan.tell(data->rounding);
   plan.value = plan.speed = speed.value;
   plan.unit = speed.unit;
-  plan.settings = motion.ramps(speed.value, {objects::kProfileAcceleration, objects::kProfileDeceleration});
+  if (const auto ramps =
+          motion.add_ramps(speed.value, {objects::kProfileAcceleration, objects::kProfileDeceleration}, plan);
+      !ramps)
+    return tl::unexpected<Error>(ramps.error());
   if (jog.turns) {
     const auto way = way_of(motion, *jog.turns);
     if (!way) return tl::unexpected<Error>(way.error());
@@ -163,8 +191,10 @@ Result<MotionPlan> plan_jog(Motion& motion, const Jog& jog) {
 }
 
 MotionReport run_jog(Motion& motion, const Jog& jog, const MotionPlan& plan) {
-  auto begun = motion.begin(plan.mode, plan.settings);
-  return motion.finish(begun ? Jogging(motion, jog, plan).run() : begun);
+  if (auto begun = motion.begin(plan.mode, plan.settings); !begun) return motion.finish(std::move(begun));
+  Jogging jogging(motion, jog, plan);
+  auto done = jogging.run();
+  return jogging.judgement().into(motion.finish(std::move(done)));
 }
 
 }  // namespace servoctl::session

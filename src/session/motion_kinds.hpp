@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "session/motion.hpp"
 
 /// The four ways in which servoctl moves a motor. Each checks what it is asked before anything is written
@@ -9,6 +11,9 @@ namespace servoctl::session {
 
 /// What a person holds down.
 enum class HoldKey : std::uint8_t { none, plus, minus, stop };
+
+/// Without a key held for so long nobody is there any more.
+inline constexpr Duration kLongestWithoutKey = std::chrono::seconds(5);
 
 /// Turning at a speed: for a time, for a way, or while a key is held. One of the three.
 struct Jog {
@@ -56,6 +61,12 @@ struct MotionPlan {
   Duration longest{};   ///< Of homing.
   std::string summary;  ///< `turn at 60 rpm for 2 s`
   std::vector<std::string> notes;
+
+  /// Adds a note, unless it is empty or said already.
+  void tell(std::string note) {
+    if (!note.empty() && std::find(notes.begin(), notes.end(), note) == notes.end())
+      notes.push_back(std::move(note));
+  }
 };
 
 Result<MotionPlan> plan_jog(Motion& motion, const Jog& jog);

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "drive/standard_objects.hpp"
+#include "session/motion_judgement.hpp"
 #include "session/motion_kinds.hpp"
 #include "session/operation_mode.hpp"
 
@@ -41,15 +42,23 @@ class Moving {
     const auto arrived =
         motion_->watch([this](const MotionSample& s) { return is_there(s); }, longest + kSettling);
     if (!arrived) return tl::unexpected<Error>(arrived.error());
-    if (*arrived) return {};
+    if (*arrived) {
+      judgement_.judge_target(*motion_, *plan_, nearness());
+      return {};
+    }
     return fail(
         motion_->error(Errc::negative,
                        fmt::format("did not arrive at {:g} {} in the time it needs; it is at {:g}",
                                    plan_->value, plan_->unit, last_),
                        "is it blocked, is its speed limited, or is the position window (6067h) too narrow?"));
   }
+  const MotionJudgement& judgement() const { return judgement_; }
 
  private:
+  double nearness() const {
+    return plan_->way == 0 ? near(*plan_) : std::min(near(*plan_), std::abs(plan_->way) * kMostOfWay);
+  }
+
   Result<void> read_window() {
     window_ = near(*plan_);
     if (!motion_->units().has(objects::kPositionWindow)) return {};
@@ -100,7 +109,17 @@ class Moving {
   const MotionPlan* plan_;
   double window_ = 0;
   double last_ = 0;
+  MotionJudgement judgement_;
 };
+
+/// What one count of 607Ah is worth in the unit people think in; numbers of 32 bits have steps that grow.
+double step_of(const MotionUnits& units, double place) {
+  const auto what = units.meaning(objects::kTargetPosition);
+  if (what.encoding != od::Encoding::plain) return std::max(1e-3, std::abs(place) * 1e-6);
+  const auto one = od::encode(what.type, od::Value(std::int64_t{1}));
+  const auto step = one ? units.physical(objects::kTargetPosition, *one) : std::nullopt;
+  return step ? std::abs(step->value) : 0;
+}
 
 /// The target, counted from where the motor stands when it is relative.
 Result<void> find_target(Motion& motion, const Move& move, MotionPlan& plan) {
@@ -116,10 +135,18 @@ Result<void> find_target(Motion& motion, const Move& move, MotionPlan& plan) {
   plan.from = here.value;
   const auto data = units.bytes(objects::kTargetPosition, plan.value);
   const auto said = data ? units.physical(objects::kTargetPosition, *data) : std::nullopt;
+  const double step = step_of(units, plan.value);
   // Kept within limits silently it would go elsewhere.
-  if (!said || std::abs(said->value - plan.value) > std::max(1e-3, std::abs(plan.value) * 1e-6))
+  if (!said || std::abs(said->value - plan.value) > std::max(step, std::abs(plan.value) * 1e-6))
     return fail(motion.error(Errc::usage,
                              fmt::format("{:g} {} is beyond what 607Ah can hold", plan.value, plan.unit)));
+  const double from = move.relative ? here.value : 0;
+  // What was told must not be lost in a step; the zero it is counted from is one.
+  const auto rounding = drive::judge_rounding({asked->value, said->value - from, step, plan.unit});
+  if (!rounding) return tl::unexpected<Error>(rounding.error());
+  if (*rounding) plan.tell(drive::to_string(**rounding));
+  plan.value = said->value;
+  plan.way = plan.value - here.value;
   plan.command = *data;
   return {};
 }
@@ -157,7 +184,8 @@ Result<MotionPlan> plan_move(Motion& motion, const Move& move) {
   } else {
     const auto asked = units.parse(*speed_object, move.speed);
     if (!asked) return tl::unexpected<Error>(asked.error());
-    speed = *asked;
+    speed = asked->data;
+    plan.tell(asked->rounding);
   }
   const auto fast = speed ? units.physical(*speed_object, *speed) : std::nullopt;
   if (!fast || fast->value <= 0)
@@ -165,7 +193,10 @@ Result<MotionPlan> plan_move(Motion& motion, const Move& move) {
   if (const auto allowed = motion.check_speed(fast->value); !allowed)
     return tl::unexpected<Error>(allowed.error());
   plan.speed = fast->value;
-  plan.settings = motion.ramps(plan.speed, {objects::kProfileAcceleration, objects::kProfileDeceleration});
+  if (const auto ramps =
+          motion.add_ramps(plan.speed, {objects::kProfileAcceleration, objects::kProfileDeceleration}, plan);
+      !ramps)
+    return tl::unexpected<Error>(ramps.error());
   plan.settings.emplace_back(*speed_object, *speed);
   if (speed_object == objects::kTargetVelocity) plan.kept_target = *speed_object;
   plan.summary = fmt::format("go {:g} {} to {:g} {} at {:g} {}", plan.way, plan.unit, plan.value, plan.unit,
@@ -177,8 +208,11 @@ Result<MotionPlan> plan_move(Motion& motion, const Move& move) {
 
 MotionReport run_move(Motion& motion, const Move&, const MotionPlan& plan) {
   if (auto still = check_start(motion, plan); !still) return motion.finish(std::move(still));
-  auto begun = motion.begin(plan.mode, plan.settings, plan.kept_target);
-  return motion.finish(begun ? Moving(motion, plan).run() : begun);
+  if (auto begun = motion.begin(plan.mode, plan.settings, plan.kept_target); !begun)
+    return motion.finish(std::move(begun));
+  Moving moving(motion, plan);
+  auto done = moving.run();
+  return moving.judgement().into(motion.finish(std::move(done)));
 }
 
 }  // namespace servoctl::session

@@ -3,6 +3,7 @@
 
 #include "base/duration.hpp"
 #include "drive/standard_objects.hpp"
+#include "session/motion_judgement.hpp"
 #include "session/motion_kinds.hpp"
 
 namespace servoctl::session {
@@ -10,30 +11,59 @@ namespace {
 
 /// A drive that limits its speed overshoots a little.
 constexpr double kOvershoot = 1.2;
+/// What conversions of units may add to a number.
+constexpr double kRounding = 1 + 1e-6;
 
 /// The drive's own limit of the speed, where the family has one that can be said in this unit.
-void limit_speed(const Motion& motion, double cap, MotionPlan& plan) {
+Result<void> limit_speed(const Motion& motion, double cap, MotionPlan& plan) {
+  const auto& units = motion.units();
+  const auto unit = units.unit(objects::kTargetVelocity);
   for (const auto& name : motion.rules().speed_limit) {
-    const auto object = motion.units().object(name);
-    if (!object || motion.units().unit(*object) != motion.units().unit(objects::kTargetVelocity)) continue;
-    const auto data = motion.units().bytes(*object, cap);
-    if (!data) continue;
+    const auto object = units.object(name);
+    if (!object || units.unit(*object) != unit) continue;
+    const auto data = units.bytes(*object, cap);
+    const auto held = data ? units.physical(*object, *data) : std::nullopt;
+    if (!held) continue;
+    if (held->value > cap * (1 + drive::kMostLoss))
+      return fail(Errc::usage,
+                  fmt::format("--limit: {:g} {} is less than the drive can be limited to ({}): {:g} {}", cap,
+                              unit, to_string(*object), held->value, held->unit),
+                  "raise the limit");
     plan.settings.emplace_back(*object, *data);
     if (*object == objects::kTargetVelocity) plan.kept_target = *object;
+    if (units.meaning(*object).effect == od::Effect::restart)
+      plan.tell(
+          fmt::format("the drive's speed limit in torque mode ({}) is set to {:g} {}, but may act after its "
+                      "next start only: "
+                      "servoctl looks at the speed and stops above {:g} {}",
+                      to_string(*object), held->value, held->unit, cap * kOvershoot, unit));
   }
-  if (plan.settings.empty())
-    plan.notes.push_back(fmt::format(
-        "the drive has no speed limit of its own in torque mode that the manual tells: servoctl looks at the "
-        "speed every {} ms and stops above {:g} {}",
-        std::chrono::duration_cast<std::chrono::milliseconds>(MotionMonitor::kPeriod).count(),
-        cap * kOvershoot, motion.units().unit(objects::kTargetVelocity)));
+  if (!plan.settings.empty()) return {};
+  plan.tell(fmt::format(
+      "the drive has no speed limit of its own in torque mode that the manual tells: servoctl looks at the "
+      "speed every {} ms and stops above {:g} {}",
+      std::chrono::duration_cast<std::chrono::milliseconds>(MotionMonitor::kPeriod).count(), cap * kOvershoot,
+      unit));
+  return {};
 }
 
 void soften(const Motion& motion, double torque, MotionPlan& plan) {
   if (!motion.units().has(objects::kTorqueSlope) || motion.units().unit(objects::kTorqueSlope) != "%/s")
     return;
-  if (const auto data = motion.units().bytes(objects::kTorqueSlope, std::abs(torque) / Motion::kRampSeconds))
-    plan.settings.emplace_back(objects::kTorqueSlope, *data);
+  (void)motion.add_setting(objects::kTorqueSlope, std::abs(torque) / Motion::kRampSeconds, plan);
+}
+
+Result<void> check_torque(const Motion& motion, const Physical& torque) {
+  if (torque.value == 0) return fail(Errc::usage, "a torque of 0 does nothing", "say how much");
+  const auto cap = motion.torque_cap();
+  if (!cap) return tl::unexpected<Error>(cap.error());
+  if (std::abs(torque.value) <= *cap * kRounding) return {};
+  return fail(motion.error(
+      Errc::refused,
+      fmt::format("{:g} {} is above the limit of {:g} {}", std::abs(torque.value), torque.unit, *cap,
+                  torque.unit),
+      fmt::format("`--max-torque {:g}{}` raises it, when machine and motor may take it; 6072h bounds it",
+                  std::abs(torque.value), torque.unit)));
 }
 
 }  // namespace
@@ -46,15 +76,18 @@ Result<MotionPlan> plan_torque(Motion& motion, const Torque& torque) {
   if (*cap <= 0) return fail(Errc::usage, "a speed limit of 0 lets nothing move", "give --limit a speed");
   const auto data = motion.units().parse(objects::kTargetTorque, torque.torque);
   if (!data) return tl::unexpected<Error>(data.error());
-  const auto value = motion.units().physical(objects::kTargetTorque, *data).value_or(Physical{});
-  if (value.value == 0) return fail(Errc::usage, "a torque of 0 does nothing", "say how much");
+  const auto& value = data->value;
+  if (const auto allowed = check_torque(motion, value); !allowed)
+    return tl::unexpected<Error>(allowed.error());
   MotionPlan plan;
   plan.mode = *mode;
-  plan.command = *data;
+  plan.command = data->data;
+  plan.tell(data->rounding);
   plan.value = value.value;
   plan.unit = value.unit;
   plan.speed = *cap;
-  limit_speed(motion, *cap, plan);
+  if (const auto limited = limit_speed(motion, *cap, plan); !limited)
+    return tl::unexpected<Error>(limited.error());
   soften(motion, value.value, plan);
   if (!motion.supervise_speed(*cap * kOvershoot))
     return fail(motion.error(Errc::refused,
@@ -70,12 +103,15 @@ Result<MotionPlan> plan_torque(Motion& motion, const Torque& torque) {
 MotionReport run_torque(Motion& motion, const Torque& torque, const MotionPlan& plan) {
   auto done = motion.begin(plan.mode, plan.settings, plan.kept_target);
   if (done) done = motion.write(objects::kTargetTorque, plan.command);
+  MotionJudgement judgement;
   if (done) {
+    const auto told_at = motion.session().now();
     const auto watched =
         motion.watch([](const MotionSample&) -> Result<bool> { return false; }, torque.length);
     if (!watched) done = tl::unexpected<Error>(watched.error());
+    judgement.judge_torque(motion, plan, told_at, motion.session().now());
   }
-  return motion.finish(std::move(done));
+  return judgement.into(motion.finish(std::move(done)));
 }
 
 }  // namespace servoctl::session

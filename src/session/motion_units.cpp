@@ -7,6 +7,19 @@
 
 namespace servoctl::session {
 
+namespace {
+
+Physical physical_of(const drive::Meaning& what, const od::Value& value) {
+  if (const auto familiar = drive::familiar(what, value))
+    if (what.unit != "%") return {familiar->value, std::string(familiar->unit)};
+  return {drive::scaled(what, value), std::string(what.unit)};
+}
+
+/// Whole numbers beyond it have no double of their own.
+constexpr double kMostSteps = 9.0e15;
+
+}  // namespace
+
 MotionUnits::MotionUnits(Session& session, const drive::Profile& profile, std::uint8_t node,
                          std::optional<double> turn, std::optional<double> encoder)
     : profile_(&profile), node_(node) {
@@ -30,62 +43,61 @@ drive::Meaning MotionUnits::meaning(ObjectAddress object) const {
   return out;
 }
 
-Result<Bytes> MotionUnits::parse(ObjectAddress object, std::string_view text) const {
+Error MotionUnits::unknown_turn(ObjectAddress object, Error error) const {
   const auto what = meaning(object);
-  auto value = drive::parse_quantity(what, text);
-  if (!value && what.encoding == od::Encoding::plain) {
-    // 250 rpm need not be a whole number of counts a second: for a motion the nearest is as good.
-    auto real = what;
-    real.type = od::DataType::f64;
-    if (const auto number = drive::parse_quantity(real, text)) {
-      value = od::Value(static_cast<std::int64_t>(std::llround(od::to_double(*number))));
-      if (const auto fits = drive::check_limits(what, *value); !fits)
-        return tl::unexpected<Error>(fits.error());
-    }
-  }
-  if (!value) {
-    auto error = value.error();
-    if (what.measure == drive::Measure::increments_per_turn && !what.bridge)
-      error.hint += "; --turn COUNTS says it";
-    return fail(std::move(error));
-  }
-  return od::encode(what.type, *value);
+  if (what.measure == drive::Measure::increments_per_turn && !what.bridge)
+    error.hint += "; --turn COUNTS says it";
+  return error;
+}
+
+Result<Setpoint> MotionUnits::parse(ObjectAddress object, std::string_view text) const {
+  const auto what = meaning(object);
+  const auto quantity = drive::nearest_quantity(what, text);
+  if (!quantity) return fail(unknown_turn(object, quantity.error()));
+  auto data = od::encode(what.type, quantity->value);
+  if (!data) return tl::unexpected<Error>(data.error());
+  Setpoint out{std::move(*data), {}, quantity->rounding ? drive::to_string(*quantity->rounding) : ""};
+  out.value = physical(object, out.data).value_or(Physical{});
+  return out;
 }
 
 std::optional<Physical> MotionUnits::physical(ObjectAddress object, ByteSpan bytes) const {
   const auto what = meaning(object);
   const auto value = what.type_known ? od::decode(what.type, bytes) : Result<od::Value>(od::Value());
   if (!what.type_known || !value) return std::nullopt;
-  if (const auto familiar = drive::familiar(what, *value))
-    if (what.unit != "%") return Physical{familiar->value, std::string(familiar->unit)};
-  return Physical{drive::scaled(what, *value), std::string(what.unit)};
+  return physical_of(what, *value);
 }
 
 Result<Physical> MotionUnits::parse_physical(ObjectAddress object, std::string_view text) const {
-  const auto data = parse(object, text);
-  if (!data) return tl::unexpected<Error>(data.error());
-  return physical(object, *data).value_or(Physical{});
+  auto what = meaning(object);
+  auto value = drive::parse_quantity(what, text);
+  if (!value && what.encoding == od::Encoding::plain && od::is_integer(what.type)) {
+    what.type = od::DataType::f64;
+    if (auto between = drive::parse_quantity(what, text)) value = std::move(between);
+  }
+  if (!value) return fail(unknown_turn(object, value.error()));
+  return physical_of(what, *value);
 }
 
 std::optional<Bytes> MotionUnits::bytes(ObjectAddress object, double value) const {
   const auto what = meaning(object);
-  if (!what.type_known) return std::nullopt;
+  if (!what.type_known || !std::isfinite(value)) return std::nullopt;
+  const bool plain = what.encoding == od::Encoding::plain;
   const auto one = od::encode(
-      what.type, what.encoding == od::Encoding::plain
-                     ? od::Value(std::int64_t{1})
-                     : od::encode_number(what.encoding, what.type, 1).value_or(od::Value(std::int64_t{0})));
+      what.type, plain ? od::Value(std::int64_t{1})
+                       : od::encode_number(what.encoding, what.type, 1).value_or(od::Value(std::int64_t{0})));
   const auto step = one ? physical(object, *one) : std::nullopt;
   if (!step || step->value == 0) return std::nullopt;
   double raw = value / step->value;
+  if (plain && raw != 0 && std::abs(raw) < 1) raw = std::copysign(1, raw);
   const auto limit = [&](const std::optional<od::Value>& bound) {
-    return what.encoding == od::Encoding::plain ? od::to_double(*bound)
-                                                : od::decode_number(what.encoding, *bound);
+    return plain ? od::to_double(*bound) : od::decode_number(what.encoding, *bound);
   };
   if (what.min) raw = std::max(raw, limit(what.min));
   if (what.max) raw = std::min(raw, limit(what.max));
-  const auto number = what.encoding == od::Encoding::plain
-                          ? Result<od::Value>(od::Value(static_cast<std::int64_t>(std::llround(raw))))
-                          : od::encode_number(what.encoding, what.type, raw);
+  if (plain && std::abs(raw) > kMostSteps) return std::nullopt;
+  const auto number = plain ? Result<od::Value>(od::Value(static_cast<std::int64_t>(std::llround(raw))))
+                            : od::encode_number(what.encoding, what.type, raw);
   const auto data = number ? od::encode(what.type, *number) : tl::unexpected<Error>(number.error());
   return data ? std::optional(*data) : std::nullopt;
 }

@@ -17,6 +17,13 @@ struct Physical {
   std::string unit;
 };
 
+/// What is written to an object for what was asked, and what that is.
+struct Setpoint {
+  Bytes data;
+  Physical value;
+  std::string rounding;  ///< What was lost between two steps, when it is worth a word; else empty.
+};
+
 /// What the objects of one drive mean, with its gear and ratings, which are read once.
 class MotionUnits {
  public:
@@ -27,15 +34,15 @@ class MotionUnits {
 
   bool has(ObjectAddress object) const;
   drive::Meaning meaning(ObjectAddress object) const;
-  /// The bytes to write for what a user wrote (`60rpm`), the nearest step there is; errors as
-  /// drive::parse_quantity().
-  Result<Bytes> parse(ObjectAddress object, std::string_view text) const;
+  /// What to write for what a user wrote (`60rpm`); errors as drive::nearest_quantity().
+  Result<Setpoint> parse(ObjectAddress object, std::string_view text) const;
   /// The number in these bytes in the unit people think in; empty when they are none.
   std::optional<Physical> physical(ObjectAddress object, ByteSpan bytes) const;
-  /// What a user wrote for this object, as a number in the same unit as physical().
+  /// What a user wrote about this object, as a number in the same unit as physical(); nothing is written, so
+  /// nothing is rounded.
   Result<Physical> parse_physical(ObjectAddress object, std::string_view text) const;
-  /// The bytes for a number in the unit of physical(), rounded to the nearest step and kept within the
-  /// object's limits; empty when it cannot be said in this object.
+  /// The bytes for a number in the unit of physical() that servoctl itself chose: the nearest step within the
+  /// object's limits, and never zero for what is not. Empty when it cannot be said in this object.
   std::optional<Bytes> bytes(ObjectAddress object, double value) const;
   std::string unit(ObjectAddress object) const;
 
@@ -44,6 +51,9 @@ class MotionUnits {
   const drive::Profile& profile() const { return *profile_; }
 
  private:
+  /// The error, with what to do where nobody has told how many counts a turn has.
+  Error unknown_turn(ObjectAddress object, Error error) const;
+
   const drive::Profile* profile_;
   std::uint8_t node_;
   std::map<drive::Measure, double> measures_;

@@ -16,6 +16,8 @@ constexpr double kAssumedTurn = 10000;
 /// Speed that ramps given as a time lead to.
 constexpr double kRampSpeedRpm = 3000;
 constexpr double kNoRamp = 1e12;
+/// Beyond it nothing can be written.
+constexpr double kMostSteps = 9e15;
 
 }  // namespace
 
@@ -29,10 +31,10 @@ double Axis::read(ObjectAddress object) const {
 void Axis::write(ObjectAddress object, double number) {
   const auto meaning = drive::meaning(drive::target_at(profile_, object), 0);
   if (!meaning.type_known) return;
-  const auto raw =
-      meaning.encoding == od::Encoding::plain
-          ? Result<od::Value>(od::Value(static_cast<std::int64_t>(std::llround(number / meaning.scale))))
-          : od::encode_number(meaning.encoding, meaning.type, number);
+  const auto raw = meaning.encoding == od::Encoding::plain
+                       ? Result<od::Value>(od::Value(static_cast<std::int64_t>(
+                             std::llround(std::clamp(number / meaning.scale, -kMostSteps, kMostSteps)))))
+                       : od::encode_number(meaning.encoding, meaning.type, number);
   const auto bytes = raw ? od::encode(meaning.type, *raw) : tl::unexpected<Error>(raw.error());
   if (bytes) values_->set(object, *bytes);
 }

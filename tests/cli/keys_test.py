@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """jog by arrow keys on a terminal: it turns while a key is repeated, stops when it is let go, ends at any other key,
-at Ctrl-C and when the terminal goes away; nothing is left energised, and the terminal is as it was.
+without a key for 5 s, at Ctrl-C and when the terminal goes away; nothing is left energised, and the terminal is as it was.
 usage: keys_test.py SERVOCTL"""
 import os
 import pty
@@ -106,6 +106,13 @@ try:
     check("Ctrl-C ends it as interrupted", jog.ended() == 130)
     check("nothing is energised after Ctrl-C", status()["energised"] is False)
     check("the terminal is as it was after Ctrl-C", termios.tcgetattr(jog.tty) == jog.before)
+
+    jog = Jog()
+    begin = time.monotonic()
+    check("it ends well without a key for 5 s", jog.ended() == 0)
+    check("and not before", time.monotonic() - begin > 4)
+    check("it says so", b"no key was held for 5 s" in jog.text)
+    check("nothing is energised after that", status()["energised"] is False)
 
     jog = Jog()
     jog.hold(right, 0.5)

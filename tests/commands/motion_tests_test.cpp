@@ -177,6 +177,19 @@ TEST_F(MotionTests, AllMovesNothingAfterTheCommunicationHasFailed) {
   EXPECT_TRUE(questions.empty());
 }
 
+/// Its homing speed from the factory is 900 rpm.
+TEST_F(MotionTests, AllMovesNothingWhereTheHomingWouldBeRefusedLater) {
+  build("sv2@1", "sv2");
+  const auto result = run("test all", {{"speed", "60rpm"}});
+  EXPECT_EQ(criterion(result, "lost_answers"), "passed 0");
+  EXPECT_EQ(criterion(result, "completed"), "none");
+  EXPECT_TRUE(questions.empty());
+  ASSERT_FALSE(context.errors.empty());
+  EXPECT_EQ(context.errors.front().code, Errc::refused);
+  EXPECT_TRUE(context.errors.front().message.starts_with("the test home could not be run, so nothing is"));
+  EXPECT_TRUE(context.errors.front().hint.ends_with("add --no-home")) << context.errors.front().hint;
+}
+
 TEST_F(MotionTests, AllRunsEachTest) {
   build("sv2@1", "sv2");
   const auto result = run("test all", {{"speed", "60rpm"}, {"--repeat", "2"}, {"--limit", "3000rpm"}});

@@ -88,6 +88,7 @@ inline Home home_by(std::string method, Duration longest = std::chrono::seconds(
   Home out;
   out.method = std::move(method);
   out.fast = "60rpm";
+  out.slow = "60rpm";
   out.longest = longest;
   return out;
 }

@@ -1,0 +1,37 @@
+// What a number loses in an object that holds whole steps.
+#include <fmt/format.h>
+#include <cmath>
+
+#include "drive/quantity.hpp"
+
+namespace servoctl::drive {
+namespace {
+
+std::string with_unit(double number, const std::string& unit) {
+  return fmt::format("{:.6g}{}{}", number, unit.empty() ? "" : " ", unit);
+}
+
+}  // namespace
+
+std::string to_string(const Rounding& rounding) {
+  const auto& unit = rounding.unit;
+  auto out = fmt::format("{} is {}", with_unit(rounding.asked, unit), with_unit(rounding.held, unit));
+  return rounding.step == 0 ? out : out + ": one step is " + with_unit(rounding.step, unit);
+}
+
+Result<std::optional<Rounding>> judge_rounding(const Rounding& rounding) {
+  const double loss = std::abs(rounding.held - rounding.asked);
+  const bool lost = rounding.asked != 0 && rounding.held == 0;
+  if (!lost && loss <= kToldLoss * std::abs(rounding.asked)) return std::optional<Rounding>();
+  if (!lost && loss <= kMostLoss * std::abs(rounding.asked)) return std::optional(rounding);
+  const auto& unit = rounding.unit;
+  const auto what =
+      fmt::format("{} would become {}", with_unit(rounding.asked, unit), with_unit(rounding.held, unit));
+  if (rounding.step == 0) return fail(Errc::usage, what + ": this object cannot hold it");
+  const double below = std::floor(rounding.asked / rounding.step) * rounding.step;
+  return fail(Errc::usage, what + ": one step is " + with_unit(rounding.step, unit),
+              fmt::format("the values beside it are {} and {}", with_unit(below, unit),
+                          with_unit(below + rounding.step, unit)));
+}
+
+}  // namespace servoctl::drive
