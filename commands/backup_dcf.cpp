@@ -4,20 +4,26 @@
 #include "base/file.hpp"
 #include "base/number.hpp"
 #include "commands/backup_formats.hpp"
+#include "drive/naming.hpp"
+#include "drive/quantity.hpp"
 #include "od/dcf.hpp"
 #include "od/eds.hpp"
 
 namespace servoctl::commands {
 namespace {
 
-/// `500 kbit/s`, `1 Mbit/s`: the label of the family's bitrate parameter, in kbit/s.
+/// `500 kbit/s`, `1 Mbit/s`: the label of the family's bitrate parameter, in kbit/s; or its value, where that
+/// is the bitrate itself.
 std::optional<std::uint32_t> kbps_of(const drive::Profile& profile, const Backup& backup) {
-  const auto* parameter = profile.parameter(profile.rules.nmt.bitrate);
-  if (parameter == nullptr || !parameter->object) return std::nullopt;
+  const auto place = drive::place_of(profile, profile.rules.nmt.bitrate);
+  if (!place) return std::nullopt;
+  const auto meaning = drive::meaning(drive::target_at(&profile, *place), 0);
   for (const auto& entry : backup.entries) {
-    if (entry.object != *parameter->object || !entry.bytes) continue;
+    if (entry.object != *place || !entry.bytes) continue;
     const auto code = load_le(*entry.bytes);
-    for (const auto& label : parameter->labels) {
+    if (meaning.unit == "kbit/s") return static_cast<std::uint32_t>(code);
+    if (meaning.labels == nullptr) return std::nullopt;
+    for (const auto& label : *meaning.labels) {
       if (static_cast<std::uint64_t>(label.value) != code) continue;
       const auto space = label.label.find(' ');
       const auto number = parse_digits(std::string_view(label.label).substr(0, space), 10);

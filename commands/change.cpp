@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <set>
 
 #include "canopen/sdo_client.hpp"
 #include "commands/keeping_nodes.hpp"
@@ -47,18 +48,15 @@ bool asks_measure(const Context& context, const drive::Meaning& meaning, std::st
 /// A gear that takes effect at a restart may be set and not in force: what is written then is converted by
 /// numbers the drive does not go by yet.
 void warn_of_gear(Context& context, std::uint8_t node, drive::Measure measure) {
-  const auto& quotient = context.profile->rules.units.at(measure);
-  std::string names;
-  const auto add = [&](ObjectAddress object) {
-    const auto target = drive::target_at(context.profile, object);
-    if (drive::meaning(target, node).effect != od::Effect::restart || target.parameter == nullptr) return;
-    names += (names.empty() ? "" : ", ") + target.parameter->id;
-  };
-  for (const auto* factors : {&quotient.multiply, &quotient.divide})
-    for (const auto& factor : *factors)
-      if (const auto* object = std::get_if<ObjectAddress>(&factor)) add(*object);
-  for (const auto& condition : quotient.when) add(condition.object);
-  if (names.empty()) return;
+  std::set<std::string> ids;
+  for (const auto& way : context.profile->rules.units.at(measure))
+    for (const auto object : way.objects()) {
+      const auto target = drive::target_at(context.profile, object);
+      if (drive::meaning(target, node).effect == od::Effect::restart && target.parameter != nullptr)
+        ids.insert(target.parameter->id);
+    }
+  if (ids.empty()) return;
+  const auto names = fmt::to_string(fmt::join(ids, ", "));
   const auto notice = fmt::format(
       "node {}: the unit is converted by {}, right only if the drive was restarted since they were changed",
       node, names);
@@ -109,8 +107,7 @@ Result<Change> change_to(std::uint8_t node, const drive::Target& target, const d
 }
 
 bool is_parameter(const drive::Profile& profile, const Change& change, const std::string& id) {
-  return !id.empty() && change.target.parameter != nullptr &&
-         change.target.parameter == profile.parameter(id);
+  return drive::place_of(profile, id) == change.target.address;
 }
 
 /// Whether it is a controlword that enables a drive.
@@ -159,11 +156,11 @@ Error with_password_hint(const Context& context, const Change& change, Error err
 }
 
 report::List change_row(const Change& change, const Result<session::Written>& written, session::Kept kept,
-                        bool chinese) {
+                        const Context& context) {
   const Reading reading{change.node, change.target, change.type, change.data, change.bridge};
   const auto decoded = decode_value(reading, change.data);
   const auto effect = drive::meaning(change.target, change.node).effect;
-  const auto name = chinese ? change.target.label_zh() : change.target.label();
+  const auto name = context.chinese ? change.target.label_zh() : change.target.label();
   std::string state = "not written";
   if (written && written->answer_lost)
     state = "written (the answer was lost, the value was read back)";
@@ -189,7 +186,7 @@ report::List change_row(const Change& change, const Result<session::Written>& wr
           written && kept != session::Kept::unknown ? Value(kept == session::Kept::yes) : Value(),
           written ? report::text_or_null(effect_text(effect)) : Value(),
           report::text_or_null(std::string(od::name(effect))),
-          written ? Value() : error_record(written.error())};
+          written ? Value() : error_record(written.error(), abort_words(context, written.error()))};
 }
 
 }  // namespace
@@ -280,7 +277,7 @@ Result<Value> write_changes(Context& context, std::span<const Change> changes, c
                    {"error", "", Show::json}};
   table.json_only = std::none_of(written.begin(), written.end(), [](const auto& w) { return w.has_value(); });
   for (std::size_t i = 0; i < changes.size(); ++i) {
-    table.rows.push_back(change_row(changes[i], written[i], keeping.kept(changes[i].node), context.chinese));
+    table.rows.push_back(change_row(changes[i], written[i], keeping.kept(changes[i].node), context));
     if (!written[i]) context.errors.push_back(with_password_hint(context, changes[i], written[i].error()));
     if (written[i] && written[i]->answer_lost)
       context.notices.push_back(fmt::format(

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "commands/reading.hpp"
+#include "drive/naming.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -61,18 +62,17 @@ Side factory_side(const drive::Profile& profile, std::uint8_t node) {
 }
 
 bool is_address(const drive::Profile* profile, ObjectAddress object) {
-  const auto* parameter = profile == nullptr ? nullptr : profile->parameter(object);
-  if (parameter == nullptr) return false;
+  if (profile == nullptr) return false;
   const auto& rules = profile->rules.nmt;
-  return parameter == profile->parameter(rules.node_id) || parameter == profile->parameter(rules.bitrate);
+  return drive::place_of(*profile, rules.node_id) == object ||
+         drive::place_of(*profile, rules.bitrate) == object;
 }
 
 Bytes for_node(const drive::Profile* profile, ObjectAddress object, const Bytes& bytes, std::uint8_t from,
                std::uint8_t to) {
   if (profile == nullptr || from == to) return bytes;
   const auto number = load_le(bytes);
-  const auto* parameter = profile->parameter(object);
-  if (parameter != nullptr && parameter == profile->parameter(profile->rules.nmt.node_id))
+  if (drive::place_of(*profile, profile->rules.nmt.node_id) == object)
     return number == from ? store_le(to, bytes.size()) : bytes;
   const auto* entry = profile->dictionary.find(object);
   const bool with_node = entry != nullptr && entry->default_value && entry->default_value->plus_node_id;

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "commands/records.hpp"
+#include "drive/standard_objects.hpp"
+
 namespace servoctl::commands {
 namespace {
 
@@ -57,10 +60,17 @@ std::string product(const std::vector<Quotient::Factor>& factors) {
 
 std::string quotient_text(const Quotient& quotient) {
   auto out = product(quotient.multiply);
+  for (const auto object : quotient.power_of_two) out += fmt::format(" × 2^{}", to_string(object));
   if (!quotient.divide.empty()) out += " / (" + product(quotient.divide) + ")";
   for (const auto& condition : quotient.when)
     out += fmt::format(", when {} is {}", to_string(condition.object), condition.value);
   return out + (quotient.assumed ? " (assumed)" : "");
+}
+
+std::string ways_text(const drive::Quotients& ways) {
+  std::string out;
+  for (const auto& way : ways) out += (out.empty() ? "" : "; ") + quotient_text(way);
+  return out;
 }
 
 Value units(const Rules& rules) {
@@ -71,7 +81,7 @@ Value units(const Rules& rules) {
       {drive::Measure::rated_torque, "rated_torque"}};
   for (const auto& [measure, name] : names)
     if (const auto found = rules.units.find(measure); found != rules.units.end())
-      out.push_back({name, quotient_text(found->second)});
+      out.push_back({name, ways_text(found->second)});
   return out.empty() ? Value() : Value(std::move(out));
 }
 
@@ -112,7 +122,9 @@ Value pdo(const Rules& rules) {
   for (const auto& preset : r.presets) presets.push_back(preset.name);
   Record types;
   for (const auto& [type, meaning] : r.types) types.push_back({fmt::format("type {}", type), meaning});
-  Record out{{"cob_id_bits", Hex{r.cob_id_bits, 8}, Show::everywhere, "COB-ID bits that may change"},
+  // A drive whose PDOs are assigned by an object (CoE) has no COB-IDs.
+  Record out{{"cob_id_bits", r.assign_rpdo.empty() ? Value(Hex{r.cob_id_bits, 8}) : Value(), Show::everywhere,
+              "COB-ID bits that may change"},
              {"parameters", text(r.parameters), Show::everywhere, "type and times change"},
              {"mapping", r.disable_by_count ? "always, by count 0" : text(r.mapping)},
              {"most_entries", r.most_entries, Show::everywhere, "entries at most"},
@@ -126,9 +138,18 @@ Value pdo(const Rules& rules) {
   return out;
 }
 
-Value store(const Rules& rules) {
-  const auto& r = rules.store;
-  return Record{{"objects", r.objects ? "1010h and 1011h" : "no 1010h", Show::text, "by object"},
+/// Where the manual does not list the objects of CiA 301, the drive is asked all the same, and its refusal
+/// told.
+std::string_view store_objects(const drive::Profile& profile) {
+  if (!profile.rules.store.objects) return "no 1010h";
+  return profile.dictionary.object(objects::kStoreIndex) != nullptr
+             ? "1010h and 1011h"
+             : "1010h and 1011h are tried, its manual does not list them";
+}
+
+Value store(const drive::Profile& profile) {
+  const auto& r = profile.rules.store;
+  return Record{{"objects", store_objects(profile), Show::text, "by object"},
                 {"objects", r.objects, Show::json},
                 {"store", settings(r.store)},
                 {"restore", settings(r.restore)},
@@ -215,12 +236,15 @@ Record rules_record(const drive::Profile& profile, bool chinese) {
              {"exact_length", rules.sdo.exact_length, Show::everywhere, "exact SDO length"},
              {"units", units(rules)},
              {"pdo", pdo(rules), Show::everywhere, "PDO"},
-             {"store", store(rules), Show::everywhere, "storing"},
+             {"store", store(profile), Show::everywhere, "storing"},
              {"motion", motion(rules)},
              {"fault", fault(rules), Show::everywhere, "faults and emergencies"},
              {"cautions", caution_text(rules, chinese), Show::text, "before motion"},
              {"cautions", cautions(rules, chinese), Show::json},
-             {"assumed", text_list(rules.assumed), Show::everywhere, "not in the manual"}};
+             {"assumed", text_list(rules.assumed), Show::everywhere, "not in the manual"},
+             {"contradicted", report::text_or_null(od::to_text(rules.contradicted)), Show::text,
+              "the manual says two things of"},
+             {"contradicted", marks_record(rules.contradicted), Show::json}};
   return out;
 }
 

@@ -8,7 +8,6 @@
 #include "canopen/cob_id.hpp"
 #include "canopen/error_control.hpp"
 #include "canopen/nmt.hpp"
-#include "canopen/sdo_abort.hpp"
 #include "commands/notice.hpp"
 #include "commands/reading.hpp"
 #include "commands/records.hpp"
@@ -45,7 +44,7 @@ std::string_view name(Step kind) {
 }
 
 /// What happens to the object, before its value.
-std::string phrase(const SdoStep& step, const std::string& object) {
+std::string phrase(const SdoStep& step, const std::string& object, std::string_view abort) {
   switch (step.kind) {
     case Step::read: return "read " + object;
     case Step::write: return "write " + object;
@@ -59,7 +58,7 @@ std::string phrase(const SdoStep& step, const std::string& object) {
     case Step::next: return "go on " + object;
     case Step::abort:
       return fmt::format("abort {} by the {}: 0x{:08X} {}", object, step.from_client ? "master" : "node",
-                         step.abort_code, canopen::sdo_abort_text(step.abort_code));
+                         step.abort_code, abort);
     case Step::unknown: break;
   }
   return "no SDO of CiA 301";
@@ -228,13 +227,18 @@ void FrameDecoder::decode_sdo(const can::Frame& frame) {
   out_.node = node;
   drive::Target target;
   if (step.object) target = drive::target_at(options_.profile, *step.object);
-  out_.text = phrase(step, step.object ? name_of(target) : "of a transfer begun before");
+  out_.text = phrase(step, step.object ? name_of(target) : "of a transfer begun before",
+                     step.kind == Step::abort ? abort_words_of(step) : std::string());
   if (step.object) out_.objects.push_back(*step.object);
   if (options_.fields) add_sdo_fields(step, target);
   if (step.object && step.data) add_sdo_value(*step.data, target);
   if (step.announced) out_.text += fmt::format(", {} bytes", *step.announced);
   if (options_.fields) end_sdo_fields(step);
   learn(step);
+}
+
+std::string FrameDecoder::abort_words_of(const SdoStep& step) const {
+  return abort_words(options_.profile, options_.chinese, step.abort_code);
 }
 
 void FrameDecoder::add_sdo_fields(const canopen::SdoStep& step, const drive::Target& target) {
@@ -254,7 +258,7 @@ void FrameDecoder::end_sdo_fields(const canopen::SdoStep& step) {
   fields_.key("abort");
   fields_.begin_record();
   fields_.member("code", fmt::format("0x{:08X}", step.abort_code));
-  fields_.member("text", canopen::sdo_abort_text(step.abort_code));
+  fields_.member("text", abort_words_of(step));
   fields_.end_record();
 }
 

@@ -58,6 +58,7 @@ class FrameDecoder {
   void decode_sdo(const can::Frame& frame);
   void add_sdo_fields(const canopen::SdoStep& step, const drive::Target& target);
   void add_sdo_value(const Bytes& data, const drive::Target& target);
+  std::string abort_words_of(const canopen::SdoStep& step) const;
   void end_sdo_fields(const canopen::SdoStep& step);
   void learn(const canopen::SdoStep& step);
   std::string name_of(const drive::Target& target) const;

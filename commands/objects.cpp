@@ -23,6 +23,13 @@ Value default_of(const std::optional<od::NodeValue>& value) {
                            : "$NODEID+" + od::to_string(value->value);
 }
 
+/// A float carried by an integer is shown as the number it is, beside its unit.
+Value shown_default(const drive::Meaning& meaning, const od::Entry& entry) {
+  const auto& value = entry.default_value;
+  if (!value || value->plus_node_id || meaning.encoding == od::Encoding::plain) return default_of(value);
+  return drive::plain_text(meaning, value->value);
+}
+
 bool wanted(std::string_view pattern, const od::Object& object, const od::Entry& entry) {
   if (pattern.empty()) return true;
   const auto address = to_string(entry.address);
@@ -45,12 +52,16 @@ report::List row(const Context& context, const od::Object& object, const od::Ent
   const auto& labels = meaning.labels != nullptr ? *meaning.labels : kNone;
   const auto unit =
       meaning.scale == 1 ? std::string(meaning.unit) : fmt::format("{:g} {}", meaning.scale, meaning.unit);
+  const auto& doubts = parameter != nullptr ? parameter->doubts : entry.doubts;
+  const auto& note_zh = parameter != nullptr ? parameter->note_zh : entry.note_zh;
+  const auto encoding = od::name(meaning.encoding);
   return {to_string(entry.address),
           shown,
           od::name(entry.type),
           od::name(entry.access),
           od::name(entry.pdo),
           unit,
+          shown_default(meaning, entry),
           default_of(entry.default_value),
           entry.address.index,
           entry.address.sub,
@@ -65,7 +76,13 @@ report::List row(const Context& context, const od::Object& object, const od::Ent
           labels_record(labels, false),
           report::text_or_null(parameter != nullptr ? parameter->note : entry.note),
           parameter != nullptr ? Value(parameter->id) : Value(),
-          !(parameter != nullptr ? parameter->assumed : entry.assumed).empty()};
+          report::text_or_null(std::string(encoding)),
+          report::text_or_null(note_zh),
+          doubts.word(),
+          !doubts.assumed.empty(),
+          marks_record(doubts.assumed),
+          !doubts.contradicted.empty(),
+          marks_record(doubts.contradicted)};
 }
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
@@ -76,7 +93,8 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
                    {"access"},
                    {"pdo"},
                    {"unit_text", "unit", Show::text},
-                   {"default"},
+                   {"default_text", "default", Show::text},
+                   {"default", "", Show::json},
                    {"index", "", Show::json},
                    {"sub", "", Show::json},
                    {"name", "", Show::json},
@@ -90,7 +108,13 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
                    {"enum", "", Show::json},
                    {"note", "", Show::json},
                    {"parameter", "", Show::json},
-                   {"assumed", "", Show::json}};
+                   {"encoding", "", Show::json},
+                   {"note_zh", "", Show::json},
+                   {"mark", "", Show::text},
+                   {"assumed", "", Show::json},
+                   {"assumed_fields", "", Show::json},
+                   {"contradicted", "", Show::json},
+                   {"contradicted_fields", "", Show::json}};
   const auto pattern = arguments.text("pattern");
   for (const auto& object : context.profile->dictionary.objects())
     for (const auto& entry : object.entries)

@@ -21,7 +21,9 @@ extern const Command kParamExplain;
 const Command kParamExplain{
     .path = "param explain",
     .summary = "Tell all that is known of a panel parameter",
-    .details = "Works without a bus. What the manual does not state is marked as assumed.",
+    .details =
+        "Works without a bus. What the manual does not state is marked as assumed, what it states in two "
+        "ways as contradicted.",
     .parameters = kParameters,
     .needs = Needs::dictionary,
     .effect = Effect::none,

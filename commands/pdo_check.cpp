@@ -57,11 +57,11 @@ Result<void> check_entry(const drive::Profile& profile, const Pdo& pdo, const Pd
     return no(pdo, fmt::format("{} is not in the dictionary of {}", to_string(entry.object), profile.family),
               fmt::format("`objects -d {}` lists what it has", profile.family));
   }
-  const bool stated = known->assumed.find("pdo") == std::string::npos;
+  const bool stated = !known->doubts.about("pdo");
   if (stated && !fits_direction(*known, pdo.direction))
     return no(pdo, name + " cannot be mapped here", direction_hint(*known));
   const auto bits = bits_of(profile, entry.object);
-  const bool sure = !profile.is_generic() && known->assumed.find("type") == std::string::npos;
+  const bool sure = !profile.is_generic() && !known->doubts.about("type");
   if (bits && sure && *bits != entry.bits)
     return no(pdo, fmt::format("{} has {} bits, not {}", name, *bits, entry.bits));
   if (profile.rules.pdo.whole_bytes && entry.bits % 8 != 0)

@@ -48,7 +48,8 @@ void add_bridges(session::Session& session, const drive::Profile& profile, std::
   }
 }
 
-List reading_row(const Reading& reading, bool chinese) {
+List reading_row(const Context& context, const Reading& reading) {
+  const bool chinese = context.chinese;
   const auto& target = reading.target;
   const auto name = chinese ? target.label_zh() : target.label();
   List row{reading.node, to_string(target.address), target.address.index, target.address.sub,
@@ -61,9 +62,9 @@ List reading_row(const Reading& reading, bool chinese) {
     const auto type = reading.type              ? std::optional(*reading.type)
                       : target.entry != nullptr ? std::optional(target.entry->type)
                                                 : std::nullopt;
-    row.insert(row.end(),
-               {Value("-"), type ? Value(od::name(*type)) : Value(), Value(), Value(), Value(), Value(),
-                Value(), Value(), Value(), Value(), Value(), error_record(reading.bytes.error())});
+    row.insert(row.end(), {Value("-"), type ? Value(od::name(*type)) : Value(), Value(), Value(), Value(),
+                           Value(), Value(), Value(), Value(), Value(), Value(),
+                           error_record(reading.bytes.error(), abort_words(context, reading.bytes.error()))});
     return row;
   }
   const auto& bytes = *reading.bytes;
@@ -170,7 +171,7 @@ Table reading_table(Context& context, std::vector<Reading> readings) {
                    {"bytes", "", Show::json},
                    {"error", "", Show::json}};
   for (const auto& reading : readings) {
-    table.rows.push_back(reading_row(reading, context.chinese));
+    table.rows.push_back(reading_row(context, reading));
     if (!reading.bytes) context.errors.push_back(reading.bytes.error());
   }
   table.json_only =

@@ -13,8 +13,26 @@
 /// The records that scripts rely on (docs/json.md), built in one place.
 namespace servoctl::commands {
 
-/// An error as it stands in JSON.
-report::Value error_record(const Error& error);
+/// What an abort code means: the manual's own words where the family's rules have them in this language, else
+/// those of CiA 301. `profile` may be null.
+std::string abort_words(const drive::Profile* profile, bool chinese, std::uint32_t code);
+std::string abort_words(const Context& context, std::uint32_t code);
+/// Of the abort code of an error, in English, for records; empty when it has none.
+std::string abort_words(const Context& context, const Error& error);
+
+/// Puts these words into the message of an abort: in place of "not listed in CiA 301", or behind the
+/// standard's words where people read Chinese.
+void name_abort(const Context& context, Error& error);
+
+/// An error as it stands in JSON. `abort_words`: what its abort code means on this drive; empty: as in CiA
+/// 301.
+report::Value error_record(const Error& error, std::string_view abort_words = {});
+
+/// `{"min":[2240,2260]}`: fields and the lines of the manual; null when there are none.
+report::Value marks_record(const std::vector<od::Mark>& marks);
+
+/// What the manual does not state, and what it contradicts: sentences in text, records in JSON.
+report::Record doubts_record(const od::Doubts& doubts);
 
 /// A value of the dictionary as a number, text, or bytes in hexadecimal; null when there is none.
 report::Value od_value(const std::optional<od::Value>& value);

@@ -6,6 +6,7 @@
 #include "commands/command.hpp"
 #include "commands/frame_decoder.hpp"
 #include "commands/left_energised.hpp"
+#include "commands/records.hpp"
 #include "commands/replay_plan.hpp"
 #include "commands/replay_run.hpp"
 
@@ -65,7 +66,7 @@ std::string failure_text(const Context& context, const ReplayFailure& failure) {
                      to_string(failure.object), label.empty() ? "" : " " + label, failure.node,
                      failure.abort_code
                          ? fmt::format("refused: {} (abort 0x{:08X})",
-                                       canopen::sdo_abort_text(*failure.abort_code), *failure.abort_code)
+                                       abort_words(context, *failure.abort_code), *failure.abort_code)
                          : std::string("not answered"));
 }
 
@@ -105,7 +106,7 @@ report::Table failures_table(const Context& context, const std::vector<ReplayFai
                         report::text_or_null(drive::target_at(context.profile, failure.object).label()),
                         failure.write ? "write" : "read",
                         abort ? Value(fmt::format("0x{:08X}", *abort)) : Value(),
-                        abort ? canopen::sdo_abort_text(*abort) : "none"});
+                        abort ? abort_words(context, *abort) : "none"});
   }
   return out;
 }

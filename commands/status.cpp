@@ -100,11 +100,13 @@ Record one(Context& context, std::uint8_t node, std::span<const Result<Bytes>> a
   Record out{{"node", node}};
   const auto nmt = context.session->watch().state(node);
   const auto heartbeat = number(answers[4]);
+  const bool has_no_heartbeat = !answers[4] && answers[4].error().code == Errc::sdo_abort;
   out.push_back(
       {"nmt",
        nmt ? std::string(canopen::name(*nmt))
-           : std::string(heartbeat.value_or(0) == 0 ? "not stopped (no heartbeat tells more: 0x1017 is 0)"
-                                                    : "not heard"),
+           : std::string(has_no_heartbeat ? "not stopped (no heartbeat tells more: it has no 0x1017)"
+                         : heartbeat.value_or(0) == 0 ? "not stopped (no heartbeat tells more: 0x1017 is 0)"
+                                                      : "not heard"),
        Show::text, "NMT state"});
   out.push_back({"nmt", nmt ? Value(canopen::name(*nmt)) : Value(), Show::json});
   add_drive_state(out, context, number(answers[0]), number(answers[1]));

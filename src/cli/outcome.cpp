@@ -26,7 +26,8 @@ report::Record envelope(const Outcome& outcome) {
                      {"command", report::text_or_null(outcome.command)},
                      {"ok", outcome.errors.empty()},
                      {"bus", outcome.uses_bus ? report::text_or_null(outcome.settings.bus) : Value()}};
-  if (!outcome.errors.empty()) out.push_back({"error", commands::error_record(outcome.errors.front())});
+  if (!outcome.errors.empty())
+    out.push_back({"error", commands::error_record(outcome.errors.front(), outcome.abort_words)});
   out.push_back({"result", outcome.result});
   report::List notices;
   for (const auto& notice : outcome.notices) notices.emplace_back(notice);

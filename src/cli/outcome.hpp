@@ -19,6 +19,8 @@ struct Outcome {
   report::Value result = {};
   std::vector<Error> errors = {};  ///< The first one makes the exit code.
   std::vector<std::string> notices = {};
+  std::string abort_words =
+      {};  ///< What the abort code of the first error means on this drive; may be empty.
 
   /// Exit code; 0 without errors.
   int code() const;

@@ -15,6 +15,7 @@
 #include "cli/signals.hpp"
 #include "commands/help.hpp"
 #include "commands/notice.hpp"
+#include "commands/records.hpp"
 #include "session/identify.hpp"
 #include "session/scan.hpp"
 
@@ -306,12 +307,7 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
   if (const auto untold = console_->take_untold(); untold > 0)
     run.context.notices.push_back(
         fmt::format("{} messages were not shown, because nobody read them in time", untold));
-  if (run.context.profile != nullptr && run.settings.chinese)
-    for (auto& error : errors) {
-      const auto& texts = run.context.profile->rules.abort_texts_zh;
-      const auto text = error.abort_code ? texts.find(*error.abort_code) : texts.end();
-      if (text != texts.end()) error.message += " — " + text->second;
-    }
+  for (auto& error : errors) commands::name_abort(run.context, error);
   if (auto failure = bus_.take_trace_failure()) {
     // The line was carried out; those that follow are too.
     if (stays_open_) {
@@ -323,12 +319,14 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
   }
   // A lost interface does not come back by itself: the next line opens it again.
   if (!errors.empty() && errors.front().code == Errc::bus) bus_.lose();
+  auto words = errors.empty() ? std::string() : commands::abort_words(run.context, errors.front());
   return {.command = std::string(run.command->path),
           .settings = std::move(run.settings),
           .uses_bus = includes(run.command->needs, Needs::bus) || run.context.session != nullptr,
           .result = result ? *result : Value(),
           .errors = std::move(errors),
-          .notices = std::move(run.context.notices)};
+          .notices = std::move(run.context.notices),
+          .abort_words = std::move(words)};
 }
 
 int Shell::close(int code) {

@@ -10,9 +10,9 @@
 namespace servoctl::drive {
 namespace {
 
-constexpr std::array<std::string_view, 11> kColumns{"code",       "extra",   "panel",   "kind",
-                                                    "resettable", "name",    "name_zh", "check",
-                                                    "check_zh",   "assumed", "line"};
+constexpr std::array<std::string_view, 12> kColumns{"code",       "extra",   "panel",        "kind",
+                                                    "resettable", "name",    "name_zh",      "check",
+                                                    "check_zh",   "assumed", "contradicted", "line"};
 
 tl::unexpected<Error> bad_cell(std::string_view file, std::uint32_t line, std::string_view column,
                                std::string_view cell, std::string_view expected) {
@@ -76,7 +76,12 @@ Result<std::vector<Fault>> parse_faults(std::string_view csv, std::string_view f
     fault.name_zh = cell("name_zh");
     fault.check = cell("check");
     fault.check_zh = cell("check_zh");
-    fault.assumed = cell("assumed");
+    for (const auto& [column, marks] : {std::pair("assumed", &fault.doubts.assumed),
+                                        std::pair("contradicted", &fault.doubts.contradicted)}) {
+      auto parsed = od::parse_marks(cell(column));
+      if (!parsed) return bad_cell(file, row.line, column, cell(column), "a list such as code 1136;extra");
+      *marks = std::move(*parsed);
+    }
     if (fault.name.empty()) return bad_cell(file, row.line, "name", "", "a name");
     faults.push_back(std::move(fault));
   }

@@ -10,6 +10,7 @@
 
 #include "base/result.hpp"
 #include "drive/rules.hpp"
+#include "od/doubts.hpp"
 
 namespace servoctl::drive {
 
@@ -25,7 +26,7 @@ struct Fault {
   std::string name_zh;
   std::string check;  ///< Cause and remedy.
   std::string check_zh;
-  std::string assumed;
+  od::Doubts doubts;
   std::uint32_t line = 0;
 };
 

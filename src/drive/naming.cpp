@@ -110,6 +110,12 @@ std::string entry_name(const od::Object& object, const od::Entry& entry) {
   return is_plain(object) ? name : name + "." + od::identifier(entry.name);
 }
 
+std::optional<ObjectAddress> place_of(const Profile& profile, std::string_view name) {
+  if (name.empty()) return std::nullopt;
+  const auto target = resolve(&profile, name);
+  return target ? std::optional(target->address) : std::nullopt;
+}
+
 std::vector<std::string> names(const Profile& profile) {
   std::vector<std::string> out;
   for (const auto& parameter : profile.parameters) out.push_back(parameter.id);

@@ -39,6 +39,10 @@ Result<const od::Parameter*> resolve_parameter(const Profile& profile, std::stri
 /// family's rule allows it. Errc::usage as in resolve().
 Result<Target> resolve_panel(const Profile& profile, std::string_view text);
 
+/// Where a parameter or object stands that the rules name (`Pn0049`, `0x2003:01`); empty for an empty name
+/// and for a parameter without an object.
+std::optional<ObjectAddress> place_of(const Profile& profile, std::string_view name);
+
 /// All names that resolve() understands, for completion: panel numbers as printed, then objects in index
 /// order.
 std::vector<std::string> names(const Profile& profile);

@@ -100,12 +100,25 @@ Result<Quantity> from_physical(const Meaning& meaning, const NumberWithUnit& giv
   return Quantity{*value, *rounding};
 }
 
+/// Whether the text is the short form of a label: `LSP` of "LSP (positive end of travel)".
+bool is_short_form(std::string_view label, std::string_view text) {
+  const auto bracket = label.find(" (");
+  return bracket != std::string_view::npos && equals_nocase(label.substr(0, bracket), text);
+}
+
+/// By the whole label, or by a short form that only one label has.
 const od::EnumLabel* find_label(const Meaning& meaning, std::string_view text) {
   if (meaning.labels == nullptr) return nullptr;
-  for (const auto& label : *meaning.labels)
+  const od::EnumLabel* brief = nullptr;
+  std::size_t briefs = 0;
+  for (const auto& label : *meaning.labels) {
     if (equals_nocase(label.label, text) || (!label.label_zh.empty() && label.label_zh == text))
       return &label;
-  return nullptr;
+    if (!is_short_form(label.label, text) && !is_short_form(label.label_zh, text)) continue;
+    brief = &label;
+    ++briefs;
+  }
+  return briefs == 1 ? brief : nullptr;
 }
 
 /// Bit patterns of numbers do not stand in the order of the numbers.
@@ -114,11 +127,6 @@ int compare(const Meaning& meaning, const od::Value& a, const od::Value& b) {
   const double x = od::decode_number(meaning.encoding, a);
   const double y = od::decode_number(meaning.encoding, b);
   return x < y ? -1 : x > y ? 1 : 0;
-}
-
-bool is_assumed(std::string_view fields, std::string_view field) {
-  const auto all = split(fields, ';');
-  return std::find(all.begin(), all.end(), field) != all.end();
 }
 
 std::string labels_text(const Meaning& meaning) {
@@ -157,7 +165,7 @@ Meaning meaning(const Target& target, std::uint8_t node) {
     out.labels = parameter.labels.empty() ? nullptr : &parameter.labels;
     out.effect = parameter.effect;
     out.encoding = parameter.encoding;
-    out.size_known = !is_assumed(parameter.assumed, "type");
+    out.size_known = !parameter.doubts.about("type");
     out.measure = needed_measure(out.unit, target.address);
     return out;
   }
@@ -174,7 +182,7 @@ Meaning meaning(const Target& target, std::uint8_t node) {
   out.labels = entry.labels.empty() ? nullptr : &entry.labels;
   out.effect = entry.effect;
   out.encoding = entry.encoding;
-  out.size_known = !is_assumed(entry.assumed, "type");
+  out.size_known = !entry.doubts.about("type");
   out.measure = needed_measure(out.unit, target.address);
   return out;
 }

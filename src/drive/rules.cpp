@@ -46,6 +46,7 @@ class RulesReader {
                               {"caution", tables(rules_.cautions, read_caution)},
                               {"abort_codes", [&](const auto& n) { return abort_codes(n); }},
                               {"assumed", into(rules_.assumed)},
+                              {"contradicted", [&](const auto& n) { return contradicted(n); }},
                           });
     if (inner_) return tl::unexpected<Error>(*inner_);
     if (!done) return tl::unexpected<Error>(done.error());
@@ -86,14 +87,35 @@ class RulesReader {
     };
   }
 
+  /// A string is Chinese, as the manuals are; a table says both.
+  bool abort_text(const toml::node& node, AbortText& out) {
+    if (get(node, out.text_zh)) return true;
+    const auto* both = node.as_table();
+    return both != nullptr &&
+           note(TableReader(*both, file_).read({{"text", into(out.text)}, {"text_zh", into(out.text_zh)}}));
+  }
+
+  bool contradicted(const toml::node& node) {
+    std::vector<std::string> parts;
+    if (!get(node, parts)) return false;
+    rules_.contradicted.clear();
+    for (const auto& part : parts) {
+      auto marks = od::parse_marks(part);
+      if (!marks || marks->size() != 1 || marks->front().lines.empty()) return false;
+      rules_.contradicted.push_back(std::move(marks->front()));
+    }
+    return true;
+  }
+
   bool abort_codes(const toml::node& node) {
     const auto* inside = node.as_table();
     if (inside == nullptr) return false;
     for (const auto& [key, value] : *inside) {
       const auto code = parse_integer(std::string_view(key.str()));
-      std::string text;
-      if (!code || code->negative || code->magnitude > 0xFFFF'FFFFU || !get(value, text)) return false;
-      rules_.abort_texts_zh[static_cast<std::uint32_t>(code->magnitude)] = std::move(text);
+      AbortText words;
+      if (!code || code->negative || code->magnitude > 0xFFFF'FFFFU || !abort_text(value, words))
+        return false;
+      rules_.abort_texts[static_cast<std::uint32_t>(code->magnitude)] = std::move(words);
     }
     return true;
   }

@@ -14,6 +14,7 @@
 #include "drive/cia402.hpp"
 #include "drive/pdo_recipe.hpp"
 #include "drive/scaling.hpp"
+#include "od/doubts.hpp"
 
 namespace servoctl::drive {
 
@@ -192,6 +193,12 @@ struct Caution {
   bool holds(std::int64_t now) const { return value ? now == *value : !not_value || now != *not_value; }
 };
 
+/// The manual's own words for an abort code; empty in the language it does not use.
+struct AbortText {
+  std::string text;
+  std::string text_zh;
+};
+
 /// What `<family>.toml` says: the rules of a family that no table can carry. Parameters are named by their
 /// id. docs/drive-data.md describes every key.
 struct Rules {
@@ -208,7 +215,7 @@ struct Rules {
   bool identity_telling = false;
 
   std::vector<Numbering> numbering;
-  std::map<Measure, Quotient> units;
+  std::map<Measure, Quotients> units;
   SdoRules sdo;
   NmtRules nmt;
   PdoRules pdo;
@@ -224,10 +231,11 @@ struct Rules {
   std::vector<ModeBits> mode_bits;
   std::vector<std::int64_t> quick_stop_stays_enabled;
 
-  std::map<std::uint32_t, std::string> abort_texts_zh;
+  std::map<std::uint32_t, AbortText> abort_texts;
   std::vector<std::string> assumed;  ///< Sections, or keys as `section.key`, the manual does not state.
   /// Whether this very entry stands among them.
   bool is_assumed(std::string_view key) const;
+  std::vector<od::Mark> contradicted;  ///< As `section.key`: the manual says otherwise elsewhere.
 };
 
 /// Reads a rules file on top of `base`, the rules of its parent. Errc::file with file and line for a syntax

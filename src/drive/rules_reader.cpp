@@ -77,6 +77,8 @@ bool get(const toml::node& node, PdoRules::When& out) {
   return text == "always" || text == "invalid" || text == "not operational";
 }
 
+bool get(const toml::node& node, Quotient& out);
+
 template <class T>
 TableReader::Handler list_into(std::vector<T>& out) {
   return [&out](const toml::node& node) {
@@ -88,15 +90,23 @@ TableReader::Handler condition_into(std::optional<Condition>& out) {
   return [&out](const toml::node& node) { return get(node, out.emplace()); };
 }
 
-TableReader::Handler quotient_into(Quotient& out) {
+bool get(const toml::node& node, Quotient& out) {
+  const auto* table = node.as_table();
+  return table != nullptr && TableReader(*table, "")
+                                 .read({{"multiply", list_into(out.multiply)},
+                                        {"divide", list_into(out.divide)},
+                                        {"power_of_two", into(out.power_of_two)},
+                                        {"when", list_into(out.when)},
+                                        {"assumed", into(out.assumed)}})
+                                 .has_value();
+}
+
+/// One quotient, or a list of those that hold under different conditions.
+TableReader::Handler quotients_into(Quotients& out) {
   return [&out](const toml::node& node) {
-    const auto* table = node.as_table();
-    return table != nullptr && TableReader(*table, "")
-                                   .read({{"multiply", list_into(out.multiply)},
-                                          {"divide", list_into(out.divide)},
-                                          {"when", list_into(out.when)},
-                                          {"assumed", into(out.assumed)}})
-                                   .has_value();
+    if (node.is_array()) return list_into(out)(node) && !out.empty();
+    out.assign(1, {});
+    return get(node, out.front());
   };
 }
 
@@ -123,11 +133,11 @@ Result<void> read_numbering(const TableReader& reader, Numbering& out) {
 Result<void> read_units(const TableReader& reader, Rules& rules) {
   return reader.read(
       {{"increments_per_turn",
-        [&](const auto& n) { return quotient_into(rules.units[Measure::increments_per_turn])(n); }},
+        [&](const auto& n) { return quotients_into(rules.units[Measure::increments_per_turn])(n); }},
        {"pulses_per_turn",
-        [&](const auto& n) { return quotient_into(rules.units[Measure::pulses_per_turn])(n); }},
+        [&](const auto& n) { return quotients_into(rules.units[Measure::pulses_per_turn])(n); }},
        {"rated_torque",
-        [&](const auto& n) { return quotient_into(rules.units[Measure::rated_torque])(n); }}});
+        [&](const auto& n) { return quotients_into(rules.units[Measure::rated_torque])(n); }}});
 }
 
 Result<void> read_sdo(const TableReader& reader, Rules& rules) {

@@ -35,6 +35,16 @@ const Row* row_of(std::string_view unit) {
 
 }  // namespace
 
+std::vector<ObjectAddress> Quotient::objects() const {
+  std::vector<ObjectAddress> out;
+  for (const auto* factors : {&multiply, &divide})
+    for (const auto& factor : *factors)
+      if (const auto* object = std::get_if<ObjectAddress>(&factor)) out.push_back(*object);
+  out.insert(out.end(), power_of_two.begin(), power_of_two.end());
+  for (const auto& condition : when) out.push_back(condition.object);
+  return out;
+}
+
 std::optional<Measure> needed_measure(std::string_view unit, ObjectAddress object) {
   if (unit == "%" && is_torque(object)) return Measure::rated_torque;
   const auto* row = row_of(unit);

@@ -15,13 +15,20 @@ struct Quotient {
   using Factor = std::variant<double, ObjectAddress>;
   std::vector<Factor> multiply;
   std::vector<Factor> divide;
+  std::vector<ObjectAddress> power_of_two;  ///< Objects that hold an exponent of two: also factors.
   struct When {
     ObjectAddress object;
     std::uint64_t value = 0;
   };
   std::vector<When> when;  ///< All must hold, else the quotient says nothing.
   bool assumed = false;    ///< The manual does not state it.
+
+  /// Every object it is made of, those of its conditions last.
+  std::vector<ObjectAddress> objects() const;
 };
+
+/// Ways to the same measure; the first whose conditions hold is right.
+using Quotients = std::vector<Quotient>;
 
 /// What counts of a drive can be measured against.
 enum class Measure : std::uint8_t { increments_per_turn, pulses_per_turn, rated_torque };

@@ -19,12 +19,14 @@ enum Column : std::size_t {
   kNameZh,
   kFlags,
   kAssumed,
+  kContradicted,
   kNote,
+  kNoteZh,
   kLine
 };
-constexpr auto kColumns =
-    std::to_array<std::string_view>({"object", "unit", "scale", "encoding", "effect", "enum", "enum_zh",
-                                     "name_zh", "flags", "assumed", "note", "line"});
+constexpr auto kColumns = std::to_array<std::string_view>({"object", "unit", "scale", "encoding", "effect",
+                                                           "enum", "enum_zh", "name_zh", "flags", "assumed",
+                                                           "contradicted", "note", "note_zh", "line"});
 
 void read_flags(TableRow& row, Entry& entry) {
   bool rpdo = false;
@@ -51,8 +53,9 @@ void read_row(TableRow& row, Entry& entry) {
   entry.effect = row.effect(kEffect);
   entry.labels = row.labels(kEnum, kEnumZh);
   entry.name_zh = std::string(row.cell(kNameZh));
-  entry.assumed = std::string(row.cell(kAssumed));
+  entry.doubts = row.doubts(kAssumed, kContradicted);
   entry.note = std::string(row.cell(kNote));
+  entry.note_zh = std::string(row.cell(kNoteZh));
   entry.line = row.number(kLine);
   read_flags(row, entry);
 }

@@ -97,6 +97,7 @@ void inherit(Dictionary& dictionary, const Dictionary& parent) {
       entry->encoding = from.encoding;
       entry->labels = from.labels;
       entry->note = from.note;
+      entry->note_zh = from.note_zh;
       entry->command = from.command;
       entry->is_volatile = from.is_volatile;
       if (entry->effect == Effect::unstated && writable(entry->access)) entry->effect = from.effect;

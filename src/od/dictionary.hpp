@@ -9,6 +9,7 @@
 
 #include "base/object_address.hpp"
 #include "od/data_type.hpp"
+#include "od/doubts.hpp"
 #include "od/encoding.hpp"
 #include "od/value.hpp"
 
@@ -76,10 +77,11 @@ struct Entry {
   Effect effect = Effect::unstated;
   std::vector<EnumLabel> labels;
   std::string note;
+  std::string note_zh;
   bool command = false;      ///< Writing it starts an action: kept out of backups.
   bool is_volatile = false;  ///< A reading, not a setting: kept out of backups.
-  std::string assumed;       ///< Fields the manual does not state, separated by `;`.
-  std::uint32_t line = 0;    ///< Line of the manual or of the file it comes from; 0: unknown.
+  Doubts doubts;
+  std::uint32_t line = 0;  ///< Line of the manual or of the file it comes from; 0: unknown.
 };
 
 /// An object: an index with one entry (VAR, DOMAIN) or several.

@@ -29,14 +29,15 @@ enum Column : std::size_t {
   kGroup,
   kFlags,
   kAssumed,
+  kContradicted,
   kNote,
   kNoteZh,
   kLine
 };
-constexpr auto kColumns =
-    std::to_array<std::string_view>({"id",      "object", "type",  "access",  "unit", "scale",   "encoding",
-                                     "default", "min",    "max",   "effect",  "enum", "enum_zh", "name",
-                                     "name_zh", "group",  "flags", "assumed", "note", "note_zh", "line"});
+constexpr auto kColumns = std::to_array<std::string_view>(
+    {"id",    "object",  "type",         "access", "unit",    "scale", "encoding", "default",
+     "min",   "max",     "effect",       "enum",   "enum_zh", "name",  "name_zh",  "group",
+     "flags", "assumed", "contradicted", "note",   "note_zh", "line"});
 
 std::optional<Access> parse_access(std::string_view text) {
   for (const auto access : {Access::ro, Access::rw, Access::wo, Access::constant})
@@ -91,7 +92,7 @@ Parameter read_row(TableRow& row) {
   out.name_zh = std::string(row.cell(kNameZh));
   out.group = std::string(row.cell(kGroup));
   read_flags(row, out);
-  out.assumed = std::string(row.cell(kAssumed));
+  out.doubts = row.doubts(kAssumed, kContradicted);
   out.note = std::string(row.cell(kNote));
   out.note_zh = std::string(row.cell(kNoteZh));
   out.line = row.number(kLine);

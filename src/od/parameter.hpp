@@ -32,7 +32,7 @@ struct Parameter {
   bool command = false;                 ///< Writing it starts an action; kept out of backups.
   bool is_volatile = false;             ///< A reading, not a setting; kept out of backups.
   std::optional<ObjectAddress> mirror;  ///< The object whose stored value it is.
-  std::string assumed;                  ///< Fields the manual does not state, separated by `;`.
+  Doubts doubts;
   std::string note;
   std::string note_zh;
   std::uint32_t line = 0;       ///< Line of the manual.

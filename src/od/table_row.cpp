@@ -120,6 +120,21 @@ std::vector<EnumLabel> TableRow::labels(std::size_t column, std::size_t column_z
   return out;
 }
 
+Doubts TableRow::doubts(std::size_t assumed, std::size_t contradicted) {
+  constexpr std::string_view kForm = "a list such as default 938 3288;min: fields and lines of the manual";
+  Doubts out;
+  const auto read = [&](std::size_t column, std::vector<Mark>& marks) {
+    auto parsed = parse_marks(cell(column));
+    if (!parsed) return refuse(column, kForm);
+    marks = std::move(*parsed);
+  };
+  read(assumed, out.assumed);
+  read(contradicted, out.contradicted);
+  for (const auto& mark : out.contradicted)
+    if (mark.lines.empty()) refuse(contradicted, "a list with the lines of each contradiction");
+  return out;
+}
+
 std::uint32_t TableRow::number(std::size_t column) {
   const auto text = cell(column);
   if (text.empty()) return 0;

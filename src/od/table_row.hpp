@@ -41,6 +41,8 @@ class TableRow {
   Encoding encoding(std::size_t column);
   Effect effect(std::size_t column);
   std::optional<Value> value(std::size_t column, DataType type);
+  /// The marks of two columns; a contradiction without lines of the manual is refused.
+  Doubts doubts(std::size_t assumed, std::size_t contradicted);
   std::vector<EnumLabel> labels(std::size_t column, std::size_t column_zh);
   std::uint32_t number(std::size_t column);
 

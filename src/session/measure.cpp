@@ -1,5 +1,9 @@
 #include "session/measure.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
 #include "drive/quantity.hpp"
 
 namespace servoctl::session {
@@ -7,12 +11,13 @@ namespace {
 
 using drive::Quotient;
 
-void add_requests(const Quotient& quotient, std::uint8_t node, std::vector<SdoRequest>& out) {
-  for (const auto* factors : {&quotient.multiply, &quotient.divide})
-    for (const auto& factor : *factors)
-      if (const auto* object = std::get_if<ObjectAddress>(&factor))
-        out.push_back({.node = node, .object = *object});
-  for (const auto& condition : quotient.when) out.push_back({.node = node, .object = condition.object});
+/// What the ways to a measure are made of, each object once.
+std::vector<ObjectAddress> objects_of(const drive::Quotients& ways) {
+  std::vector<ObjectAddress> out;
+  for (const auto& way : ways)
+    for (const auto object : way.objects())
+      if (std::find(out.begin(), out.end(), object) == out.end()) out.push_back(object);
+  return out;
 }
 
 /// The number an object holds, in its unit.
@@ -24,30 +29,44 @@ std::optional<double> number(const drive::Profile& profile, ObjectAddress object
   return value ? std::optional(drive::scaled(meaning, *value)) : std::nullopt;
 }
 
-/// Takes the answers in the order of add_requests().
+/// What the objects of one node answered.
 class Evaluation {
  public:
-  Evaluation(const drive::Profile& profile, std::span<const Result<Bytes>> answers)
-      : profile_(&profile), answers_(answers) {}
+  explicit Evaluation(const drive::Profile& profile) : profile_(&profile) {}
 
-  std::optional<double> of(const Quotient& quotient) {
-    const auto above = product(quotient.multiply);
-    const auto below = product(quotient.divide);
-    bool holds = true;
-    for (const auto& condition : quotient.when) {
-      const auto& answer = answers_[next_++];
-      holds = holds && answer && load_le(*answer) == condition.value;
-    }
-    if (!holds || !above || !below || *below == 0) return std::nullopt;
-    return *above / *below;
+  void add(ObjectAddress object, const Result<Bytes>& answer) { answers_.emplace(object, &answer); }
+
+  /// By the first way whose conditions hold.
+  std::optional<double> of(const drive::Quotients& ways) const {
+    const auto way = std::find_if(ways.begin(), ways.end(), [&](const auto& w) { return holds(w); });
+    return way == ways.end() ? std::nullopt : of(*way);
   }
 
  private:
-  std::optional<double> product(const std::vector<Quotient::Factor>& factors) {
+  bool holds(const Quotient& way) const {
+    return std::all_of(way.when.begin(), way.when.end(), [&](const Quotient::When& condition) {
+      const auto& answer = *answers_.at(condition.object);
+      return answer && load_le(*answer) == condition.value;
+    });
+  }
+
+  std::optional<double> of(const Quotient& way) const {
+    auto above = product(way.multiply);
+    const auto below = product(way.divide);
+    for (const auto object : way.power_of_two) {
+      const auto exponent = number(*profile_, object, *answers_.at(object));
+      above =
+          above && exponent ? std::optional(std::ldexp(*above, static_cast<int>(*exponent))) : std::nullopt;
+    }
+    if (!above || !below || *below == 0) return std::nullopt;
+    return *above / *below;
+  }
+
+  std::optional<double> product(const std::vector<Quotient::Factor>& factors) const {
     std::optional<double> out = 1;
     for (const auto& factor : factors) {
       const auto* object = std::get_if<ObjectAddress>(&factor);
-      const auto value = object != nullptr ? number(*profile_, *object, answers_[next_++])
+      const auto value = object != nullptr ? number(*profile_, *object, *answers_.at(*object))
                                            : std::optional(std::get<double>(factor));
       out = out && value ? std::optional(*out * *value) : std::nullopt;
     }
@@ -55,8 +74,7 @@ class Evaluation {
   }
 
   const drive::Profile* profile_;
-  std::span<const Result<Bytes>> answers_;
-  std::size_t next_ = 0;
+  std::unordered_map<ObjectAddress, const Result<Bytes>*> answers_;
 };
 
 }  // namespace
@@ -64,16 +82,27 @@ class Evaluation {
 std::vector<std::optional<double>> read_measures(Session& session, const drive::Profile& profile,
                                                  std::span<const MeasureQuestion> questions) {
   const auto& known = profile.rules.units;
+  const auto ways_of = [&](const MeasureQuestion& question) {
+    const auto found = known.find(question.measure);
+    return found == known.end() ? nullptr : &found->second;
+  };
   std::vector<SdoRequest> requests;
   for (const auto& question : questions)
-    if (const auto quotient = known.find(question.measure); quotient != known.end())
-      add_requests(quotient->second, question.node, requests);
+    if (const auto* ways = ways_of(question))
+      for (const auto object : objects_of(*ways))
+        requests.push_back({.node = question.node, .object = object});
   const auto answers = session.transfer(requests);
-  Evaluation evaluation(profile, answers);
   std::vector<std::optional<double>> out;
+  std::size_t next = 0;
   for (const auto& question : questions) {
-    const auto quotient = known.find(question.measure);
-    out.push_back(quotient == known.end() ? std::nullopt : evaluation.of(quotient->second));
+    const auto* ways = ways_of(question);
+    if (ways == nullptr) {
+      out.emplace_back();
+      continue;
+    }
+    Evaluation evaluation(profile);
+    for (const auto object : objects_of(*ways)) evaluation.add(object, answers[next++]);
+    out.push_back(evaluation.of(*ways));
   }
   return out;
 }

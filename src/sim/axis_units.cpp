@@ -68,13 +68,22 @@ double Axis::units_per_turn() const {
 double Axis::per_turn(drive::Measure measure) const {
   const auto rule = profile_->rules.units.find(measure);
   if (rule == profile_->rules.units.end()) return kAssumedTurn;
+  const auto& ways = rule->second;
+  const auto holds = [&](const drive::Quotient& way) {
+    return std::all_of(way.when.begin(), way.when.end(), [&](const drive::Quotient::When& condition) {
+      return load_le(values_->get(condition.object)) == condition.value;
+    });
+  };
+  const auto found = std::find_if(ways.begin(), ways.end(), holds);
+  const auto& way = found == ways.end() ? ways.front() : *found;
   double out = 1;
   const auto factor = [&](const drive::Quotient::Factor& f) {
     const auto* object = std::get_if<ObjectAddress>(&f);
     return object != nullptr ? read(*object) : std::get<double>(f);
   };
-  for (const auto& f : rule->second.multiply) out *= factor(f);
-  for (const auto& f : rule->second.divide) out /= factor(f);
+  for (const auto& f : way.multiply) out *= factor(f);
+  for (const auto& f : way.divide) out /= factor(f);
+  for (const auto object : way.power_of_two) out = std::ldexp(out, static_cast<int>(read(object)));
   return std::isfinite(out) && out > 1 ? out : kAssumedTurn;
 }
 

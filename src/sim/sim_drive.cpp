@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "canopen/cob_id.hpp"
+#include "drive/naming.hpp"
 #include "drive/standard_objects.hpp"
 
 namespace servoctl::sim {
@@ -41,10 +42,11 @@ SimDrive::SimDrive(const drive::Profile& profile, std::uint8_t node, Memory& mem
       pdos_(profile, values_, *this),
       error_control_(node) {
   auto& cells = memory_->cells(key_);
-  const auto* node_id = parameter(profile.rules.nmt.node_id);
-  if (node_id == nullptr || !node_id->object || cells.find(*node_id->object) != cells.end()) return;
-  if (!node_id->default_value || od::to_double(*node_id->default_value) != node)
-    cells[*node_id->object] = store_le(node, od::size_of(node_id->type).value_or(1));
+  const auto node_id = drive::place_of(profile, profile.rules.nmt.node_id);
+  const auto* entry = node_id ? profile.dictionary.find(*node_id) : nullptr;
+  if (entry == nullptr || cells.find(*node_id) != cells.end()) return;
+  if (!entry->default_value || od::to_double(entry->default_value->value) != node)
+    cells[*node_id] = store_le(node, od::size_of(entry->type).value_or(1));
 }
 
 void SimDrive::on_frame(const can::Frame& frame, TimePoint now) {
@@ -135,9 +137,8 @@ void SimDrive::power_on(TimePoint now) {
     restore_if_asked();
     values_.load_defaults(node_);
     for (const auto& cell : memory_->cells(key_)) values_.set(cell.first, cell.second);
-    const auto* node_id = parameter(profile_->rules.nmt.node_id);
-    if (node_id != nullptr && node_id->object) {
-      const auto set_to = values_.number(*node_id->object);
+    if (const auto node_id = drive::place_of(*profile_, profile_->rules.nmt.node_id)) {
+      const auto set_to = values_.number(*node_id);
       if (set_to >= canopen::kFirstNode && set_to <= canopen::kLastNode && set_to != node_) {
         node_ = static_cast<std::uint8_t>(set_to);
         values_.load_defaults(node_);

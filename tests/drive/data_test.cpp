@@ -61,7 +61,7 @@ TEST_P(DriveData, HasEveryIdObjectAndNameOnce) {
       EXPECT_TRUE(objects.insert(*p.object).second) << p.id;
     }
     EXPECT_TRUE(names.insert(od::identifier(p.name)).second) << p.name;
-    EXPECT_TRUE(!p.name_zh.empty() || p.assumed.find("name") != std::string::npos) << p.id;
+    EXPECT_TRUE(!p.name_zh.empty() || p.doubts.about("name")) << p.id;
     EXPECT_GT(p.line, 0U) << p.id;
   }
 }
@@ -166,12 +166,9 @@ TEST_P(DriveData, NamesRulesAfterParametersAndObjectsThatExist) {
   }
   std::vector<ObjectAddress> objects = rules.mirror_add_node_id;
   for (const auto& condition : rules.identity) objects.push_back(condition.object);
-  for (const auto& [measure, quotient] : rules.units) {
-    for (const auto* factors : {&quotient.multiply, &quotient.divide})
-      for (const auto& factor : *factors)
-        if (const auto* object = std::get_if<ObjectAddress>(&factor)) objects.push_back(*object);
-    for (const auto& condition : quotient.when) objects.push_back(condition.object);
-  }
+  for (const auto& [measure, ways] : rules.units)
+    for (const auto& way : ways)
+      for (const auto object : way.objects()) objects.push_back(object);
   for (const auto& p : profile.parameters)
     if (p.mirror) objects.push_back(*p.mirror);
   for (const auto& object : objects) EXPECT_NE(profile.dictionary.find(object), nullptr) << to_string(object);

@@ -48,7 +48,37 @@ reset_enabled_by = { object = "0x2000:21", value = 1 }
   EXPECT_EQ(rules->quick_stop_stays_enabled, (std::vector<std::int64_t>{5, 6}));
   ASSERT_TRUE(rules->fault.reset_enabled_by);
   EXPECT_EQ(rules->fault.reset_enabled_by->object, (ObjectAddress{0x2000, 0x21}));
-  EXPECT_EQ(rules->abort_texts_zh.at(0x0800'0024), "数值不存在");
+  EXPECT_EQ(rules->abort_texts.at(0x0800'0024).text_zh, "数值不存在");
+}
+
+TEST(Rules, KnowSeveralWaysToOneMeasureAndWordsInTwoLanguages) {
+  const auto rules = parse_rules(R"(
+format = 1
+family = "x1"
+contradicted = ["motion.enable 64 184"]
+[units]
+increments_per_turn = [
+  { multiply = ["0x2000:01"], when = [{ object = "0x2000:00", value = 1 }] },
+  { power_of_two = ["0x2000:02"], when = [{ object = "0x2000:00", value = 0 }] },
+]
+rated_torque = { multiply = [2] }
+[abort_codes]
+0x080000A1 = { text = "Object error", text_zh = "对象错误" }
+)",
+                                 "x1.toml");
+  ASSERT_TRUE(rules) << rules.error().message;
+  const auto& ways = rules->units.at(Measure::increments_per_turn);
+  ASSERT_EQ(ways.size(), 2U);
+  EXPECT_EQ(ways[1].objects(), (std::vector<ObjectAddress>{{0x2000, 2}, {0x2000, 0}}));
+  EXPECT_EQ(rules->units.at(Measure::rated_torque).size(), 1U);
+  EXPECT_EQ(rules->abort_texts.at(0x0800'00A1).text, "Object error");
+  EXPECT_EQ(rules->abort_texts.at(0x0800'00A1).text_zh, "对象错误");
+  EXPECT_EQ(rules->contradicted, (std::vector<od::Mark>{{"motion.enable", {64, 184}}}));
+}
+
+TEST(Rules, WithAContradictionWithoutLinesAreRefused) {
+  EXPECT_FALSE(parse_rules("format = 1\nfamily = \"x\"\ncontradicted = [\"motion.enable\"]\n", "x.toml"));
+  EXPECT_FALSE(parse_rules("format = 1\nfamily = \"x\"\n[units]\nrated_torque = []\n", "x.toml"));
 }
 
 void expect_refused(const char* text, const char* message) {

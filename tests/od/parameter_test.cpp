@@ -36,7 +36,7 @@ TEST(Parameters, AreReadWhole) {
   EXPECT_EQ(first.name, "Gain");
   EXPECT_EQ(first.name_zh, "增益");
   EXPECT_EQ(first.group, "loop");
-  EXPECT_EQ(first.assumed, "min");
+  EXPECT_TRUE(first.doubts.about("min"));
   EXPECT_EQ(first.note_zh, "甲");
   EXPECT_FALSE(first.command);
   EXPECT_EQ(first.file_line, 2U);
@@ -183,7 +183,7 @@ TEST(Annotate, AddsWhatAnEdsCannotCarry) {
   EXPECT_EQ(e.labels.front().label_zh, "位置");
   EXPECT_EQ(e.line, 9U);
   EXPECT_EQ(e.name_zh, "模式");
-  EXPECT_EQ(e.assumed, "unit");
+  EXPECT_TRUE(e.doubts.about("unit"));
   EXPECT_EQ(e.note, "why");
   EXPECT_FALSE(e.command);
 }
