@@ -74,7 +74,7 @@ const std::map<std::string, std::string> kSamples{
     {"test jog", "test jog 30rpm --turn 10000 -n 1 -y"},
     {"test home", "test home --turn 10000 -n 1 -y"},
     {"test all", "test all 30rpm --turn 10000 -n 1 -y"},
-    {"report", "report -n 1"},
+    {"report", "report DIR/report.json -n 1"},
     {"sync once", "sync once -y"},
     {"sync start", "sync start --for 1s -y"},
     {"sync stop", "sync stop"},
@@ -120,7 +120,7 @@ class Harmless : public testing::TestWithParam<std::string> {
                                              "(0000000001.003000) can0 201#0F00\n"
                                              "(0000000001.004000) can0 080#\n";
     std::ofstream(dir_ / "pdos.toml") << "[TPDO1]\nmap = [\"0x6041\"]\n";
-    std::ofstream(dir_ / "lines.servoctl") << "read 0x6041\nwrite 0x6040 15 -y\n";
+    std::ofstream(dir_ / "lines.servoctl") << "read 0x6041 -n 1\nwrite 0x6040 15 -n 1 -y\n";
     EXPECT_EQ(perform("backup DIR/backup.json -n 1", {}), 0) << console.err_text;
   }
   ~Harmless() override { fs::remove_all(dir_); }
@@ -169,8 +169,9 @@ class Harmless : public testing::TestWithParam<std::string> {
       const auto sample = kSamples.find(std::string(command->path));
       ASSERT_NE(sample, kSamples.end()) << "give '" << command->path << "' a sample line";
       const auto code = perform(sample->second, option);
-      // Not every family has every object; one has all.
-      if (each_is_understood)
+      // Not every family has every object; one has all. Nothing runs that `sync stop` could end, and no drive
+      // is put on a simulated bus.
+      if (each_is_understood && sample->first != "sync stop" && sample->first != "sim")
         EXPECT_NE(code, exit_code(Errc::usage)) << sample->second << "\n" << console.err_text;
       for (const auto& frame : frames)
         EXPECT_TRUE(is_harmless(frame)) << sample->second << " " << option << ": " << can::to_string(frame);
