@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "od/complex_type.hpp"
+
 namespace servoctl::od {
 namespace {
 
@@ -53,7 +55,7 @@ std::optional<DataType> data_type_from_cia(std::uint64_t code) {
   if (code == 0x0D) return DataType::time;    // TIME_DIFFERENCE
   for (const auto& r : kRows)
     if (r.code == code) return r.type;
-  return std::nullopt;
+  return is_complex_type(code) ? std::optional(DataType::domain) : std::nullopt;
 }
 
 std::optional<std::size_t> size_of(DataType type) {

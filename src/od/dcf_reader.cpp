@@ -7,6 +7,7 @@
 #include "od/dcf.hpp"
 #include "od/eds.hpp"
 #include "od/eds_compact.hpp"
+#include "od/eds_keys.hpp"
 #include "od/eds_section.hpp"
 #include "od/ini.hpp"
 #include "od/text_encoding.hpp"
@@ -27,7 +28,9 @@ std::uint32_t list_key(std::uint16_t index, std::uint8_t sub) { return std::uint
 class Reader {
  public:
   Reader(std::string_view text, const EdsFile& eds, std::string_view file)
-      : ini_(parse_ini(text)), eds_(&eds), file_(file) {}
+      : ini_(parse_ini(text)), eds_(&eds), file_(file) {
+    mend_keys(ini_);
+  }
 
   Result<Dcf> read() {
     for (const auto& section : ini_.sections)

@@ -6,6 +6,7 @@
 #include "od/dcf.hpp"
 #include "od/eds.hpp"
 #include "od/eds_compact.hpp"
+#include "od/eds_keys.hpp"
 #include "od/eds_section.hpp"
 #include "od/ini.hpp"
 #include "od/text_encoding.hpp"
@@ -28,6 +29,7 @@ class Writer {
  public:
   Writer(std::string_view text, const EdsFile& file, const DcfSettings& settings)
       : ini_(parse_ini(text)), settings_(&settings) {
+    mend_keys(ini_);
     for (const auto& object : file.dictionary.objects())
       for (const auto& entry : object.entries)
         if (const auto value = settings.values.find(entry.address); value != settings.values.end())

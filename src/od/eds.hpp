@@ -22,6 +22,8 @@ struct Diagnostic {
   std::string message;       ///< What is wrong.
   std::string remedy;        ///< What to change.
   std::uint32_t count = 1;   ///< Above 1: stands for that many findings of its rule that are left out.
+  std::string section = {};  ///< `1018sub1`, as the file writes it; empty before the first one.
+  std::string key = {};      ///< `LowLimit`; empty where it is none.
 };
 
 /// What an EDS or DCF says of the device beside its objects.

@@ -108,6 +108,16 @@ std::uint64_t number_of(const IniSection& section, std::string_view name, std::u
   return key == nullptr || key->value.empty() ? 0 : eds_number(*key, max, findings).value_or(0);
 }
 
+/// 255 is 254: sub FFh tells the structure of the object (CiA 301, 7.4.5.2) and is no entry.
+std::uint64_t compact_count(const IniKey& key, Findings& findings) {
+  constexpr std::uint64_t kMost = 254;
+  const auto count = eds_number(key, kMost + 1, findings).value_or(0);
+  if (count > kMost)
+    findings.warn(key, "compact-too-many", fmt::format("CompactSubObj is {}; taken as {}", count, kMost),
+                  fmt::format("write CompactSubObj={}: sub FF is no entry", kMost));
+  return std::min(count, kMost);
+}
+
 }  // namespace
 
 bool has_compact_subs(const IniSection& section) {
@@ -115,9 +125,9 @@ bool has_compact_subs(const IniSection& section) {
   return key != nullptr && !key->value.empty() && parse_integer(key->value) != Integer{};
 }
 
-void add_compact_subs(const IniSection& section, const CompactLists& lists, Object& object,
-                      std::vector<EntryNote>& notes, Findings& findings) {
-  const auto count = eds_number(*section.find("CompactSubObj"), 254, findings).value_or(0);
+void add_compact_subs(const IniSection& section, const CompactLists& lists, const LimitTypes& types,
+                      Object& object, std::vector<EntryNote>& notes, Findings& findings) {
+  const auto count = compact_count(*section.find("CompactSubObj"), findings);
   if (count > lists.most && !findings.enough_of("too-many-entries")) {
     findings.error(*section.find("CompactSubObj"), "too-many-entries",
                    "with this one, CompactSubObj makes more entries than a device has; left out",
@@ -125,7 +135,7 @@ void add_compact_subs(const IniSection& section, const CompactLists& lists, Obje
   }
   const auto pattern = count == 0 || count > lists.most
                            ? std::nullopt
-                           : eds_entry(section, ObjectAddress{object.index}, findings);
+                           : eds_entry(section, ObjectAddress{object.index}, types, findings);
   if (!pattern) return;
   const auto names = by_sub(lists.names, count, findings);
   const auto values = by_sub(lists.values, count, findings);
@@ -141,7 +151,8 @@ void add_compact_subs(const IniSection& section, const CompactLists& lists, Obje
     const auto* name = names[sub];
     entry.name = name != nullptr && !name->value.empty() ? std::string(name->value)
                                                          : fmt::format("{}{}", object.name, sub);
-    if (auto value = eds_value(values[sub], entry.type, findings)) entry.configured = std::move(value);
+    if (auto value = eds_value(values[sub], entry.type, findings, ValueUse::written))
+      entry.configured = std::move(value);
     if (denotations[sub] != nullptr && !denotations[sub]->value.empty())
       notes.push_back({entry.address, std::string(denotations[sub]->value), {}, {}});
     object.entries.push_back(std::move(entry));

@@ -8,6 +8,7 @@
 
 #include "base/number.hpp"
 #include "base/text.hpp"
+#include "od/complex_type.hpp"
 #include "od/eds_value.hpp"
 
 namespace servoctl::od {
@@ -68,11 +69,13 @@ std::optional<std::uint64_t> number_or_name(const IniKey& key, const std::array<
   return eds_number(key, max, findings);
 }
 
-std::optional<DataType> entry_type(const IniSection& section, Findings& findings) {
+/// The type that the section names, and the limits that come with it.
+std::optional<LimitType> entry_type(const IniSection& section, const LimitTypes& types, Findings& findings) {
   const auto* key = section.find("DataType");
   if (key == nullptr || key->value.empty()) {
     const auto* code = section.find("ObjectType");
-    if (code != nullptr && (parse_integer(code->value) == Integer{false, 2})) return DataType::domain;
+    if (code != nullptr && (parse_integer(code->value) == Integer{false, 2}))
+      return LimitType{DataType::domain, {}, {}, {}};
     findings.add(Severity::error, section.line, 1, "missing-data-type",
                  fmt::format("[{}] has no DataType", section.name),
                  "add DataType, for example DataType=0x0007 for an unsigned number of 32 bits");
@@ -80,11 +83,19 @@ std::optional<DataType> entry_type(const IniSection& section, Findings& findings
   }
   const auto code = number_or_name(*key, kTypeCodes, 0xFFFF, findings);
   if (!code) return std::nullopt;
+  if (const auto found = types.find(static_cast<std::uint16_t>(*code)); found != types.end())
+    return found->second;
   const auto type = data_type_from_cia(*code);
-  if (!type)
+  if (!type) {
     findings.error(*key, "unknown-data-type", fmt::format("0x{:04X} is no data type of CiA 301", *code),
                    "use one of 0x0001 to 0x001B (CiA 301, table 44)");
-  return type;
+    return std::nullopt;
+  }
+  return LimitType{
+      *type,
+      {},
+      {},
+      is_complex_type(*code) ? fmt::format("{} ({:04X}h)", cia_name(*code), *code) : std::string()};
 }
 
 /// The row of the word; of a near one when only one is near (`r` → `ro`, `r/w` → `rw`); the ro row when it
@@ -122,6 +133,31 @@ void read_access(const IniSection& section, Entry& entry, Findings& findings) {
   if (mappable.value_or(0) == 1) entry.pdo = row.direction;
 }
 
+bool is_can_id(ObjectAddress object) {
+  const bool pdo = (object.index >= 0x1400 && object.index <= 0x15FF) ||
+                   (object.index >= 0x1800 && object.index <= 0x19FF);
+  const bool sdo = object.index >= 0x1200 && object.index <= 0x12FF;
+  return (pdo && object.sub == 1) || (sdo && (object.sub == 1 || object.sub == 2)) ||
+         (object.sub == 0 && (object.index == 0x1005 || object.index == 0x1012 || object.index == 0x1014));
+}
+
+/// A CAN-ID of 11 bits that is above 7FFh with every node-ID.
+void check_can_id(const IniSection& section, const Entry& entry, Findings& findings) {
+  constexpr std::uint64_t kExtended = 1U << 29U;
+  constexpr std::uint64_t kCanId = kExtended - 1;
+  constexpr std::uint64_t kHighest = 0x7FF;
+  if (!is_can_id(entry.address)) return;
+  for (const auto* name : {"DefaultValue", "ParameterValue"}) {
+    const auto& value = name[0] == 'D' ? entry.default_value : entry.configured;
+    const auto* number = value && value->plus_node_id ? std::get_if<std::uint64_t>(&value->value) : nullptr;
+    if (number == nullptr || (*number & kExtended) != 0 || (*number & kCanId) + 1 <= kHighest) continue;
+    const auto* key = section.find(name);
+    findings.warn(*key, "node-id-sum",
+                  fmt::format("{}: {} is above 7FFh for every node; taken as it is", name, shown(key->value)),
+                  "lower the number, or set bit 29 for a CAN-ID of 29 bits");
+  }
+}
+
 void check_order(const IniSection& section, Entry& entry, Findings& findings) {
   const auto tell = [&](std::string_view rule, const std::string& message) {
     findings.add(Severity::warning, section.line, 1, std::string(rule),
@@ -155,12 +191,15 @@ ObjectCode eds_object_code(const IniSection& section, Findings& findings) {
   return ObjectCode::var;
 }
 
-std::optional<Entry> eds_entry(const IniSection& section, ObjectAddress address, Findings& findings) {
-  const auto type = entry_type(section, findings);
-  if (!type) return std::nullopt;
+std::optional<Entry> eds_entry(const IniSection& section, ObjectAddress address, const LimitTypes& types,
+                               Findings& findings) {
+  const auto found = entry_type(section, types, findings);
+  if (!found) return std::nullopt;
+  const auto type = found->type;
   Entry entry;
   entry.address = address;
-  entry.type = *type;
+  entry.type = type;
+  entry.note = found->note;
   entry.line = section.line;
   const auto* name = section.find("ParameterName");
   if (name == nullptr || name->value.empty())
@@ -169,10 +208,13 @@ std::optional<Entry> eds_entry(const IniSection& section, ObjectAddress address,
   else
     entry.name = std::string(name->value);
   read_access(section, entry, findings);
-  entry.default_value = eds_value(section.find("DefaultValue"), *type, findings);
-  entry.low = eds_value(section.find("LowLimit"), *type, findings);
-  entry.high = eds_value(section.find("HighLimit"), *type, findings);
-  entry.configured = eds_value(section.find("ParameterValue"), *type, findings);
+  entry.default_value = eds_value(section.find("DefaultValue"), type, findings);
+  entry.low = eds_value(section.find("LowLimit"), type, findings, ValueUse::limit);
+  entry.high = eds_value(section.find("HighLimit"), type, findings, ValueUse::limit);
+  entry.configured = eds_value(section.find("ParameterValue"), type, findings, ValueUse::written);
+  if (!entry.low && found->low) entry.low = NodeValue{*found->low, false};
+  if (!entry.high && found->high) entry.high = NodeValue{*found->high, false};
+  check_can_id(section, entry, findings);
   check_order(section, entry, findings);
   return entry;
 }

@@ -4,6 +4,7 @@
 
 #include "od/dictionary.hpp"
 #include "od/eds_findings.hpp"
+#include "od/eds_types.hpp"
 #include "od/ini.hpp"
 
 namespace servoctl::od {
@@ -14,6 +15,7 @@ ObjectCode eds_object_code(const IniSection& section, Findings& findings);
 
 /// The entry a section describes: name, type, access, mapping, limits, default. Empty when it cannot be used;
 /// told why.
-std::optional<Entry> eds_entry(const IniSection& section, ObjectAddress address, Findings& findings);
+std::optional<Entry> eds_entry(const IniSection& section, ObjectAddress address, const LimitTypes& types,
+                               Findings& findings);
 
 }  // namespace servoctl::od

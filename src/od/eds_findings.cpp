@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "od/eds_value.hpp"
+
 namespace servoctl::od {
 
 void Findings::add(Severity severity, std::uint32_t line, std::uint32_t column, std::string_view rule,
@@ -28,6 +30,19 @@ bool Findings::enough_of(std::string_view rule) {
   if (known == rules_.end() || known->second.count < kMostOfARule) return false;
   ++known->second.count;
   return true;
+}
+
+void Findings::place(const IniText& ini) {
+  std::stable_sort(all_.begin(), all_.end(),
+                   [](const Diagnostic& a, const Diagnostic& b) { return a.line < b.line; });
+  auto section = ini.sections.begin();
+  auto key = ini.keys.begin();
+  for (auto& finding : all_) {
+    while (section != ini.sections.end() && section->line <= finding.line) ++section;
+    while (key != ini.keys.end() && key->line < finding.line) ++key;
+    if (section != ini.sections.begin()) finding.section = shown((section - 1)->name);
+    if (key != ini.keys.end() && key->line == finding.line) finding.key = shown(key->key);
+  }
 }
 
 std::vector<Diagnostic> Findings::take() {

@@ -24,6 +24,8 @@ class Findings {
   /// Whether the rule has enough findings already. Then the one at hand is counted, and the caller needs no
   /// text for it.
   bool enough_of(std::string_view rule);
+  /// Tells of each finding so far in which section and at which key it is.
+  void place(const IniText& ini);
   /// In rising line; those that stand for others at the end.
   std::vector<Diagnostic> take();
 

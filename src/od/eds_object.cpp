@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <string>
 #include <unordered_set>
 
+#include "base/number.hpp"
 #include "base/text.hpp"
 #include "od/eds_entry.hpp"
 #include "od/eds_value.hpp"
@@ -28,29 +30,53 @@ struct NocaseEqual {
   bool operator()(std::string_view a, std::string_view b) const { return equals_nocase(a, b); }
 };
 
-/// Whether every sub-index has decimal digits only, and hexadecimal reading is out of the question (one would
-/// be above FF) or gives gaps where decimal reading has none.
-bool are_decimal(std::span<const ObjectSection> sections) {
-  std::array<bool, 256> there{};
-  std::size_t highest = 0;
-  bool too_high = false;
+/// What sub 0 says is the highest sub-index.
+std::optional<std::uint64_t> said_highest(std::span<const ObjectSection> sections) {
   for (const auto& place : sections) {
-    if (place.name.kind != SectionKind::sub) continue;
-    if (!place.name.decimal_sub) return false;
-    there[*place.name.decimal_sub] = true;
-    highest = std::max<std::size_t>(highest, *place.name.decimal_sub);
-    too_high = too_high || place.name.sub > 0xFF;
+    if (place.name.kind != SectionKind::sub || place.name.sub != 0) continue;
+    const auto* key = place.section->find("DefaultValue");
+    const auto number = key == nullptr ? std::nullopt : parse_integer(key->value);
+    return number ? number->as_unsigned() : std::nullopt;
   }
-  if (highest <= 9 || too_high) return too_high;
-  return std::all_of(there.begin() + 1, there.begin() + static_cast<std::ptrdiff_t>(highest),
-                     [](bool is_there) { return is_there; });
+  return std::nullopt;
 }
 
-void tell_decimal(const IniSection& section, std::uint16_t index, Findings& findings) {
-  findings.add(
-      Severity::warning, section.line, 1, "decimal-sub-index",
-      fmt::format("the sub-indexes of {:04X} are taken as decimal: hexadecimal makes no sense", index),
-      "write sub-indexes in hexadecimal: ten is subA");
+/// How the digits of sub-indexes are meant, and why.
+struct Digits {
+  bool decimal = false;
+  std::string_view why = {};  ///< Empty where nothing is to be told.
+};
+
+/// Sub-indexes of decimal digits only are decimal when one would be above FF in hexadecimal, when the highest
+/// is then what sub 0 says, or when sub 0 says neither and decimal reading gives no gaps.
+Digits digits_of(std::span<const ObjectSection> sections) {
+  std::array<bool, 256> there{};
+  std::size_t highest = 0;
+  std::size_t highest_hex = 0;
+  for (const auto& place : sections) {
+    if (place.name.kind != SectionKind::sub) continue;
+    if (!place.name.decimal_sub) return {};
+    there[*place.name.decimal_sub] = true;
+    highest = std::max<std::size_t>(highest, *place.name.decimal_sub);
+    highest_hex = std::max<std::size_t>(highest_hex, place.name.sub);
+  }
+  if (highest_hex > 0xFF) return {true, "in hexadecimal one is above FF"};
+  if (highest <= 9) return {};
+  const bool whole = std::all_of(there.begin() + 1, there.begin() + static_cast<std::ptrdiff_t>(highest),
+                                 [](bool is_there) { return is_there; });
+  const auto said = said_highest(sections);
+  if (said == highest_hex) return {false, whole ? "as sub 0 says" : ""};
+  if (said == highest) return {true, "as sub 0 says"};
+  return whole ? Digits{true, "in hexadecimal some are missing"} : Digits{};
+}
+
+void tell_digits(const IniSection& section, std::uint16_t index, const Digits& digits, Findings& findings) {
+  if (digits.why.empty()) return;
+  findings.add(Severity::warning, section.line, 1,
+               digits.decimal ? "decimal-sub-index" : "hexadecimal-sub-index",
+               fmt::format("the sub-indexes of {:04X} are taken as {}: {}", index,
+                           digits.decimal ? "decimal" : "hexadecimal, sub10 is sixteen", digits.why),
+               "write sub-indexes in hexadecimal: ten is subA");
 }
 
 void tell_too_high(const IniSection& section, Findings& findings) {
@@ -75,9 +101,56 @@ void check_sub_number(const IniSection& section, const ObjectSections& sections,
                   fmt::format("write SubNumber={}", count));
 }
 
-void add_entry(const IniSection& section, ObjectAddress address, Object& object,
+bool is_mapping(std::uint16_t index) {
+  return (index >= 0x1600 && index <= 0x17FF) || (index >= 0x1A00 && index <= 0x1BFF);
+}
+
+/// Whether sub 0 may say more than there is: multiplexed PDOs are marked so, the communication record of a
+/// PDO has six places of which few are used (CiA 301, 7.5.2.33), 1029h counts classes of errors.
+bool may_say_more(std::uint16_t index, double said) {
+  const bool communication = (index >= 0x1400 && index <= 0x15FF) || (index >= 0x1800 && index <= 0x19FF);
+  return (is_mapping(index) && said >= 0xFE) || (communication && said <= 6) || index == 0x1029;
+}
+
+void check_sub_0(const Object& object, const IniSection& main, const ObjectSections& sections,
+                 Findings& findings) {
+  constexpr std::uint8_t kStructure = 0xFF;  // Is no entry (CiA 301, 7.4.5.2).
+  if (sections.subs.front().first != 0) {
+    findings.add(Severity::warning, main.line, 1, "missing-sub-0",
+                 fmt::format("[{}] has no sub 0, which tells the highest sub-index", main.name),
+                 "add the section of sub 0: a u8");
+    return;
+  }
+  const auto& section = *sections.subs.front().second;
+  if (object.entries.empty() || object.entries.front().address.sub != 0) return;
+  const auto& entry = object.entries.front();
+  const auto tell = [&](std::string_view key, std::string_view rule, std::string message,
+                        std::string remedy) {
+    const auto* at = section.find(key);
+    findings.add(Severity::warning, at != nullptr ? at->line : section.line,
+                 at != nullptr ? at->value_column : 1, rule, std::move(message), std::move(remedy));
+  };
+  if (entry.type != DataType::u8)
+    tell("DataType", "sub-0-type",
+         fmt::format("[{}] is {}; sub 0 is u8 by CiA 301; taken as written", section.name, name(entry.type)),
+         "write DataType=0x0005");
+  auto highest = sections.subs.back().first;
+  if (highest == kStructure && sections.subs.size() > 1)
+    highest = sections.subs[sections.subs.size() - 2].first;
+  if (!entry.default_value || entry.default_value->plus_node_id || !is_integer(entry.type)) return;
+  const auto said = to_double(entry.default_value->value);
+  // A list that is filled at run time, or by the user, begins with less than it has room for.
+  const bool fixed = !writable(entry.access) && object.index != 0x1003 && !is_mapping(object.index);
+  if ((said > highest && !may_say_more(object.index, said)) || (fixed && said < highest))
+    tell("DefaultValue", "sub-0-value",
+         fmt::format("[{}] says the highest sub-index is {}; it is {}", section.name,
+                     to_string(entry.default_value->value), highest),
+         fmt::format("write DefaultValue={}", highest));
+}
+
+void add_entry(const IniSection& section, ObjectAddress address, const LimitTypes& types, Object& object,
                std::vector<EntryNote>& notes, Findings& findings) {
-  auto entry = eds_entry(section, address, findings);
+  auto entry = eds_entry(section, address, types, findings);
   if (!entry) return;
   object.entries.push_back(std::move(*entry));
   const auto text = [&](std::string_view name) {
@@ -87,6 +160,16 @@ void add_entry(const IniSection& section, ObjectAddress address, Object& object,
   EntryNote note{address, text("Denotation"), text("UploadFile"), text("DownloadFile")};
   if (!note.denotation.empty() || !note.upload_file.empty() || !note.download_file.empty())
     notes.push_back(std::move(note));
+}
+
+void tell_var_with_subs(const IniSection& main, Findings& findings) {
+  const auto* key = main.find("ObjectType");
+  const bool said = key != nullptr && !key->value.empty();
+  findings.add(Severity::warning, said ? key->line : main.line, said ? key->value_column : 1,
+               "var-with-sub-indexes",
+               fmt::format("[{}] {} and has sub-indexes; these are taken, the object is read as a record",
+                           main.name, said ? "is a VAR" : "says no ObjectType, which means VAR,"),
+               "write ObjectType=0x9, or 0x8 for an array, or remove the sub-indexes");
 }
 
 }  // namespace
@@ -123,10 +206,10 @@ ObjectSections group_sections(std::span<const ObjectSection> sections, Findings&
     return out;
   }
   std::array<const IniSection*, 256> subs{};
-  const bool decimal = are_decimal(sections);
+  const auto digits = digits_of(sections);
   for (const auto& place : sections) {
     const bool is_sub = place.name.kind == SectionKind::sub;
-    const std::size_t sub = decimal ? place.name.decimal_sub.value_or(0) : place.name.sub;
+    const std::size_t sub = digits.decimal ? place.name.decimal_sub.value_or(0) : place.name.sub;
     if (is_sub && sub >= subs.size()) {
       tell_too_high(*place.section, findings);
       continue;
@@ -139,12 +222,12 @@ ObjectSections group_sections(std::span<const ObjectSection> sections, Findings&
   }
   for (std::size_t sub = 0; sub < subs.size(); ++sub)
     if (subs[sub] != nullptr) out.subs.emplace_back(static_cast<std::uint8_t>(sub), subs[sub]);
-  if (decimal) tell_decimal(*out.subs.front().second, sections.front().name.index, findings);
+  if (!out.subs.empty()) tell_digits(*out.subs.front().second, sections.front().name.index, digits, findings);
   return out;
 }
 
 Object eds_object(std::uint16_t index, const ObjectSections& sections, const CompactLists& lists,
-                  std::vector<EntryNote>& notes, Findings& findings) {
+                  const LimitTypes& types, std::vector<EntryNote>& notes, Findings& findings) {
   Object object;
   object.index = index;
   if (sections.main != nullptr) {
@@ -160,14 +243,19 @@ Object eds_object(std::uint16_t index, const ObjectSections& sections, const Com
   const bool single = object.code == ObjectCode::var || object.code == ObjectCode::domain ||
                       object.code == ObjectCode::deftype;
   if (sections.subs.empty() && single && !compact) {
-    if (sections.main != nullptr) add_entry(*sections.main, {index, 0}, object, notes, findings);
+    if (sections.main != nullptr) add_entry(*sections.main, {index, 0}, types, object, notes, findings);
     return object;
   }
-  for (const auto& sub : sections.subs) add_entry(*sub.second, {index, sub.first}, object, notes, findings);
+  if (single && sections.main != nullptr && !sections.subs.empty() && !compact)
+    tell_var_with_subs(*sections.main, findings);
+  for (const auto& sub : sections.subs)
+    add_entry(*sub.second, {index, sub.first}, types, object, notes, findings);
   if (compact)
-    add_compact_subs(*sections.main, lists, object, notes, findings);
+    add_compact_subs(*sections.main, lists, types, object, notes, findings);
   else if (sections.main != nullptr)
     check_sub_number(*sections.main, sections, findings);
+  if (!compact && sections.main != nullptr && !sections.subs.empty())
+    check_sub_0(object, *sections.main, sections, findings);
   return object;
 }
 

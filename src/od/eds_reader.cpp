@@ -5,28 +5,52 @@
 
 #include "base/number.hpp"
 #include "base/text.hpp"
+#include "od/eds_checks.hpp"
 #include "od/eds_compact.hpp"
+#include "od/eds_keys.hpp"
+#include "od/eds_lists.hpp"
 #include "od/eds_object.hpp"
 #include "od/eds_section.hpp"
+#include "od/eds_types.hpp"
 #include "od/eds_value.hpp"
 #include "od/text_encoding.hpp"
 
 namespace servoctl::od {
 namespace {
 
+/// `=====`, `===== Motion =====`, `*****`: a ruled line, or words that one begins.
+bool is_heading(std::string_view text) {
+  const auto is_word = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || (c & 0x80) != 0;
+  };
+  constexpr std::size_t kShortest = 3;
+  if (text.size() < kShortest) return false;
+  return text.starts_with("===") || std::none_of(text.begin(), text.end(), is_word);
+}
+
 class Reader {
  public:
-  Reader(std::string_view text, Findings findings) : ini_(parse_ini(text)), findings_(std::move(findings)) {}
+  Reader(std::string_view text, Findings findings) : ini_(parse_ini(text)), findings_(std::move(findings)) {
+    mend_keys(ini_, findings_);
+  }
 
   EdsFile read() {
     tell_strays();
     for (const auto& section : ini_.sections) take_section(section);
-    if (device_info_ != nullptr) read_device(*device_info_);
+    if (device_info_ != nullptr)
+      read_device(*device_info_);
+    else
+      findings_.add(Severity::warning, 1, 1, "missing-device-info", "there is no [DeviceInfo]",
+                    "add it, with VendorName, ProductName and the bitrates");
     if (dummies_ != nullptr) read_dummies(*dummies_);
     if (commissioning_ != nullptr) read_node_id(*commissioning_);
     read_objects();
     if (device_info_ != nullptr) add_compact_pdos(*device_info_, out_.dictionary, findings_);
-    check_lists();
+    const PresentObjects present{present_, out_.dictionary};
+    check_lists(lists_, present, findings_);
+    check_mandatory_objects(present, findings_);
+    check_mappings(out_.dictionary, findings_);
+    findings_.place(ini_);
     out_.diagnostics = findings_.take();
     return std::move(out_);
   }
@@ -34,12 +58,21 @@ class Reader {
  private:
   using ListKey = std::pair<std::uint16_t, SectionKind>;
 
+  /// A line of seven `=` is of a merge only where the other marks are; else it is a heading, as is whatever
+  /// begins and ends with signs.
   void tell_strays() {
+    const auto is_mark = [](std::string_view text) {
+      return text.starts_with("<<<<<<<") || text.starts_with(">>>>>>>");
+    };
+    const bool merged = std::any_of(ini_.strays.begin(), ini_.strays.end(),
+                                    [&](const IniStray& stray) { return is_mark(stray.text); });
     for (const auto& stray : ini_.strays) {
       const auto text = stray.text;
-      if (text.starts_with("<<<<<<<") || text.starts_with("=======") || text.starts_with(">>>>>>>")) {
+      if (is_mark(text) || (merged && text.starts_with("======="))) {
         findings_.add(Severity::error, stray.line, 1, "merge-marker",
                       fmt::format("'{}' is left from a merge", shown(text)), "finish the merge");
+      } else if (is_heading(text)) {
+        continue;
       } else if (text.starts_with("#") || text.starts_with("//")) {
         findings_.add(Severity::warning, stray.line, 1, "foreign-comment",
                       fmt::format("'{}' is no comment of this format; skipped", shown(text)),
@@ -74,7 +107,8 @@ class Reader {
     }
   }
 
-  /// A name the standard does not have: read as what it is likely meant for, or told as unknown.
+  /// A name the standard does not have: read as what it is likely meant for. Else it is a section of the
+  /// vendor's, and told only where it describes an object.
   std::optional<SectionName> respelt(const IniSection& section) {
     if (findings_.enough_of("unknown-section") || findings_.enough_of("misspelt-section"))
       return std::nullopt;
@@ -83,11 +117,17 @@ class Reader {
       findings_.add(Severity::warning, section.line, 1, "misspelt-section",
                     fmt::format("[{}] is taken as [{}]", shown(section.name), *meant),
                     fmt::format("write [{}]", *meant));
-    else
-      findings_.add(Severity::warning, section.line, 1, "unknown-section",
-                    fmt::format("[{}] is no section of CiA 306", shown(section.name)),
-                    "correct its name, or remove it");
+    else if (describes_object(section))
+      findings_.add(
+          Severity::warning, section.line, 1, "unknown-section",
+          fmt::format("[{}] is no section of CiA 306; the object in it is not taken", shown(section.name)),
+          "name it after the index: [2000] or [2000sub1]");
     return meant ? parse_section_name(*meant) : std::nullopt;
+  }
+
+  static bool describes_object(const IniSection& section) {
+    const auto has = [&](std::string_view key) { return section.find(key) != nullptr; };
+    return has("DataType") || has("AccessType") || has("ParameterValue");
   }
 
   void take_once(const IniSection*& place, const IniSection& section) {
@@ -142,6 +182,7 @@ class Reader {
     };
     if (!std::is_sorted(places_.begin(), places_.end(), by_index))
       std::stable_sort(places_.begin(), places_.end(), by_index);
+    const auto types = limit_types(places_);
     for (auto first = places_.begin(); first != places_.end();) {
       const auto index = first->name.index;
       const auto last = std::find_if(first, places_.end(),
@@ -149,7 +190,7 @@ class Reader {
       const auto sections = group_sections(std::span(first, last), findings_);
       const CompactLists lists{list(index, SectionKind::names), list(index, SectionKind::values),
                                list(index, SectionKind::denotations), compact_left_};
-      auto object = eds_object(index, sections, lists, out_.notes, findings_);
+      auto object = eds_object(index, sections, lists, types, out_.notes, findings_);
       if (object.entries.size() > sections.subs.size() + 1)
         compact_left_ -= std::min(compact_left_, object.entries.size() - sections.subs.size());
       if (!object.entries.empty()) out_.dictionary.add(std::move(object));
@@ -161,57 +202,6 @@ class Reader {
   const IniSection* list(std::uint16_t index, SectionKind kind) const {
     const auto found = compact_lists_.find({index, kind});
     return found == compact_lists_.end() ? nullptr : found->second;
-  }
-
-  bool is_present(std::uint64_t index) const {
-    const auto found = std::lower_bound(present_.begin(), present_.end(), index,
-                                        [](const auto& entry, std::uint64_t i) { return entry.first < i; });
-    return (found != present_.end() && found->first == index) ||
-           out_.dictionary.object(static_cast<std::uint16_t>(index)) != nullptr;
-  }
-
-  /// The index that a line of a list means, when there is such an object.
-  std::optional<std::uint64_t> listed_index(const IniKey& key) {
-    const auto index = eds_number(key, 0xFFFF, findings_);
-    if (!index || is_present(*index)) return index;
-    const auto hex = parse_digits(key.value, 16);
-    const bool meant_hex = hex && *hex <= 0xFFFF && is_present(*hex);
-    if (meant_hex)
-      findings_.warn(key, "decimal-index", fmt::format("{} is taken as 0x{:04X}", key.value, *hex),
-                     fmt::format("write 0x{:04X}: without 0x a number is decimal", *hex));
-    else if (!findings_.enough_of("listed-but-absent"))
-      findings_.error(key, "listed-but-absent", fmt::format("0x{:04X} is listed and has no section", *index),
-                      "add the section, or take it off the list");
-    return meant_hex ? hex : index;
-  }
-
-  void check_lists() {
-    std::vector<bool> listed(0x10000);
-    for (const auto* section : lists_) {
-      const IniKey* count = nullptr;
-      for (const auto& key : section->keys) {
-        if (equals_nocase(key.key, "SupportedObjects"))
-          count = &key;
-        else if (const auto index = key.value.empty() ? std::nullopt : listed_index(key))
-          listed[*index] = true;
-      }
-      check_count(section->keys.size(), count);
-    }
-    if (lists_.empty()) return;
-    for (const auto& object : present_)
-      if (object.second != nullptr && !listed[object.first])
-        findings_.add(Severity::warning, object.second->line, 1, "not-listed",
-                      fmt::format("[{}] is in none of the lists of objects", object.second->name),
-                      "add it to MandatoryObjects, OptionalObjects or ManufacturerObjects");
-  }
-
-  void check_count(std::size_t keys, const IniKey* count) {
-    if (count == nullptr || count->value.empty()) return;
-    const auto number = eds_number(*count, 0xFFFF, findings_);
-    if (number && *number != keys - 1)
-      findings_.warn(*count, "wrong-object-count",
-                     fmt::format("SupportedObjects is {}, but {} follow", *number, keys - 1),
-                     fmt::format("write SupportedObjects={}", keys - 1));
   }
 
   IniText ini_;
@@ -233,12 +223,13 @@ Findings findings_of(const DecodedText& decoded) {
     findings.add(Severity::warning, decoded.line, decoded.column, rule, std::move(message),
                  std::move(remedy));
   };
-  if (decoded.encoding != TextEncoding::utf8 || decoded.replaced_bytes > 0)
+  if (decoded.encoding != TextEncoding::utf8 || decoded.odd_bytes > 0)
     at("encoding",
-       fmt::format("the file is taken as {}{}", name(decoded.encoding),
-                   decoded.replaced_bytes == 0
+       fmt::format("the file is taken as {}{}", title(decoded.encoding),
+                   decoded.odd_bytes == 0
                        ? std::string()
-                       : fmt::format("; {} places in it mean nothing", decoded.replaced_bytes)),
+                       : fmt::format("; {} bytes mean nothing in it and are written out, as \\xFF",
+                                     decoded.odd_bytes)),
        "save it as UTF-8");
   if (decoded.skipped_nuls > 0)
     at("nul-byte", fmt::format("{} NUL bytes are skipped", decoded.skipped_nuls), "remove them");
@@ -269,8 +260,11 @@ Result<EdsFile> read_eds(std::string_view text, std::string_view file) {
   const auto decoded = to_utf8(text);
   auto out = Reader(decoded.text(text), findings_of(decoded)).read();
   if (!out.dictionary.empty()) return out;
+  const auto& all = out.diagnostics;
+  const auto why = std::find_if(
+      all.begin(), all.end(), [](const Diagnostic& finding) { return finding.severity == Severity::error; });
   return refuse(file, "there is no usable object in this file",
-                out.diagnostics.empty() ? std::string(kHint) : to_string(out.diagnostics.front(), file));
+                why == all.end() ? std::string(kHint) : to_string(*why, file));
 }
 
 std::string to_string(const Diagnostic& diagnostic, std::string_view file) {

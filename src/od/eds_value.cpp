@@ -1,6 +1,7 @@
 #include "od/eds_value.hpp"
 
 #include <fmt/format.h>
+#include <limits>
 #include <utility>
 
 #include "base/number.hpp"
@@ -12,17 +13,43 @@ namespace {
 
 constexpr std::string_view kNodeId = "$nodeid";
 
-bool has_leading_zero(std::string_view text) {
+/// The digits behind sign and leading zero, where there is one and no other base is said.
+std::string_view behind_leading_zero(std::string_view text) {
+  if (!text.empty() && (text.front() == '-' || text.front() == '+')) text.remove_prefix(1);
   const bool hexadecimal = !text.empty() && (text.back() == 'h' || text.back() == 'H');
-  return text.size() > 1 && text[0] == '0' && text[1] >= '0' && text[1] <= '9' && !hexadecimal;
+  const bool leads = text.size() > 1 && text[0] == '0' && text[1] >= '0' && text[1] <= '9' && !hexadecimal;
+  return leads ? text.substr(1) : std::string_view();
 }
 
-void warn_of_leading_zero(const IniKey& key, std::string_view number, Findings& findings) {
-  if (has_leading_zero(number))
-    findings.warn(
-        key, "leading-zero",
-        fmt::format("'{}' is taken as decimal; by the standard a leading zero means octal", shown(number)),
-        "write it without leading zeros, or with 0x");
+/// Tells a leading zero. False when the value is to be written, and octal and decimal are two numbers.
+bool take_leading_zero(const IniKey& key, std::string_view number, ValueUse use, Findings& findings) {
+  const auto digits = behind_leading_zero(number);
+  if (digits.empty()) return true;
+  const auto decimal = parse_digits(digits, 10);
+  const auto octal = parse_digits(digits, 8);
+  if (use == ValueUse::written && octal && octal != decimal) {
+    findings.error(key, "octal-value",
+                   fmt::format("{}: '{}' is {} by the standard (a leading zero means octal), and {} to most "
+                               "who write it; not taken",
+                               shown(key.key), shown(number), *octal, decimal.value_or(0)),
+                   fmt::format("write 0x{:X} or {}", *octal, decimal.value_or(0)));
+    return false;
+  }
+  const auto by_standard = !octal             ? std::string("no number")
+                           : octal == decimal ? std::string("the same")
+                                              : fmt::format("{}", *octal);
+  findings.warn(key, "leading-zero",
+                fmt::format("'{}' is taken as decimal, {}; by the standard a leading zero means octal: {}",
+                            shown(number), decimal.value_or(0), by_standard),
+                "write it without leading zeros, or with 0x");
+  return true;
+}
+
+/// Whether there is a node with whose number the sum fits its type.
+bool fits_a_node(DataType type, const NodeValue& value) {
+  const auto* number = std::get_if<std::uint64_t>(&value.value);
+  if (number != nullptr && *number == std::numeric_limits<std::uint64_t>::max()) return false;
+  return encode(type, value.for_node(1)).has_value();
 }
 
 /// Cuts `$NODEID` and its plus off; what remains is the number, `0` when nothing does. A text that goes on at
@@ -89,6 +116,18 @@ Result<Value> value_of(const IniKey& key, DataType type, std::string_view text, 
   return value;
 }
 
+void tell_no_value(const IniKey& key, DataType type, std::string_view text, const Error& error, ValueUse use,
+                   Findings& findings) {
+  const auto why = clip(error.message, 200);
+  const bool is_number = parse_integer(text).has_value();
+  if (use == ValueUse::limit && (is_number || !is_integer(type)))
+    findings.warn(key, "limit-outside-type", fmt::format("{}: {}; no limit is taken", key.key, why),
+                  fmt::format("write a limit that {} can have, or leave it empty", name(type)));
+  else
+    findings.error(key, "bad-value", fmt::format("{}: {}", key.key, why),
+                   fmt::format("write a value of {}, or leave it empty", name(type)));
+}
+
 }  // namespace
 
 std::string shown(std::string_view text) { return clip(printable(text.substr(0, 160)), 40); }
@@ -112,11 +151,11 @@ std::optional<std::uint64_t> eds_number(const IniKey& key, std::uint64_t max, Fi
                    "write a number such as 7 or 0x7");
     return std::nullopt;
   }
-  warn_of_leading_zero(key, text, findings);
+  take_leading_zero(key, text, ValueUse::told, findings);
   return number->magnitude;
 }
 
-std::optional<NodeValue> eds_value(const IniKey* key, DataType type, Findings& findings) {
+std::optional<NodeValue> eds_value(const IniKey* key, DataType type, Findings& findings, ValueUse use) {
   if (key == nullptr || key->value.empty() || type == DataType::domain) return std::nullopt;
   const bool numeric = is_integer(type) || is_real(type);
   const auto written = numeric ? without_comment(*key, findings) : key->value;
@@ -129,12 +168,18 @@ std::optional<NodeValue> eds_value(const IniKey* key, DataType type, Findings& f
   }
   auto value = value_of(*key, type, text, findings);
   if (!value) {
-    findings.error(*key, "bad-value", fmt::format("{}: {}", key->key, clip(value.error().message, 200)),
-                   fmt::format("write a value of {}, or leave it empty", name(type)));
+    tell_no_value(*key, type, text, value.error(), use, findings);
     return std::nullopt;
   }
-  if (is_integer(type)) warn_of_leading_zero(*key, text, findings);
-  return NodeValue{std::move(*value), plus_node_id};
+  if (is_integer(type) && !take_leading_zero(*key, text, use, findings)) return std::nullopt;
+  NodeValue out{std::move(*value), plus_node_id};
+  if (!plus_node_id || fits_a_node(type, out)) return out;
+  findings.add(
+      use == ValueUse::written ? Severity::error : Severity::warning, key->line, key->value_column,
+      "node-id-sum",
+      fmt::format("{}: {} fits {} for no node; it is not taken", key->key, shown(written), name(type)),
+      "lower the number that is added to $NODEID");
+  return std::nullopt;
 }
 
 }  // namespace servoctl::od

@@ -4,6 +4,8 @@
 
 #include <map>
 
+#include "od/complex_type.hpp"
+
 namespace servoctl::od {
 namespace {
 
@@ -47,12 +49,20 @@ TEST(DataTypeTable, IsThatOfCia301) {
 TEST(DataTypeTable, HasNoOtherCodes) {
   std::map<std::uint64_t, DataType> expected{{0x0B, DataType::string}, {0x0D, DataType::time}};
   for (const auto& row : kTable) expected[row.code] = row.type;
-  for (std::uint64_t code = 0; code < 0x200; ++code) {
+  for (std::uint64_t code = 0; code < 0x300; ++code) {
+    // Records of CiA 301, types of the manufacturer and of device profiles.
+    const bool complex = (code >= 0x20 && code <= 0x25) || (code >= 0x40 && code <= 0x25F);
+    EXPECT_EQ(is_complex_type(code), complex) << code;
+    if (complex) expected[code] = DataType::domain;
     const auto known = expected.find(code);
     EXPECT_EQ(data_type_from_cia(code), known == expected.end() ? std::nullopt : std::optional(known->second))
         << code;
   }
   EXPECT_EQ(data_type_from_cia(0x1'0000'0007), std::nullopt);
+  EXPECT_EQ(cia_name(0x20), "PDO_COMMUNICATION_PARAMETER");
+  EXPECT_EQ(cia_name(0x23), "IDENTITY");
+  EXPECT_EQ(cia_name(0x40), "type of the manufacturer");
+  EXPECT_EQ(cia_name(0x80), "type of the device profile");
 }
 
 }  // namespace

@@ -87,10 +87,10 @@ TEST(EdsBounds, CountEveryFindingOfARuleOnce) {
   };
   for (const auto& row :
        {Row{"stray-line", "", "?\n"}, Row{"foreign-comment", "", "# c\n"},
-        Row{"merge-marker", "", "=======\n"}, Row{"unknown-section", "", "[Parameters]\n"},
+        Row{"merge-marker", "", "<<<<<<<\n"}, Row{"unknown-section", "", "[Parameters]\nDataType=5\n"},
         Row{"misspelt-section", "", "[Coments]\n"}, Row{"unclosed-section", "", "[Comments\n"},
         Row{"duplicate-section", "[DeviceInfo]\n", "[DeviceInfo]\n"}, Row{"duplicate-key", "a=\n", "a=\n"},
-        Row{"listed-but-absent", "[OptionalObjects]\n1=0x2FFF\n", "[OptionalObjects]\n1=0x3000\n"}}) {
+        Row{"listed-but-absent", "[ManufacturerObjects]\n1=0x2FFF\n", "[ManufacturerObjects]\n1=0x3000\n"}}) {
     std::string text = variable("2FFF", "7", "") + row.first;
     for (int i = 0; i < 203; ++i) text += row.unit;
     const auto file = read(text);

@@ -99,14 +99,14 @@ TEST(EdsLimits, MayMeetEachOtherAndTheDefault) {
 }
 
 TEST(EdsList, NamesObjectsThatHaveASectionEvenIfItIsOfNoUse) {
-  const auto file =
-      read("[OptionalObjects]\nSupportedObjects=2\n1=0x2000\n2=0x2FFF\n[2000]\nParameterName=X\n" + kGood);
+  const auto file = read(
+      "[ManufacturerObjects]\nSupportedObjects=2\n1=0x2000\n2=0x2FFF\n[2000]\nParameterName=X\n" + kGood);
   EXPECT_EQ(findings(file), Rules{"5:1 missing-data-type"});
 }
 
 TEST(EdsList, IsComparedWithTheSectionsThereAre) {
   const auto with = [](const std::string& lines) {
-    return findings(read("[OptionalObjects]\n" + lines + kGood));
+    return findings(read("[ManufacturerObjects]\n" + lines + kGood));
   };
   EXPECT_EQ(with("SupportedObjects=1\n1=0x2FFF\n"), Rules{});
   EXPECT_EQ(with("1=0x2FFF\nSupportedObjects=0x1\n"), Rules{});
@@ -126,16 +126,16 @@ TEST(EdsList, IsComparedWithTheSectionsThereAre) {
 }
 
 TEST(EdsList, WithAWrongCountSaysTheRightOne) {
-  const auto file = read("[OptionalObjects]\nSupportedObjects=7\n1=0x2FFF\n2=\n" + kGood);
+  const auto file = read("[ManufacturerObjects]\nSupportedObjects=7\n1=0x2FFF\n2=\n" + kGood);
   EXPECT_EQ(file.diagnostics.front().message, "SupportedObjects is 7, but 2 follow");
   EXPECT_EQ(file.diagnostics.front().remedy, "write SupportedObjects=2");
 }
 
 TEST(EdsList, MayStandInSeveralSections) {
   const auto file = read(
-      "[MandatoryObjects]\nSupportedObjects=1\n1=0x2FFF\n[ManufacturerObjects]\n"
+      "[OptionalObjects]\nSupportedObjects=1\n1=0x6000\n[ManufacturerObjects]\n"
       "SupportedObjects=1\n1=0x2000\n" +
-      kGood + variable("2000", "7", ""));
+      variable("6000", "7", "") + variable("2000", "7", ""));
   EXPECT_EQ(findings(file), Rules{});
   EXPECT_EQ(file.dictionary.entry_count(), 2U);
 }
@@ -159,9 +159,9 @@ TEST(EdsText, MayHaveASingleNul) {
 
 TEST(EdsText, WithTheWrongEncodingTellsHowManyPlacesAreLost) {
   EXPECT_EQ(read(variable("2000", "7", "Denotation=\xE9 \x9D \x9D")).diagnostics.front().message,
-            "the file is taken as CP1252; 2 places in it mean nothing");
+            "the file is taken as CP1252; 2 bytes mean nothing in it and are written out, as \\xFF");
   EXPECT_EQ(read("\xEF\xBB\xBF" + variable("2000", "7", "Denotation=\xFF")).diagnostics.front().message,
-            "the file is taken as UTF-8; 1 places in it mean nothing");
+            "the file is taken as UTF-8; 1 bytes mean nothing in it and are written out, as \\xFF");
 }
 
 }  // namespace

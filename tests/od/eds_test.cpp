@@ -131,10 +131,10 @@ TEST(Eds, TakesAllLineEndsCommentsAndAByteOrderMark) {
 
 TEST(EdsFinding, OfEachRuleHasItsPlace) {
   expect_finding("nonsense\n", kError, "stray-line", 8, 1);
-  expect_finding("[Nonsense]\n", kWarning, "unknown-section", 8, 1);
+  expect_finding("[Nonsense]\nDataType=5\n", kWarning, "unknown-section", 8, 1);
   expect_finding("[1000]\nDataType=7\n", kError, "duplicate-section", 8, 1);
   expect_finding("[1001]\nParameterName=E\nAccessType=ro\n", kError, "missing-data-type", 8, 1);
-  expect_finding("[1001]\nParameterName=E\nDataType=0xFE\nAccessType=ro\n", kError, "unknown-data-type", 10,
+  expect_finding("[1001]\nParameterName=E\nDataType=0x1F\nAccessType=ro\n", kError, "unknown-data-type", 10,
                  10);
   expect_finding("[1001]\nParameterName=E\nDataType=five\nAccessType=ro\n", kError, "bad-number", 10, 10);
   expect_finding("[1001]\nParameterName=E\nDataType=5\n", kError, "missing-access-type", 8, 1);
@@ -163,6 +163,12 @@ TEST(EdsFinding, OfEachRuleHasItsPlace) {
       kWarning, "missing-sub-number", 8, 1);
   expect_finding("[MandatoryObjects]\n1=0x1000\n2=0x1001\n", kError, "listed-but-absent", 10, 3);
   expect_finding("[MandatoryObjects]\nSupportedObjects=0\n", kWarning, "not-listed", 1, 1);
+  expect_finding("[1001]\nParameterName=E\nDataType=5\nAccessType=ro\nLowLimit=-1\n", kWarning,
+                 "limit-outside-type", 12, 10);
+  expect_finding("[1001]\nParameterName=E\nDataType=5\nAccessType=ro\nDefaultVaule=1\n", kWarning,
+                 "misspelt-key", 12, 14);
+  expect_finding("[OptionalObjects]\n1=0x1000\n", kWarning, "wrong-list", 9, 3);
+  expect_finding("[MandatoryObjects]\n1=0x1000\n2=0x1000\n", kWarning, "listed-twice", 10, 3);
 }
 
 TEST(EdsFinding, TakesNothingOfAnEntryThatIsGood) {

@@ -219,7 +219,7 @@ TEST(EdsNote, KeepsDenotationAndFilesOfADcf) {
 }
 
 TEST(EdsList, WithAWrongCountOrDecimalNumbersIsTold) {
-  const auto file = read("[OptionalObjects]\nSupportedObjects=2\n1=2000\n" + variable("2000", "7", ""));
+  const auto file = read("[ManufacturerObjects]\nSupportedObjects=2\n1=2000\n" + variable("2000", "7", ""));
   EXPECT_EQ(findings(file), (Rules{"2:18 wrong-object-count", "3:3 decimal-index"}));
   EXPECT_EQ(file.diagnostics[1].remedy, "write 0x2000: without 0x a number is decimal");
 }

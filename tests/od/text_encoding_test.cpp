@@ -126,15 +126,15 @@ TEST(DecodedText, TellsWhereItsFirstForeignByteIs) {
   }
 }
 
-TEST(DecodedText, LosesBytesWithoutMeaningAndNoOthers) {
+TEST(DecodedText, WritesBytesWithoutMeaningOut) {
   const auto single = to_utf8(bytes({'c', 0x9D, 'x', ' ', 0xE9, 0x9D}));
-  EXPECT_EQ(single.text(""), "c\uFFFDx é\uFFFD");
-  EXPECT_EQ(single.replaced_bytes, 2U);
+  EXPECT_EQ(single.text(""), "c\\x9Dx é\\x9D");
+  EXPECT_EQ(single.odd_bytes, 2U);
   const auto lone_surrogate = to_utf8(bytes({0xFF, 0xFE, 'a', 0, 0x00, 0xDC, 'b', 0, 'c', 0, 'd'}));
-  EXPECT_EQ(lone_surrogate.text(""), "a\uFFFDbc\uFFFD");
-  EXPECT_EQ(lone_surrogate.replaced_bytes, 2U);
+  EXPECT_EQ(lone_surrogate.text(""), "a\\x00\\xDCbc\\x64");
+  EXPECT_EQ(lone_surrogate.odd_bytes, 3U);
   const auto big = to_utf8(bytes({0xFE, 0xFF, 0, 'a', 0xDC, 0x00, 0, 'b'}));
-  EXPECT_EQ(big.text(""), "a\uFFFDb");
+  EXPECT_EQ(big.text(""), "a\\xDC\\x00b");
 }
 
 TEST(DecodedText, OfAnyLengthIsWhole) {
@@ -146,7 +146,7 @@ TEST(DecodedText, OfAnyLengthIsWhole) {
   }
   const auto decoded = to_utf8(text);
   EXPECT_EQ(decoded.text(text), expected);
-  EXPECT_EQ(decoded.replaced_bytes, 0U);
+  EXPECT_EQ(decoded.odd_bytes, 0U);
 }
 
 TEST(DecodedText, IsTheFilesOwnWhereNothingIsChanged) {
@@ -160,9 +160,15 @@ TEST(DecodedText, IsTheFilesOwnWhereNothingIsChanged) {
 
 TEST(Encoding, HasTheNamesOfIconv) {
   const std::pair<TextEncoding, const char*> rows[] = {
-      {TextEncoding::utf8, "UTF-8"}, {TextEncoding::utf16le, "UTF-16LE"}, {TextEncoding::utf16be, "UTF-16BE"},
-      {TextEncoding::gbk, "GBK"},    {TextEncoding::cp1252, "CP1252"},    {TextEncoding::cp850, "CP850"}};
+      {TextEncoding::utf8, "UTF-8"},       {TextEncoding::utf16le, "UTF-16LE"},
+      {TextEncoding::utf16be, "UTF-16BE"}, {TextEncoding::gbk, "GBK"},
+      {TextEncoding::cp1252, "CP1252"},    {TextEncoding::cp850, "CP850"},
+      {TextEncoding::cp932, "CP932"},      {TextEncoding::cp950, "CP950"},
+      {TextEncoding::cp1251, "CP1251"}};
   for (const auto& row : rows) EXPECT_EQ(name(row.first), row.second);
+  EXPECT_EQ(title(TextEncoding::cp932), "Shift-JIS (CP932)");
+  EXPECT_EQ(title(TextEncoding::cp950), "Big5 (CP950)");
+  EXPECT_EQ(title(TextEncoding::gbk), "GBK");
 }
 
 TEST(Binary, IsWhatHasMoreThanOneControlCharacterInTwenty) {
