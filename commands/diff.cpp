@@ -5,6 +5,7 @@
 #include "canopen/cob_id.hpp"
 #include "commands/command.hpp"
 #include "commands/comparison.hpp"
+#include "commands/dictionary_comparison.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -15,8 +16,8 @@ constexpr std::string_view kFactory = "factory";
 constexpr std::string_view kNode = "node:";
 
 constexpr Parameter kParameters[] = {
-    {.name = "a", .help = "a backup, node:N or factory", .kind = Kind::file, .required = true},
-    {.name = "b", .help = "a backup, node:N or factory", .kind = Kind::file, .required = true},
+    {.name = "a", .help = "a backup, data sheet, node:N or factory", .kind = Kind::file, .required = true},
+    {.name = "b", .help = "a backup, data sheet, node:N or factory", .kind = Kind::file, .required = true},
     {.name = "--batch", .help = "the command lines that turn A into B", .kind = Kind::flag},
 };
 
@@ -156,7 +157,12 @@ Result<Value> run(Context& context, const Arguments& arguments) {
     if (!operand) return tl::unexpected<Error>(operand.error());
     operands.push_back(std::move(*operand));
   }
-  return Difference(context, std::move(operands)).run(arguments.has("--batch"));
+  const bool batch = arguments.has("--batch");
+  if (operands[0].source && operands[1].source && are_data_sheets(*operands[0].source, *operands[1].source))
+    return batch ? fail(Errc::usage, "two data sheets (EDS) have no settings that lines could write",
+                        "leave --batch out to compare their dictionaries")
+                 : compare_data_sheets(context, *operands[0].source, *operands[1].source);
+  return Difference(context, std::move(operands)).run(batch);
 }
 
 }  // namespace
@@ -164,7 +170,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
 extern const Command kDiff;
 const Command kDiff{
     .path = "diff",
-    .summary = "Compare backups, drives and factory values",
+    .summary = "Compare backups, drives, factory values and data sheets",
     .details =
         "Two of: a file (any format `restore` takes), node:N for a drive on the bus, `factory` for the "
         "defaults of "
@@ -174,7 +180,9 @@ const Command kDiff{
         "state are "
         "not compared with `factory`. --batch prints the command lines that turn A into B instead: `diff "
         "factory "
-        "node:1 --batch` is all that was set on a drive.",
+        "node:1 --batch` is all that was set on a drive. Two data sheets (EDS; or an EDS and a DCF) are "
+        "compared "
+        "entry by entry: name, type, access, mapping, default and limits.",
     .parameters = kParameters,
     .needs = Needs::nothing,
     .effect = Effect::reads,

@@ -1,9 +1,12 @@
 #include <fmt/format.h>
+#include <algorithm>
 
+#include "base/file.hpp"
 #include "base/text.hpp"
 #include "commands/command.hpp"
 #include "commands/reading.hpp"
 #include "commands/records.hpp"
+#include "od/eds.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -41,7 +44,21 @@ bool wanted(std::string_view pattern, const od::Object& object, const od::Entry&
   return contains_nocase(name, pattern) || contains_nocase(entry.name_zh, pattern);
 }
 
-report::List row(const Context& context, const od::Object& object, const od::Entry& entry) {
+/// What the data sheet says beside the dictionary; nothing where there is none.
+od::EdsFile data_sheet_of(const drive::Profile& profile) {
+  const auto text = read_file(profile.data_sheet, od::kMostEdsBytes);
+  if (profile.data_sheet.empty() || !text) return {};
+  return od::read_eds(*text, profile.data_sheet.string()).value_or(od::EdsFile{});
+}
+
+std::string denotation_of(std::span<const od::EntryNote> notes, ObjectAddress address) {
+  const auto found = std::find_if(notes.begin(), notes.end(),
+                                  [&](const od::EntryNote& note) { return note.address == address; });
+  return found == notes.end() ? std::string() : found->denotation;
+}
+
+report::List row(const Context& context, const od::Object& object, const od::Entry& entry,
+                 std::span<const od::EntryNote> notes) {
   // A panel parameter has its Chinese name, unit and labels in the parameter table.
   const auto target = drive::target_at(context.profile, entry.address);
   const auto meaning = drive::meaning(target, 0);
@@ -63,6 +80,8 @@ report::List row(const Context& context, const od::Object& object, const od::Ent
           unit,
           shown_default(meaning, entry),
           default_of(entry.default_value),
+          default_of(entry.configured),
+          report::text_or_null(denotation_of(notes, entry.address)),
           entry.address.index,
           entry.address.sub,
           entry.name,
@@ -95,6 +114,8 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
                    {"unit_text", "unit", Show::text},
                    {"default_text", "default", Show::text},
                    {"default", "", Show::json},
+                   {"value"},
+                   {"denotation"},
                    {"index", "", Show::json},
                    {"sub", "", Show::json},
                    {"name", "", Show::json},
@@ -115,13 +136,17 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
                    {"assumed_fields", "", Show::json},
                    {"contradicted", "", Show::json},
                    {"contradicted_fields", "", Show::json}};
+  const auto sheet = data_sheet_of(*context.profile);
   const auto pattern = arguments.text("pattern");
   for (const auto& object : context.profile->dictionary.objects())
     for (const auto& entry : object.entries)
-      if (wanted(pattern, object, entry)) table.rows.push_back(row(context, object, entry));
+      if (wanted(pattern, object, entry)) table.rows.push_back(row(context, object, entry, sheet.notes));
   if (table.rows.empty())
     return fail(Errc::negative, fmt::format("no object of {} fits '{}'", context.profile->family, pattern),
                 "try a shorter word, or 0x60* for a range of indexes");
+  if (sheet.node_id != 0)
+    context.notices.push_back(
+        fmt::format("{} is the configuration of node {}", context.profile->family, sheet.node_id));
   return report::Value(std::move(table));
 }
 
@@ -133,7 +158,7 @@ const Command kObjects{
     .summary = "List the object dictionary of a drive family",
     .details =
         "Works without a bus. The pattern is part of a name in English or Chinese, an index, or a form with "
-        "`*`.",
+        "`*`. Of a DCF, value and denotation are what it gives each entry (ParameterValue, Denotation).",
     .parameters = kParameters,
     .needs = Needs::dictionary,
     .effect = Effect::none,

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <string_view>
 
-#include "base/text.hpp"
+#include "base/utf8.hpp"
 
 /// How bytes are looked at by those who tell encodings apart.
 namespace servoctl::od {

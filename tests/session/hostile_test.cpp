@@ -144,14 +144,14 @@ TEST_F(HostileBus, TellsWhatTheControllerReportsOnceUntilItChanges) {
   EXPECT_TRUE(session->take_reports().empty());
 }
 
-TEST_F(HostileBus, ReadsAgainAtOnceWhenTheNodeBootsInMidTransfer) {
+TEST_F(HostileBus, ReadsAgainSoonWhenTheNodeBootsInMidTransfer) {
   int asked = 0;
   bus->on_send = [&asked](ScriptedBus& b, const std::string& sent) {
     if (sent == kReadStatus) b.arrive(asked++ == 0 ? "702#00" : kStatus);
   };
   const auto before = session->now();
   EXPECT_EQ(read_status().value(), (Bytes{0x50, 0x02}));
-  EXPECT_LT(session->now() - before, 10ms);
+  EXPECT_LT(session->now() - before, 150ms);
 }
 
 TEST_F(HostileBus, LooksUpAWriteInWhichTheNodeBooted) {
