@@ -1,6 +1,7 @@
 #include "drive/pdo_recipe.hpp"
 
 #include "drive/pdo_recipe_reader.hpp"
+#include "drive/toml_depth.hpp"
 
 namespace servoctl::drive {
 namespace {
@@ -34,6 +35,7 @@ bool get(const toml::node& node, PdoPreset& out) {
 }
 
 Result<PdoFile> parse_pdo_file(std::string_view toml, std::string_view file) {
+  if (const auto flat = check_toml_depth(toml, file); !flat) return tl::unexpected<Error>(flat.error());
   const auto parsed = toml::parse(toml, file);
   if (!parsed) {
     Error error;

@@ -5,6 +5,7 @@
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "drive/rules_reader.hpp"
+#include "drive/toml_depth.hpp"
 
 namespace servoctl::drive {
 namespace {
@@ -155,6 +156,7 @@ bool MotionRules::is_actuated(std::uint32_t inputs_word, unsigned bit) const {
 }
 
 Result<Rules> parse_rules(std::string_view toml, std::string_view file, Rules base) {
+  if (const auto flat = check_toml_depth(toml, file); !flat) return tl::unexpected<Error>(flat.error());
   const auto parsed = toml::parse(toml, file);
   if (!parsed) {
     const auto& problem = parsed.error();
@@ -170,6 +172,7 @@ Result<Rules> parse_rules(std::string_view toml, std::string_view file, Rules ba
 
 std::string parent_of(std::string_view toml) {
   if (toml.find("parent") == std::string_view::npos) return {};
+  if (!check_toml_depth(toml, {})) return {};
   const auto parsed = toml::parse(toml);
   if (!parsed) return {};
   return parsed.table()["parent"].value_or(std::string());

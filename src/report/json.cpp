@@ -207,17 +207,57 @@ struct FromJson {
   }
 };
 
+/// More lists and records than this stand in each other in no file of ours.
+constexpr std::size_t kDeepestJson = 64;
+
+/// Where more lists and records stand in each other than any file of ours has; empty when nowhere. What
+/// reads, copies and destroys the tree calls itself once a level.
+std::optional<std::size_t> too_deep(std::string_view text) {
+  std::size_t depth = 0;
+  bool quoted = false;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    const char c = text[at];
+    if (c == '"') {
+      quoted = !quoted;
+    } else if (quoted) {
+      at += c == '\\' ? 1 : 0;
+    } else if (c == '[' || c == '{') {
+      if (++depth > kDeepestJson) return at;
+    } else if (c == ']' || c == '}') {
+      depth -= depth > 0 ? 1 : 0;
+    }
+  }
+  return std::nullopt;
+}
+
+std::uint32_t line_at(std::string_view text, std::size_t place) {
+  const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(text.size(), place));
+  return static_cast<std::uint32_t>(1 + std::count(text.begin(), end, '\n'));
+}
+
+tl::unexpected<Error> nested_too_deep(std::string_view text, std::size_t place, std::string_view file) {
+  const auto line = line_at(text, place);
+  const auto begin = text.substr(0, place).rfind('\n');
+  auto error =
+      fail(Errc::file,
+           fmt::format("{}:{}: column {}: lists and records stand in each other deeper than {} levels", file,
+                       line, begin == std::string_view::npos ? place + 1 : place - begin, kDeepestJson),
+           "no file of servoctl does: is it the right one?")
+          .value();
+  error.line = line;
+  return fail(std::move(error));
+}
+
 }  // namespace
 
 Result<Value> parse_json(std::string_view text, std::string_view file) {
+  if (const auto place = too_deep(text)) return nested_too_deep(text, *place, file);
   try {
     return FromJson::value(Json::parse(text));
   } catch (const Json::parse_error& problem) {
     Error error;
     error.code = Errc::file;
-    const auto end = std::min(text.size(), problem.byte);
-    error.line = static_cast<std::uint32_t>(
-        1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n'));
+    error.line = line_at(text, problem.byte);
     error.message = fmt::format("{}:{}: this is no JSON, or it ends too early", file, *error.line);
     return fail(std::move(error));
   } catch (const Json::exception& problem) {

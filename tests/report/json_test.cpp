@@ -105,6 +105,37 @@ TEST(JsonWriter, PutsCommasWhereTheyBelong) {
       R"([[],{"ends with {":"ends with [","b":1,"c":2,"ends with :":[1,null,true],"nothing":null},false,7])");
 }
 
+std::string nested(std::size_t levels, const std::string& open, const std::string& close) {
+  std::string out;
+  for (std::size_t i = 0; i < levels; ++i) out += open;
+  out += "1";
+  for (std::size_t i = 0; i < levels; ++i) out += close;
+  return out;
+}
+
+TEST(Json, ThatIsNestedTooDeepIsRefusedWithItsPlace) {
+  EXPECT_TRUE(parse_json(nested(64, "[", "]"), "f"));
+  EXPECT_TRUE(parse_json(nested(64, "{\"a\":", "}"), "f"));
+  const auto list = parse_json("[1,\n" + nested(64, "[", "]") + "]", "f");
+  ASSERT_FALSE(list);
+  EXPECT_EQ(list.error().message,
+            "f:2: column 64: lists and records stand in each other deeper than 64 levels");
+  EXPECT_EQ(list.error().code, Errc::file);
+  EXPECT_EQ(list.error().line, 2U);
+  // As the stack once was: some hundred thousand levels.
+  for (const auto* open : {"[", "{\"a\":"}) {
+    const auto deep = parse_json(nested(500'000, open, ""), "f");
+    ASSERT_FALSE(deep);
+    EXPECT_NE(deep.error().message.find("deeper than 64"), std::string::npos);
+  }
+}
+
+TEST(Json, CountsNoBracketsInText) {
+  const auto text =
+      parse_json("{\"" + std::string(1000, '[') + "\":\"\\\"" + std::string(1000, '{') + "\"}", "f");
+  EXPECT_TRUE(text);
+}
+
 TEST(Json, TakesOverWhatIsWrittenAlready) {
   EXPECT_EQ(to_json(Record{{"a", 1}, {"samples", Written{R"([{"b":2}])"}}}),
             R"({"a":1,"samples":[{"b":2}]})");
