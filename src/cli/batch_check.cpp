@@ -1,6 +1,7 @@
 #include "cli/batch_check.hpp"
 
 #include <fmt/format.h>
+#include <unordered_set>
 
 #include "cli/parse.hpp"
 #include "cli/prompt_words.hpp"
@@ -11,7 +12,7 @@ namespace {
 using commands::Effect;
 using commands::Needs;
 
-constexpr std::size_t kMostErrors = 1'000;
+constexpr std::size_t kMostErrors = 100;
 
 class Check {
  public:
@@ -19,7 +20,13 @@ class Check {
 
   void take(const Step& step) {
     if (step.kind != Step::Kind::command || is_exit(step.words) || errors_.size() == kMostErrors) return;
-    if (const auto checked = check(step.words); !checked) errors_.add(step.line, step.round, checked.error());
+    // What a loop says again is right again, as long as nothing was chosen in between.
+    if (is_choice(step.words)) right_.clear();
+    if (right_.count(step.text) > 0) return;
+    if (const auto checked = check(step.words); checked)
+      right_.insert(step.text);
+    else
+      errors_.add(step.line, step.round, checked.error());
   }
 
   std::vector<Error> done() { return errors_.take(); }
@@ -64,6 +71,7 @@ class Check {
 
   Shell* shell_;
   Settings settings_;
+  std::unordered_set<std::string> right_;  ///< Lines that were checked with these settings.
   LineErrors errors_;
 };
 

@@ -1,6 +1,7 @@
 #include "cli/batch_plan.hpp"
 
 #include <fmt/format.h>
+#include <map>
 
 #include "base/duration.hpp"
 #include "cli/gateway_line.hpp"
@@ -8,9 +9,10 @@
 namespace servoctl::cli {
 namespace {
 
-/// Loops in loops grow fast: more statements and rounds are a mistake, and more errors help nobody.
-constexpr std::size_t kMostTaken = 100'000;
-constexpr std::size_t kMostErrors = 1'000;
+/// Loops in loops and variables in long lines grow fast: more is a mistake, and more errors help nobody.
+constexpr std::size_t kMostTaken = 20'000;
+constexpr std::size_t kMostText = 16U << 20U;
+constexpr std::size_t kMostErrors = 100;
 
 class Planner {
  public:
@@ -47,15 +49,39 @@ class Planner {
   Result<void> count() {
     if (++taken_ <= kMostTaken) return {};
     full_ = true;
-    return fail(Errc::usage, fmt::format("the loops make more than {} lines", kMostTaken));
+    return fail(Errc::usage, fmt::format("the loops make more than {} lines", kMostTaken),
+                "one file for each machine or group of axes, run one after the other");
+  }
+
+  /// What the file has become with its variables filled in and its tables read.
+  Result<void> count_text(std::size_t size) {
+    text_ += size;
+    if (text_ <= kMostText) return {};
+    full_ = true;
+    return fail(Errc::usage,
+                fmt::format("with its variables filled in the file has more than {} MiB", kMostText >> 20U),
+                "is a variable longer than it should be?");
   }
 
   VariableLookup lookup() const {
     return [this](std::string_view name) { return variables_.value(name); };
   }
 
-  Result<std::vector<std::string>> words_of(const Statement& statement) const {
-    return split_words(statement.text, lookup());
+  Result<std::vector<std::string>> words_of(const Statement& statement) {
+    auto words = split_words(statement.text, lookup());
+    std::size_t size = 0;
+    for (const auto& word : words ? *words : std::vector<std::string>()) size += word.size() + 1;
+    if (const auto room = count_text(size); !room) return tl::unexpected<Error>(room.error());
+    return words;
+  }
+
+  /// A table that stands in a loop is read once.
+  Result<std::vector<LoopItem>> items_of(const std::vector<std::string>& words) {
+    const auto known = words.size() == 1 ? tables_.find(words.front()) : tables_.end();
+    if (known != tables_.end()) return known->second;
+    auto items = loop_items(words, *folder_);
+    if (items && !items->front().cells.empty()) tables_.emplace(words.front(), *items);
+    return items;
   }
 
   Step& add(const Statement& statement, Step::Kind kind, std::string text) {
@@ -84,11 +110,14 @@ class Planner {
   Result<void> loop(const Statement& statement) {
     const auto words = words_of(statement);
     if (!words) return tl::unexpected<Error>(words.error());
-    const auto items = loop_items(*words, *folder_);
+    const auto items = items_of(*words);
     if (!items) return tl::unexpected<Error>(items.error());
     for (const auto& item : *items) {
       if (full_) break;
       if (const auto room = count(); !room) return room;
+      std::size_t size = item.word.size();
+      for (const auto& [column, cell] : item.cells) size += column.size() + cell.size() + 1;
+      if (const auto room = count_text(size); !room) return room;
       variables_.forget_row(statement.variable);
       variables_.assign(statement.variable, item.word);
       for (const auto& [column, cell] : item.cells)
@@ -102,6 +131,7 @@ class Planner {
 
   Result<void> expectation(const Statement& statement) {
     auto expression = parse_expression(statement.text, lookup());
+    if (const auto room = count_text(expression ? to_string(*expression).size() : 0); !room) return room;
     if (!expression) return tl::unexpected<Error>(expression.error());
     add(statement, Step::Kind::expect, "expect " + to_string(*expression)).expression =
         std::move(*expression);
@@ -146,7 +176,9 @@ class Planner {
   Plan plan_;
   LineErrors errors_;
   std::vector<std::string> rounds_;  ///< Of the loops that are open, the outer ones first.
+  std::map<std::string, std::vector<LoopItem>> tables_;
   std::size_t taken_ = 0;
+  std::size_t text_ = 0;
   bool goes_on_ = false;
   bool full_ = false;
 };

@@ -55,6 +55,11 @@ class Lexer {
     if (text_.substr(at_).starts_with("${") && *variables_) {
       const auto value = expand_variable(text_, at_, *variables_);
       if (!value) return tl::unexpected<Error>(value.error());
+      filled_in_ += value->size();
+      if (filled_in_ > kLongestLine)
+        return fail(Errc::usage,
+                    fmt::format("its variables make the line longer than {} MiB", kLongestLine >> 20U),
+                    "is a variable longer than it should be?");
       out += *value;
     } else {
       out += text_[at_];
@@ -91,6 +96,7 @@ class Lexer {
   std::string_view text_;
   const VariableLookup* variables_;
   std::size_t at_ = 0;
+  std::size_t filled_in_ = 0;  ///< Characters that came of variables.
 };
 
 Result<Operand> operand(const Token& token) {

@@ -1,5 +1,6 @@
 #include "cli/words.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 
 namespace servoctl::cli {
@@ -43,6 +44,11 @@ class Splitter {
     } else if (c == '$' && quote_ != '\'' && more && line_[at_ + 1] == '{' && *variables_) {
       const auto value = expand_variable(line_, at_, *variables_);
       if (!value) return tl::unexpected<Error>(value.error());
+      filled_in_ += value->size();
+      if (filled_in_ > kLongestLine)
+        return fail(Errc::usage,
+                    fmt::format("its variables make the line longer than {} MiB", kLongestLine >> 20U),
+                    "is a variable longer than it should be?");
       words_.back() += *value;
     } else {
       words_.back() += c;
@@ -54,6 +60,7 @@ class Splitter {
   const VariableLookup* variables_;
   std::vector<std::string> words_;
   std::size_t at_ = 0;
+  std::size_t filled_in_ = 0;  ///< Characters that came of variables.
   bool in_word_ = false;
   bool comment_ = false;
   char quote_ = '\0';

@@ -13,10 +13,14 @@ namespace servoctl::cli {
 /// What stands for `${NAME}`, or why nothing does.
 using VariableLookup = std::function<Result<std::string>(std::string_view name)>;
 
+/// More than this is no command line, however often it names a variable.
+inline constexpr std::size_t kLongestLine = 1U << 20U;
+
 /// Splits a command line into words as a shell does: blanks separate, 'single' and "double" quotes keep them
 /// together, a backslash takes the next character as it is (not in single quotes), `#` at the start of a word
 /// begins a comment. With `variables`, `${NAME}` is replaced (not in single quotes); a value stays one word,
-/// whatever stands in it. Errc::usage when a quote or a brace is not closed; errors of `variables`.
+/// whatever stands in it. Errc::usage when a quote or a brace is not closed, and when values make the line
+/// longer than kLongestLine; errors of `variables`.
 Result<std::vector<std::string>> split_words(std::string_view line, const VariableLookup& variables = {});
 
 /// The value of the variable whose `${` stands at `at`; `at` is moved to its `}`.

@@ -1,6 +1,7 @@
 // Batch files: statements, variables, loops, lines of CiA 309-3, and the lines that errors name.
 #include <gtest/gtest.h>
 
+#include <unistd.h>
 #include <filesystem>
 #include <fstream>
 
@@ -119,10 +120,42 @@ TEST(BatchLoop, WithoutSenseIsRefused) {
 
 TEST(BatchLoop, ThatNeverEndsIsRefused) {
   EXPECT_EQ(said("for A in 1-1000\nfor B in 1-1000\nfor C in 1-1000\nend\nend\nend"),
-            Words{"3! the loops make more than 100000 lines [A=1 B=100]"});
+            Words{"3! the loops make more than 20000 lines [A=1 B=20]"});
   std::string deep;
   for (int i = 0; i < 100'000; ++i) deep += "for A in 1-2\n";
   EXPECT_FALSE(parse_batch(deep).errors.empty());
+}
+
+TEST(BatchVariables, DoNotMakeAFileWithoutEnd) {
+  const std::string four_kib(4'000, 'x');
+  std::string line = "set L=" + four_kib + "\nread ";
+  for (int i = 0; i < 300; ++i) line += "${L}";
+  EXPECT_EQ(said(line), Words{"2! its variables make the line longer than 1 MiB"});
+  line = "set L=" + four_kib + "\nexpect ";
+  for (int i = 0; i < 300; ++i) line += "${L}";
+  EXPECT_EQ(said(line), Words{"2! its variables make the line longer than 1 MiB"});
+  line = "set L=" + four_kib + "\nfor A in 1-10000\nread ${L}${L}\nend";
+  const auto made = plan(line);
+  ASSERT_EQ(made.errors.size(), 1U);
+  EXPECT_EQ(made.errors[0].message.substr(0, 66),
+            "with its variables filled in the file has more than 16 MiB [A=2092");
+  EXPECT_LT(made.steps.size(), 2'200U);
+}
+
+TEST(BatchLoop, ReadsItsTableOnceHoweverOftenItStandsInAnother) {
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("servoctl-loops-" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  {
+    std::ofstream table(folder / "t.csv");
+    table << "n\n";
+    for (int i = 0; i < 10; ++i) table << i << "\n";
+    // Read once it is nothing; read in every round it would take minutes.
+    for (int i = 0; i < 500'000; ++i) table << "\n";
+  }
+  const auto batch = parse_batch("for A in 1-1500\nfor R in t.csv\nread ${R.n}\nend\nend");
+  EXPECT_EQ(plan_batch(batch, {}, folder).steps.size(), 15'000U);
+  std::filesystem::remove_all(folder);
 }
 
 TEST(BatchStatement, WaitPauseAndOnErrorAreTakenApart) {
