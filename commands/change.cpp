@@ -5,6 +5,7 @@
 #include <set>
 
 #include "canopen/sdo_client.hpp"
+#include "commands/cob_id_check.hpp"
 #include "commands/keeping_nodes.hpp"
 #include "drive/cia402.hpp"
 #include "drive/standard_objects.hpp"
@@ -95,12 +96,14 @@ Result<drive::Meaning> writable_meaning(std::uint8_t node, const drive::Target& 
   return meaning;
 }
 
-Result<Change> change_to(std::uint8_t node, const drive::Target& target, const drive::Meaning& meaning,
-                         std::string_view value) {
+Result<Change> change_to(const drive::Profile* profile, std::uint8_t node, const drive::Target& target,
+                         const drive::Meaning& meaning, std::string_view value) {
   const auto parsed = drive::parse_quantity(meaning, value);
   if (!parsed) return named(parsed.error(), node, target);
   const auto data = od::encode(meaning.type, *parsed);
   if (!data) return named(data.error(), node, target);
+  if (const auto free = check_cob_id(profile, target.address, *data, node); !free)
+    return named(free.error(), node, target);
   Change out{node, target, meaning.type, *data};
   out.bridge = meaning.bridge;
   return out;
@@ -205,7 +208,7 @@ Result<Change> make_change(Context& context, std::uint8_t node, const drive::Tar
     if (!meaning) return tl::unexpected<Error>(meaning.error());
   }
   add_bridge(context, node, target, value, *meaning);
-  return change_to(node, target, *meaning, value);
+  return change_to(context.profile, node, target, *meaning, value);
 }
 
 Result<void> check_change(const Context& context, std::uint8_t node, const drive::Target& target,
@@ -214,7 +217,7 @@ Result<void> check_change(const Context& context, std::uint8_t node, const drive
   if (!meaning) return tl::unexpected<Error>(meaning.error());
   const bool asks_size = !type && (!meaning->type_known || !meaning->size_known);
   if (asks_size || asks_measure(context, *meaning, value)) return {};
-  if (const auto change = change_to(node, target, *meaning, value); !change)
+  if (const auto change = change_to(context.profile, node, target, *meaning, value); !change)
     return tl::unexpected<Error>(change.error());
   return {};
 }

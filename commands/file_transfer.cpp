@@ -6,6 +6,8 @@
 
 #include "base/file.hpp"
 #include "canopen/sdo_frame.hpp"
+#include "commands/cob_id_check.hpp"
+#include "commands/keeping_nodes.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -13,7 +15,7 @@ namespace {
 using report::Show;
 using report::Value;
 
-report::Table new_table() {
+report::Table new_table(bool kept) {
   report::Table table;
   table.columns = {{"node"},
                    {"object", "", Show::text},
@@ -24,6 +26,7 @@ report::Table new_table() {
                    {"file"},
                    {"state", "result", Show::text},
                    {"error", "", Show::json}};
+  if (kept) table.columns.push_back({"kept"});
   return table;
 }
 
@@ -50,12 +53,12 @@ Result<Value> read_to_file(Context& context, std::uint8_t node, const drive::Tar
   if (!data) return tl::unexpected<Error>(data.error());
   const auto written = write_file_atomically(file, std::string(data->begin(), data->end()));
   if (!written) return tl::unexpected<Error>(written.error());
-  auto table = new_table();
+  auto table = new_table(false);
   table.rows.push_back(row(node, target, data->size(), file, "read", {}));
   return Value(std::move(table));
 }
 
-Result<Change> change_from_file(std::uint8_t node, const drive::Target& target,
+Result<Change> change_from_file(const drive::Profile* profile, std::uint8_t node, const drive::Target& target,
                                 const std::filesystem::path& file) {
   const auto meaning = drive::meaning(target, node);
   if (!od::writable(meaning.access))
@@ -66,27 +69,43 @@ Result<Change> change_from_file(std::uint8_t node, const drive::Target& target,
   if (size && content->size() != *size)
     return fail(Errc::usage, fmt::format("{} holds {} bytes, and {} has {}", name_of(target), *size,
                                          file.string(), content->size()));
-  return Change{node, target, size ? meaning.type : od::DataType::domain,
-                Bytes(content->begin(), content->end())};
+  Bytes data(content->begin(), content->end());
+  if (const auto free = check_cob_id(profile, target.address, data, node); !free) {
+    auto error = free.error();
+    error.message = fmt::format("{}: {}", name_of(target), error.message);
+    return fail(std::move(error));
+  }
+  return Change{node, target, size ? meaning.type : od::DataType::domain, std::move(data)};
 }
 
-Value write_from_file(Context& context, std::span<const Change> changes, const std::filesystem::path& file) {
+Result<Value> write_from_file(Context& context, std::span<const Change> changes,
+                              const std::filesystem::path& file, const WriteOptions& options) {
   std::vector<session::SdoRequest> requests;
   for (const auto& change : changes)
     requests.push_back({change.node, change.target.address, change.data, change.transfer});
-  const auto written = session::write_all(*context.session, requests, false);
-  auto table = new_table();
+  KeepingNodes keeping(context, changes);
+  if (const auto opened = keeping.open(options); !opened) return tl::unexpected<Error>(opened.error());
+  const bool readable = std::all_of(changes.begin(), changes.end(), [](const Change& c) {
+    return od::readable(drive::meaning(c.target, c.node).access);
+  });
+  const auto written = session::write_all(*context.session, requests, options.keep && readable);
+  keeping.close(written);
+  auto table = new_table(true);
   table.json_only = std::none_of(written.begin(), written.end(), [](const auto& w) { return w.has_value(); });
   for (std::size_t i = 0; i < changes.size(); ++i) {
     const bool lost = written[i] && written[i]->answer_lost;
-    const auto* state = !written[i] ? "not written"
-                        : lost      ? "written (the answer was lost, the content was read back)"
-                                    : "written";
+    const auto* state = !written[i]             ? "not written"
+                        : lost                  ? "written (the answer was lost, the content was read back)"
+                        : written[i]->read_back ? "written, read back"
+                                                : "written";
+    const auto kept = keeping.kept(changes[i].node);
     table.rows.push_back(row(changes[i].node, changes[i].target, changes[i].data.size(), file, state,
                              written[i] ? Value() : error_record(written[i].error())));
+    const bool told = written[i] && kept != session::Kept::unknown;
+    table.rows.back().push_back(told ? Value(kept == session::Kept::yes) : Value());
     if (!written[i]) context.errors.push_back(written[i].error());
   }
-  return table;
+  return Value(std::move(table));
 }
 
 }  // namespace servoctl::commands

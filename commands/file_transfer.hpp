@@ -14,12 +14,13 @@ Result<report::Value> read_to_file(Context& context, std::uint8_t node, const dr
                                    canopen::Transfer transfer, const std::filesystem::path& file);
 
 /// The change that puts the content of the file into the object. Errc::file when it cannot be read,
-/// Errc::usage for a read-only object or one of another fixed size.
-Result<Change> change_from_file(std::uint8_t node, const drive::Target& target,
+/// Errc::usage for a read-only object, one of another fixed size, and a COB-ID that no drive may have.
+Result<Change> change_from_file(const drive::Profile* profile, std::uint8_t node, const drive::Target& target,
                                 const std::filesystem::path& file);
 
-/// Makes the changes and tells how many bytes went where. Failures go to `context.errors`.
-report::Value write_from_file(Context& context, std::span<const Change> changes,
-                              const std::filesystem::path& file);
+/// Makes the changes and tells how many bytes went where, and whether they are kept. Failures go to
+/// `context.errors`.
+Result<report::Value> write_from_file(Context& context, std::span<const Change> changes,
+                                      const std::filesystem::path& file, const WriteOptions& options);
 
 }  // namespace servoctl::commands

@@ -56,6 +56,10 @@ Result<canopen::PdoEntry> parse_mapped(const drive::Profile& profile, std::strin
 /// and canopen::kPdoExtended. Errc::usage.
 Result<std::uint32_t> parse_can_id(std::string_view text, std::uint8_t node);
 
+/// The same, for a PDO that is to be valid: a CAN-ID that CiA 301 keeps for another service (check_cob_id();
+/// 0 is that of NMT, and stands for no other) is refused as well.
+Result<std::uint32_t> parse_pdo_can_id(std::string_view text, std::uint8_t node);
+
 /// Makes it valid, with a CAN-ID: the one it has, or that of the pre-defined connection set (CiA 301, 7.3.5).
 /// Errc::usage where neither is known.
 Result<void> switch_on(canopen::Pdo& pdo, std::uint8_t node);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "commands/cob_id_check.hpp"
 #include "commands/pdo_report.hpp"
 #include "drive/naming.hpp"
 
@@ -89,7 +90,7 @@ Result<void> check_type(const drive::Profile& profile, const Pdo& pdo) {
   return {};
 }
 
-Result<void> check_cob_id(const drive::Profile& profile, const Pdo& present, const Pdo& wanted) {
+Result<void> check_bits(const drive::Profile& profile, const Pdo& present, const Pdo& wanted) {
   const auto may_change = profile.rules.pdo.cob_id_bits | canopen::kPdoInvalid;
   if (((present.cob_id ^ wanted.cob_id) & ~may_change) == 0) return {};
   const bool other_id = (may_change & kBasicCanId) != 0;
@@ -103,8 +104,9 @@ Result<void> check_cob_id(const drive::Profile& profile, const Pdo& present, con
 
 Result<void> check_can_id(const Pdo& wanted, std::span<const Pdo> all) {
   const auto text = can_id_text(wanted.cob_id);
-  if (const auto service = canopen::service_of(wanted.can_id()); !service.empty())
-    return no(wanted, fmt::format("CAN-ID {} is that of {}", text, service));
+  const auto cob_id = store_le(wanted.cob_id, 4);
+  if (const auto may = check_cob_id(nullptr, {wanted.communication_index(), 1}, cob_id, 0); !may)
+    return no(wanted, may.error().message, may.error().hint);
   for (const auto& other : all) {
     const bool same = other.direction == wanted.direction && other.number == wanted.number;
     if (!same && other.is_valid() && other.can_id() == wanted.can_id())
@@ -142,7 +144,7 @@ Result<void> check_mapping(const drive::Profile& profile, const Pdo& pdo) {
 
 Result<void> check_communication(const drive::Profile& profile, const Pdo& present, const Pdo& wanted,
                                  std::span<const Pdo> all) {
-  if (const auto may = check_cob_id(profile, present, wanted); !may) return may;
+  if (const auto may = check_bits(profile, present, wanted); !may) return may;
   if (wanted.is_valid() && wanted.cob_id != present.cob_id)
     if (const auto free = check_can_id(wanted, all); !free) return free;
   const auto missing = [&](bool now, bool then, std::string_view what) {

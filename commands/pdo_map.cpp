@@ -92,6 +92,15 @@ Result<void> check(Context& context, const Arguments& arguments) {
   auto pdo = canopen::parse_pdo_name(arguments.text("pdo"));
   if (!pdo) return tl::unexpected<Error>(find_pdo({}, arguments.text("pdo")).error());
   pdo->entries = options->entries;
+  if (!options->cob_id.empty())
+    for (const auto node : context.nodes)
+      if (const auto can_id = parse_pdo_can_id(options->cob_id, node); !can_id) {
+        auto error = can_id.error();
+        error.message =
+            fmt::format("node {}, {}: {}", node, canopen::name(pdo->direction, pdo->number), error.message);
+        error.node = node;
+        return fail(std::move(error));
+      }
   return check_mapping(*context.profile, *pdo);
 }
 
@@ -113,7 +122,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
     const bool linked = present.values.count({pdo->communication_index(), 1}) > 0;
     if (!linked && !options->cob_id.empty()) return fail(Errc::usage, "this drive's PDOs have no COB-ID");
     if (!options->cob_id.empty()) {
-      const auto can_id = parse_can_id(options->cob_id, present.node);
+      const auto can_id = parse_pdo_can_id(options->cob_id, present.node);
       if (!can_id) return tl::unexpected<Error>(can_id.error());
       pdo->set_can_id(*can_id);
     }

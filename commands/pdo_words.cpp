@@ -3,6 +3,7 @@
 
 #include "base/number.hpp"
 #include "base/text.hpp"
+#include "commands/cob_id_check.hpp"
 #include "commands/pdo_changing.hpp"
 #include "commands/pdo_check.hpp"
 #include "drive/naming.hpp"
@@ -65,6 +66,15 @@ Result<std::uint32_t> parse_can_id(std::string_view text, std::uint8_t node) {
                 "a number up to 0x7FF, or $NODEID+0x180; one of 29 bits up to 0x1FFFFFFF");
   const bool extended = can_id > 0x7FF || (starts_with_nocase(text, "0x") && text.size() == 10);
   return static_cast<std::uint32_t>(can_id) | (extended ? canopen::kPdoExtended : 0U);
+}
+
+Result<std::uint32_t> parse_pdo_can_id(std::string_view text, std::uint8_t node) {
+  const auto can_id = parse_can_id(text, node);
+  if (!can_id) return can_id;
+  if (const auto free = check_cob_id(nullptr, {Pdo{}.communication_index(), 1}, store_le(*can_id, 4), 0);
+      !free)
+    return tl::unexpected<Error>(free.error());
+  return can_id;
 }
 
 Result<void> switch_on(Pdo& pdo, std::uint8_t node) {

@@ -40,6 +40,9 @@ Result<void> check(Context& context, const Arguments& arguments) {
 
 /// `--to` takes the bytes of one object of one node.
 Result<report::Value> run_to_file(Context& context, const Arguments& arguments) {
+  if (arguments.has("--type"))
+    return fail(Errc::usage, "--type goes with a value that is shown: --to takes the bytes as they are",
+                "leave --type away");
   if (arguments.all("object").size() != 1 || context.nodes.size() != 1)
     return fail(Errc::usage, "--to takes one object of one node",
                 "one line for each object and node, each with a file of its own");

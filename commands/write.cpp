@@ -23,6 +23,8 @@ constexpr Parameter kParameters[] = {
 };
 
 Result<void> check_one_source(const Arguments& arguments) {
+  if (arguments.has("--from") && arguments.has("--type"))
+    return fail(Errc::usage, "--type goes with a value: a file is written as it is", "leave --type away");
   if (arguments.has("value") != arguments.has("--from")) return {};
   return fail(Errc::usage, "'write' needs a value, or a file with --from",
               "write OBJECT VALUE, or write OBJECT --from FILE");
@@ -30,8 +32,9 @@ Result<void> check_one_source(const Arguments& arguments) {
 
 Result<Change> change_of(Context& context, const Arguments& arguments, std::uint8_t node,
                          const drive::Target& target, std::optional<od::DataType> type) {
-  auto change = arguments.has("--from") ? change_from_file(node, target, arguments.text("--from"))
-                                        : make_change(context, node, target, arguments.text("value"), type);
+  auto change = arguments.has("--from")
+                    ? change_from_file(context.profile, node, target, arguments.text("--from"))
+                    : make_change(context, node, target, arguments.text("value"), type);
   if (!change) return change;
   const auto transfer = write_transfer(context, arguments, change->data.size());
   if (!transfer) return tl::unexpected<Error>(located(transfer.error(), node, target.address));
@@ -49,9 +52,6 @@ Result<void> check(Context& context, const Arguments& arguments) {
   for (const auto node : context.nodes)
     if (const auto fits = check_change(context, node, *target, arguments.text("value"), *type); !fits)
       return fits;
-  if (arguments.has("--from") && (arguments.has("--keep") || arguments.has("--unlock")))
-    return fail(Errc::usage, "--keep and --unlock go with a value, not with --from",
-                "write the file, then `store`");
   return {};
 }
 
@@ -70,10 +70,10 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   if (context.dry_run) return planned_frames(changes);
   if (const auto confirmed = confirm_changes(context, changes); !confirmed)
     return tl::unexpected<Error>(confirmed.error());
-  if (arguments.has("--from")) return write_from_file(context, changes, arguments.text("--from"));
-  return write_changes(
-      context, changes,
-      {.read_back = false, .keep = arguments.has("--keep"), .unlock = arguments.has("--unlock")});
+  const WriteOptions options{
+      .read_back = false, .keep = arguments.has("--keep"), .unlock = arguments.has("--unlock")};
+  return arguments.has("--from") ? write_from_file(context, changes, arguments.text("--from"), options)
+                                 : write_changes(context, changes, options);
 }
 
 }  // namespace
@@ -87,8 +87,9 @@ const Command kWrite{
         "number the drive shows; a number with a unit is converted. A write is never repeated: when its "
         "answer is lost, the object is read and the outcome told. Asked before: what stores or restores, "
         "changes node-ID or bitrate, and a controlword that enables the drive. With --from the bytes of a "
-        "file "
-        "of any size are written, in blocks where the drive knows them.",
+        "file of any size are written, in blocks where the drive knows them, and kept with --keep. A COB-ID "
+        "that CiA 301 keeps for another service (NMT, SYNC, EMCY, SDO, error control, reserved) is refused. "
+        "A value that begins with - and is no number stands behind --: write 0x2000 -- \"--text\".",
     .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::writes,
