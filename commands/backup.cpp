@@ -65,6 +65,7 @@ struct Saved {
 Result<Saved> save(Context& context, Backup backup, bool changed, BackupFormat format,
                    const std::filesystem::path& file) {
   if (changed) keep_changed(*context.profile, backup);
+  tell_left_out(context, backup);
   Saved out;
   for (const auto& entry : backup.entries) ++(entry.bytes ? out.values : out.left_out);
   const auto text = backup_text(context, backup, format, file);

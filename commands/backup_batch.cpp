@@ -3,6 +3,7 @@
 #include <cctype>
 #include <set>
 
+#include "base/text.hpp"
 #include "commands/backup_formats.hpp"
 #include "commands/comparison.hpp"
 #include "commands/reading.hpp"
@@ -22,13 +23,7 @@ bool is_mapping(ObjectAddress object) {
          (object.index >= 0x1A00 && object.index <= 0x1BFF);
 }
 
-/// A word as a batch file takes it: in quotes where it has anything but letters, digits and plain signs.
-std::string quoted(const std::string& word) {
-  const auto plain = [](unsigned char c) {
-    return std::isalnum(c) != 0 || c >= 0x80 ||
-           std::string_view("+-._:/").find(static_cast<char>(c)) != std::string_view::npos;
-  };
-  if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) return word;
+std::string in_quotes(std::string_view word) {
   std::string out = "\"";
   for (const char c : word) {
     if (c == '"' || c == '\\' || c == '$') out += '\\';
@@ -37,9 +32,28 @@ std::string quoted(const std::string& word) {
   return out + '"';
 }
 
-/// What of the text a line can carry: no control characters.
-bool fits_a_line(std::string_view text) {
-  return std::none_of(text.begin(), text.end(), [](unsigned char c) { return c < ' ' || c == 0x7F; });
+/// A word as a batch file takes it: in quotes where it has anything but letters, digits and plain signs.
+std::string quoted(const std::string& word) {
+  const auto plain = [](unsigned char c) {
+    return std::isalnum(c) != 0 || c >= 0x80 ||
+           std::string_view("+-._:/").find(static_cast<char>(c)) != std::string_view::npos;
+  };
+  return !word.empty() && std::all_of(word.begin(), word.end(), plain) ? word : in_quotes(word);
+}
+
+/// A number, or bytes in hexadecimal: what no reader takes for an option.
+bool is_harmless(std::string_view text) {
+  if (text.starts_with("hex:")) return true;
+  if (text.starts_with('-')) text.remove_prefix(1);
+  return !text.empty() && std::isdigit(static_cast<unsigned char>(text.front())) != 0;
+}
+
+/// Whether the number of a parameter is a word for itself and no option, as those of our tables are.
+bool is_plain_id(std::string_view id) {
+  return !id.empty() && std::isalpha(static_cast<unsigned char>(id.front())) != 0 &&
+         std::all_of(id.begin(), id.end(), [](unsigned char c) {
+           return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.';
+         });
 }
 
 /// What the value is called in a line, in a form that gives these bytes again.
@@ -78,12 +92,14 @@ class Lines {
         "# Settings of node {} ({}), saved by {} at {} from {}.\n"
         "# `servoctl run` writes them into the drive, `restore` as well and with more care. They are not "
         "stored:\n# add `store --yes` when they are to survive power-off.\ndrive {}\nuse {}\n",
-        backup_->identity.node, backup_->family, backup_->tool, backup_->time, backup_->bus,
-        quoted(backup_->family), backup_->identity.node);
+        backup_->identity.node, comment_text(backup_->family), comment_text(backup_->tool),
+        comment_text(backup_->time), comment_text(backup_->bus), batch_word(backup_->family),
+        backup_->identity.node);
     add_values();
     for (const auto& entry : backup_->entries)
       if (!entry.bytes)
-        out_ += fmt::format("# left out: {} {} ({})\n", to_string(entry.object), entry.name, entry.left_out);
+        out_ += fmt::format("# left out: {} {} ({})\n", to_string(entry.object), comment_text(entry.name),
+                            comment_text(entry.left_out));
     return std::move(out_);
   }
 
@@ -105,12 +121,9 @@ class Lines {
 
   /// Why the line of a value is only shown; empty when it is one to be run.
   std::string reason_to_comment(const Backup::Entry& entry) const {
-    const auto target = drive::target_at(profile_, entry.object);
     if (is_address(profile_, entry.object)) return "for a drive that takes this one's place on the bus";
-    const auto meaning = drive::fitted(drive::meaning(target, backup_->identity.node), entry.bytes->size());
-    const auto value = od::decode(entry.type, *entry.bytes);
-    if (!value || drive::check_limits(meaning, *value)) return {};
-    return fmt::format("the drive's own value, outside of the limits {}", drive::range_text(meaning));
+    const auto range = range_missed(*profile_, backup_->identity.node, entry.object, *entry.bytes);
+    return range.empty() ? range : fmt::format("the drive's own value, outside of the limits {}", range);
   }
 
   /// Nothing is known of the drive the lines will meet: all is planned as if it differed.
@@ -151,27 +164,50 @@ class Lines {
 
 }  // namespace
 
+std::string range_missed(const drive::Profile& profile, std::uint8_t node, ObjectAddress object,
+                         const Bytes& data) {
+  const auto meaning = drive::fitted(drive::meaning(drive::target_at(&profile, object), node), data.size());
+  const auto value = od::decode(meaning.type, data);
+  return !value || drive::check_limits(meaning, *value) ? std::string() : drive::range_text(meaning);
+}
+
+std::string batch_word(const std::string& word) { return quoted(word); }
+
+bool fits_a_line(std::string_view text) { return is_utf8(text) && printable(text) == text; }
+
+std::string comment_text(std::string_view text) {
+  std::string out(text);
+  for (auto& c : out)
+    if (static_cast<unsigned char>(c) < ' ' || c == 0x7F) c = ' ';
+  // A line that ends in a backslash goes on in the next.
+  while (!out.empty() && (out.back() == '\\' || out.back() == ' ')) out.pop_back();
+  return out;
+}
+
 std::string write_line(const drive::Profile* profile, std::uint8_t node, ObjectAddress object,
                        const Bytes& data) {
   const auto target = drive::target_at(profile, object);
   const auto* parameter = target.parameter;
   const auto meaning = drive::fitted(drive::meaning(target, node), data.size());
   const auto type = type_of({node, target, {}, data}, data);
-  const auto text = quoted(value_text(meaning, type, object, data));
-  std::string options;
-  if (!meaning.type_known || !meaning.size_known) options += fmt::format(" --type {}", od::name(type));
-  const bool typed = !options.empty();
-  if (parameter != nullptr && is_locked(*profile, *parameter)) options += " --unlock";
-  if (parameter == nullptr || typed)
-    return fmt::format("write {} {}{}", parameter != nullptr ? parameter->id : to_string(object), text,
-                       options);
-  return fmt::format("param set {}={}{}", parameter->id, text, options);
+  const auto text = value_text(meaning, type, object, data);
+  const bool harmless = type != od::DataType::string && is_harmless(text);
+  const bool typed = !meaning.type_known || !meaning.size_known;
+  const bool locked = parameter != nullptr && is_locked(*profile, *parameter);
+  const auto options =
+      (typed ? fmt::format(" --type {}", od::name(type)) : std::string()) + (locked ? " --unlock" : "");
+  const bool named = parameter != nullptr && is_plain_id(parameter->id);
+  const auto name = named ? parameter->id : to_string(object);
+  const std::string verb = named && !typed ? "param set " : "write ";
+  // A drive's string may be an option to the letter.
+  if (!harmless) return fmt::format("{}{}{} -- {}", verb, name, options, in_quotes(text));
+  return fmt::format("{}{}{}{}{}", verb, name, named && !typed ? '=' : ' ', quoted(text), options);
 }
 
 std::string commented_line(const drive::Profile* profile, std::uint8_t node, ObjectAddress object,
                            const Bytes& data) {
   const auto target = drive::target_at(profile, object);
-  const auto name = target.parameter != nullptr ? target.parameter->name : target.label();
+  const auto name = comment_text(target.parameter != nullptr ? target.parameter->name : target.label());
   const auto line = write_line(profile, node, object, data);
   return name.empty() ? line : fmt::format("{}  # {}", line, name);
 }

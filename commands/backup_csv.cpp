@@ -10,6 +10,9 @@
 namespace servoctl::commands {
 namespace {
 
+/// Why a value that the drive held is not to be put back.
+constexpr std::string_view kOutside = "outside of its limits ";
+
 /// Number and unit of a value; the raw number where no unit says what a scaled one would be.
 struct Cells {
   std::string value;
@@ -19,6 +22,9 @@ struct Cells {
 Cells cells_of(const drive::Meaning& meaning, od::DataType type, const Bytes& bytes) {
   const auto value = od::decode(type, bytes);
   if (!value || od::size_of(type).value_or(8) > 8) return {};
+  // In another encoding, or by what cannot be seen, it would be another text when it is read.
+  if (const auto* string = std::get_if<std::string>(&*value); string != nullptr && !fits_a_line(*string))
+    return {};
   const bool text = std::holds_alternative<std::string>(*value) || std::holds_alternative<Bytes>(*value);
   if (text || (meaning.scale == 1 && meaning.encoding == od::Encoding::plain))
     return {od::to_string(*value), std::string(text ? "" : meaning.unit)};
@@ -29,13 +35,17 @@ Cells cells_of(const drive::Meaning& meaning, od::DataType type, const Bytes& by
 std::string row_text(const drive::Profile& profile, const Backup& backup, const Backup::Entry& entry) {
   const auto target = drive::target_at(&profile, entry.object);
   Cells cells;
-  if (entry.bytes)
-    cells = cells_of(drive::fitted(drive::meaning(target, backup.identity.node), entry.bytes->size()),
-                     entry.type, *entry.bytes);
+  auto left_out = entry.left_out;
+  if (entry.bytes) {
+    const auto meaning = drive::fitted(drive::meaning(target, backup.identity.node), entry.bytes->size());
+    cells = cells_of(meaning, entry.type, *entry.bytes);
+    const auto range = range_missed(profile, backup.identity.node, entry.object, *entry.bytes);
+    if (!range.empty()) left_out = fmt::format("{}{}", kOutside, range);
+  }
   return fmt::format("{},0x{:04X},0x{:02X},{},{},{},{},{},{},{}\n", backup.identity.node, entry.object.index,
                      entry.object.sub, csv_cell(entry.id), csv_cell(entry.name), od::name(entry.type),
                      csv_cell(cells.value), csv_cell(cells.unit),
-                     entry.bytes ? "hex:" + to_hex(*entry.bytes) : std::string(), csv_cell(entry.left_out));
+                     entry.bytes ? "hex:" + to_hex(*entry.bytes) : std::string(), csv_cell(left_out));
 }
 
 /// Reads the rows of a table.
@@ -90,6 +100,10 @@ class Reader {
     const auto target = drive::target_at(profile_, *object);
     if (cell("raw").empty() && cell("value").empty()) {
       entry.left_out = "no value";
+      return {};
+    }
+    if (cell("left_out").starts_with(kOutside)) {
+      entry.left_out = cell("left_out");
       return {};
     }
     if (cell("raw").empty()) return take_value(entry, target);

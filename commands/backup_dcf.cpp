@@ -42,20 +42,29 @@ void set_time(std::string_view iso, od::DcfSettings& out) {
   out.time = fmt::format("{:02}:{}{}", (*hour + 11) % 12 + 1, iso.substr(14, 2), *hour < 12 ? "AM" : "PM");
 }
 
-/// What the text says once it is read again differs from the backup in these entries.
-void tell_missing(const od::Dcf& dcf, const Backup& backup, std::vector<std::string>& notices) {
-  std::map<ObjectAddress, Bytes> said;
-  for (const auto& value : dcf.values)
-    if (auto bytes = od::encode(value.type, value.value.for_node(backup.identity.node)))
-      said.emplace(value.object, std::move(*bytes));
-  for (const auto& entry : backup.entries) {
-    if (!entry.bytes) continue;
-    const auto found = said.find(entry.object);
-    if (found == said.end() || found->second != *entry.bytes)
-      notices.push_back(
-          fmt::format("{} {} cannot stand in a DCF as the drive holds it ({}): use JSON to keep it",
-                      to_string(entry.object), entry.name, to_hex(*entry.bytes)));
-  }
+/// The values of the text, read again.
+std::map<ObjectAddress, Bytes> values_in(const std::string& text, const std::string& file_name,
+                                         std::uint8_t node) {
+  std::map<ObjectAddress, Bytes> out;
+  const auto dcf = od::read_dcf(text, file_name);
+  for (const auto& value : dcf ? dcf->values : std::vector<od::DcfValue>())
+    if (auto bytes = od::encode(value.type, value.value.for_node(node)))
+      out.emplace(value.object, std::move(*bytes));
+  return out;
+}
+
+/// Whether a line of a DCF can carry the value: text with a line break in it would be another line.
+bool fits_a_dcf(const od::Value& value) {
+  const auto* text = std::get_if<std::string>(&value);
+  return text == nullptr || fits_a_line(*text);
+}
+
+std::string missing(const drive::Profile& profile, const Backup& backup, const Backup::Entry& entry) {
+  const auto range = range_missed(profile, backup.identity.node, entry.object, *entry.bytes);
+  return fmt::format("{} {} {} ({}): use JSON to keep it", to_string(entry.object), entry.name,
+                     range.empty() ? std::string("cannot stand in a DCF as the drive holds it")
+                                   : fmt::format("is outside of its limits {} and not in the DCF", range),
+                     to_hex(*entry.bytes));
 }
 
 }  // namespace
@@ -75,17 +84,26 @@ Result<std::string> dcf_text(const drive::Profile& profile, const Backup& backup
   set_time(backup.time, settings);
   for (const auto& entry : backup.entries) {
     const auto* known = profile.dictionary.find(entry.object);
-    if (!entry.bytes || known == nullptr) continue;
+    if (!entry.bytes || known == nullptr ||
+        !range_missed(profile, backup.identity.node, entry.object, *entry.bytes).empty())
+      continue;
     // By the data sheet's type: the drive may have told another length.
-    if (auto value = od::decode(known->type, *entry.bytes))
+    if (auto value = od::decode(known->type, *entry.bytes); value && fits_a_dcf(*value))
       settings.values.emplace(entry.object, std::move(*value));
   }
   auto text = od::write_dcf(*eds, settings);
   if (!text) return text;
-  const auto again = od::read_dcf(*text, file_name);
-  if (!again && !settings.values.empty()) return tl::unexpected<Error>(again.error());
-  tell_missing(again.value_or(od::Dcf{}), backup, notices);
-  return text;
+  const auto said = values_in(*text, file_name, backup.identity.node);
+  bool wrong = false;
+  for (const auto& entry : backup.entries) {
+    if (!entry.bytes) continue;
+    const auto found = said.find(entry.object);
+    if (found != said.end() && found->second == *entry.bytes) continue;
+    wrong = settings.values.erase(entry.object) > 0 || wrong;
+    notices.push_back(missing(profile, backup, entry));
+  }
+  // What would come back as another value does not stand in it.
+  return wrong ? od::write_dcf(*eds, settings) : text;
 }
 
 Result<Backup> read_dcf_backup(std::string_view text, const std::string& file, std::uint8_t node) {

@@ -9,12 +9,16 @@
 #include "base/file.hpp"
 #include "base/text.hpp"
 #include "commands/backup_formats.hpp"
+#include "commands/cob_id_check.hpp"
 #include "commands/reading.hpp"
 #include "od/eds_section.hpp"
 #include "od/text_encoding.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+/// Stands between a COB-ID and why no drive may have it.
+constexpr std::string_view kConflict = ", a COB-ID that is none: ";
 
 constexpr std::string_view kExtensions[] = {".json", ".dcf", ".csv", ".servoctl"};
 
@@ -115,6 +119,7 @@ std::string_view extension_of(BackupFormat format) {
 
 Backup make_backup(const Context& context, const session::Snapshot& snapshot) {
   Backup out;
+  out.proven = true;
   out.family = context.profile->family;
   out.tool = "servoctl " SERVOCTL_VERSION;
   out.time = utc_now_text();
@@ -132,9 +137,23 @@ Backup make_backup(const Context& context, const session::Snapshot& snapshot) {
                                             : od::DataType::bytes;
     stored.bytes = entry.bytes;
     stored.left_out = entry.left_out;
+    // No drive gets it back: a backup that says so is taken all the same.
+    if (entry.bytes)
+      if (const auto free = check_cob_id(context.profile, entry.object, *entry.bytes, snapshot.identity.node);
+          !free) {
+        stored.left_out = fmt::format("0x{:08X}{}{}", load_le(*entry.bytes), kConflict, free.error().message);
+        stored.bytes.reset();
+      }
     out.entries.push_back(std::move(stored));
   }
   return out;
+}
+
+void tell_left_out(Context& context, const Backup& backup) {
+  for (const auto& entry : backup.entries)
+    if (!entry.bytes && entry.left_out.find(kConflict) != std::string::npos)
+      context.notices.push_back(fmt::format("node {}: {} {} is left out: {}", backup.identity.node,
+                                            to_string(entry.object), entry.name, entry.left_out));
 }
 
 std::string backup_text(const Context& context, const Backup& backup) {

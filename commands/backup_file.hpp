@@ -22,6 +22,7 @@ struct Backup {
     std::string left_out;
     std::uint32_t line = 0;  ///< Of the file, or number of the entry where it has no lines; from 1.
   };
+  bool proven = false;  ///< What servoctl read from a drive, whole: by its checksum, or just now.
   std::string family;
   std::string tool;
   std::string time;  ///< UTC, ISO 8601.
@@ -48,11 +49,18 @@ BackupFormat format_of(const std::filesystem::path& file, std::string_view word)
 /// `.json .dcf .csv .servoctl`
 std::string_view extension_of(BackupFormat format);
 
-/// The backup of a snapshot, with names and types of the family.
+/// The backup of a snapshot, with names and types of the family. A COB-ID that no drive may have
+/// (check_cob_id()) is left out, with the reason: what is saved can be put back.
 Backup make_backup(const Context& context, const session::Snapshot& snapshot);
+
+/// Names in `context.notices` what a backup leaves out although it is a setting: a COB-ID that no drive may
+/// have.
+void tell_left_out(Context& context, const Backup& backup);
 
 /// A checksum of everything a restore would use.
 std::string checksum(const Backup& backup);
+/// The checksum of a text, as those of backups are written.
+std::string checksum_of(std::string_view text);
 
 /// The file's text as JSON: one entry a line, with a checksum over node-independent content.
 std::string backup_text(const Context& context, const Backup& backup);

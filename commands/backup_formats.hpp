@@ -19,8 +19,8 @@ Result<std::string> dcf_text(const drive::Profile& profile, const Backup& backup
                              const std::string& file_name, std::vector<std::string>& notices);
 Result<Backup> read_dcf_backup(std::string_view text, const std::string& file, std::uint8_t node);
 
-/// `node,index,sub,parameter,name,type,value,unit,raw,left_out`: `raw` is what the drive holds (`hex:58 02`), and
-/// `value` the number in its unit.
+/// `node,index,sub,parameter,name,type,value,unit,raw,left_out`: `raw` is what the drive holds (`hex:58 02`),
+/// and `value` the number in its unit.
 std::string csv_text(const drive::Profile& profile, const Backup& backup);
 /// Needs `index` and `raw` or `value`. A row whose value and raw differ is refused: one of them was edited.
 Result<Backup> read_csv_backup(std::string_view text, const std::string& file, const drive::Profile& profile,
@@ -33,7 +33,20 @@ std::string batch_text(const drive::Profile& profile, const Backup& backup);
 /// several times is one of a PDO's procedure (the last value counts), or refused.
 Result<Backup> read_batch_backup(const Context& context, std::string_view text, const std::string& file,
                                  const drive::Profile& profile, std::uint8_t node);
-/// One line that writes the value: `param set Pn0214=600`, `write 0x6065:0 1000`.
+/// The family's limits, where the value a drive held is outside of them; empty when it is not.
+std::string range_missed(const drive::Profile& profile, std::uint8_t node, ObjectAddress object,
+                         const Bytes& data);
+
+/// A word as a batch file takes it: in quotes where it has anything but letters, digits and plain signs.
+std::string batch_word(const std::string& word);
+/// Whether a line can carry the text as it is: UTF-8, nothing in it that cannot be seen.
+bool fits_a_line(std::string_view text);
+/// The text as a comment behind a line: in one line, and not going on in the next.
+std::string comment_text(std::string_view text);
+
+/// One line that writes the value: `param set Pn0214=600`, `write 0x6065:0 1000`. Text stands in quotes
+/// behind
+/// `--`, whatever it is: `write 0x2000:0 -- "--from=x"`.
 std::string write_line(const drive::Profile* profile, std::uint8_t node, ObjectAddress object,
                        const Bytes& data);
 

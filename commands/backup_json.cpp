@@ -74,8 +74,9 @@ Result<Backup::Entry> read_entry(const Value& record, std::uint32_t line, std::s
   const auto type = od::parse_data_type(fields.text("type", true));
   if (!type) fields.refuse("type");
   out.type = type.value_or(od::DataType::bytes);
-  if (const auto hex = fields.text("bytes"); !hex.empty()) {
-    out.bytes = parse_hex_bytes(hex);
+  const auto* bytes = report::find(record, "bytes");
+  if (bytes != nullptr && !bytes->is_null()) {
+    out.bytes = parse_hex_bytes(fields.text("bytes"));
     const auto size = od::size_of(out.type);
     if (!out.bytes || (size && out.bytes->size() != *size)) fields.refuse("bytes");
   } else if (out.left_out.empty()) {
@@ -110,6 +111,12 @@ Result<void> read_entries(const Value& document, std::uint32_t line, std::string
 }
 
 }  // namespace
+
+std::string checksum_of(std::string_view text) {
+  Checksum sum;
+  sum.add(text);
+  return sum.text();
+}
 
 std::string checksum(const Backup& backup) {
   Checksum sum;
@@ -165,6 +172,7 @@ Result<Backup> read_json_backup(std::string_view text, const std::string& file) 
     return fail(Errc::file,
                 fmt::format("{}: its checksum does not fit: the file was changed after it was written", file),
                 "take the backup anew");
+  out.proven = true;
   return out;
 }
 

@@ -35,6 +35,7 @@ Result<std::vector<std::uint8_t>> nodes_of(std::string_view text) {
 }
 
 Result<Value> run(Context& context, const Arguments& arguments) {
+  if (const auto alone = check_resume(arguments); !alone) return tl::unexpected<Error>(alone.error());
   const auto from = nodes_of(arguments.text("--from"));
   if (!from) return tl::unexpected<Error>(from.error());
   const auto to = nodes_of(arguments.text("--to"));
@@ -50,8 +51,11 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   const auto snapshot = session::take_snapshots(*context.session, *context.profile, *from, {}).front();
   if (!snapshot) return tl::unexpected<Error>(snapshot.error());
   const auto backup = make_backup(context, *snapshot);
+  tell_left_out(context, backup);
   report::List out;
-  for (const auto node : *to) {
+  bool failed = false;
+  for (std::size_t i = 0; i < to->size() && !failed; ++i) {
+    const auto node = (*to)[i];
     auto done = put_into(context, backup, fmt::format("node {}", from->front()), node,
                          fmt::format("before-clone-node-{}.json", node),
                          {.choice = {.force = arguments.has("--force")},
@@ -59,13 +63,13 @@ Result<Value> run(Context& context, const Arguments& arguments) {
                           .unlock = arguments.has("--unlock"),
                           .resume = arguments.has("--resume")});
     // One that went wrong ends the work: the others stay as they are.
-    if (!done && out.empty()) return done;
+    if (!done && out.empty()) return tl::unexpected<Error>(done.error());
     if (!done) {
       context.errors.push_back(done.error());
       break;
     }
-    out.push_back(std::move(*done));
-    if (!context.errors.empty()) break;
+    out.push_back(std::move(done->answer));
+    failed = done->failed;
   }
   return Value(std::move(out));
 }

@@ -42,6 +42,9 @@ Result<Plan> plan_of(const Arguments& arguments) {
   if (!guard_time) return tl::unexpected<Error>(guard_time.error());
   plan.guard_time = *guard_time;
   if (!arguments.has("--life")) return plan;
+  if (!plan.guard_time)
+    return fail(Errc::usage, "--life is of node guarding: without --guard nothing is guarded",
+                "--guard 100ms --life 3");
   const auto life = parse_digits(arguments.text("--life"), 10);
   if (!life || *life < 1 || *life > 255)
     return fail(Errc::usage, fmt::format("'{}' is no life time factor", arguments.text("--life")),

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "commands/backup_formats.hpp"
 #include "commands/pdo_report.hpp"
 #include "session/pdo_setup.hpp"
 
@@ -44,7 +45,8 @@ Result<void> set_mapping(const drive::Profile& profile, const PdoRecipe& recipe,
 
 Result<void> set_cob_id(const PdoRecipe& recipe, const PresentPdos& present, Pdo& pdo) {
   if (!recipe.cob_id.empty()) {
-    const auto can_id = parse_can_id(recipe.cob_id, present.node);
+    const auto can_id = recipe.valid.value_or(false) ? parse_pdo_can_id(recipe.cob_id, present.node)
+                                                     : parse_can_id(recipe.cob_id, present.node);
     if (!can_id) return tl::unexpected<Error>(can_id.error());
     pdo.set_can_id(*can_id);
   }
@@ -72,7 +74,10 @@ std::string toml_text(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') out += '\\';
-    out += c;
+    if (static_cast<unsigned char>(c) < ' ' || c == 0x7F)
+      out += fmt::format("\\u{:04X}", static_cast<unsigned char>(c));
+    else
+      out += c;
   }
   return out + '"';
 }
@@ -160,7 +165,7 @@ std::string pdo_toml(const drive::PdoFile& file, const std::vector<std::vector<s
     out += "map = [\n";
     const auto& map = *recipe.map;
     for (std::size_t k = 0; k < map.size(); ++k)
-      out += fmt::format("  {}, # {}\n", toml_text(map[k]), names[i][k]);
+      out += fmt::format("  {}, # {}\n", toml_text(map[k]), comment_text(names[i][k]));
     out += "]\n";
   }
   return out;

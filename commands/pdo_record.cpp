@@ -134,7 +134,7 @@ Result<std::optional<RestoreJournal>> PdoRecord::take_up(const fs::path& file) {
                   "put that drive back to its node, or give this one the PDOs by `pdo save` and `pdo apply`");
     mine_ = true;
     file_ = record;
-    return read_journal(journal_of(record));
+    return read_journal(*context_, journal_of(record));
   }
   return std::optional<RestoreJournal>();
 }

@@ -36,6 +36,7 @@ Result<void> keep_part(const Context& context, Backup& backup, const std::string
 Result<Value> run(Context& context, const Arguments& arguments) {
   if (context.nodes.size() != 1 || context.nodes.front() == 0)
     return fail(Errc::usage, "restore takes one node: each drive has a backup of its own", "-n 1");
+  if (const auto alone = check_resume(arguments); !alone) return tl::unexpected<Error>(alone.error());
   const std::string file(arguments.text("file"));
   const auto node = context.nodes.front();
   auto backup = read_backup(context, file, node);
@@ -43,7 +44,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
     if (const auto kept = keep_part(context, *backup, file, arguments.text("--only")); !kept)
       return tl::unexpected<Error>(kept.error());
   if (!backup) return tl::unexpected<Error>(backup.error());
-  return put_into(
+  auto done = put_into(
       context, *backup, file, node, fmt::format("{}.before-node-{}.json", file, node),
       {.choice = {.with_address = arguments.has("--with-address"), .force = arguments.has("--force")},
        .roll_back = !arguments.has("--no-rollback"),
@@ -51,6 +52,8 @@ Result<Value> run(Context& context, const Arguments& arguments) {
        .unlock = arguments.has("--unlock"),
        .resume = arguments.has("--resume")},
       journal_of(file));
+  if (!done) return tl::unexpected<Error>(done.error());
+  return std::move(done->answer);
 }
 
 }  // namespace
@@ -67,7 +70,8 @@ const Command kRestore{
         "stand. Stores with --keep, at the end and only if all is well. Node-ID and bitrate stay unless "
         "--with-address is given; COB-IDs follow the node they go to. While it runs a journal stands beside "
         "that file: after a pulled cable or a crash --resume goes on, and restoring FILE.before-node-N.json "
-        "takes everything back.",
+        "takes everything back. A COB-ID that CiA 301 keeps for another service is refused. A value of a "
+        "backup of ours outside of the limits is named and left as it is (exit code 1), the rest restored.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::stores,

@@ -32,8 +32,11 @@ struct RestoreJournal {
 /// Where the journal of a restore stands whose values from before are in this file.
 std::filesystem::path journal_of(const std::filesystem::path& before);
 
-/// Reads a journal; empty when there is none. Errc::file for one that cannot be understood.
-Result<std::optional<RestoreJournal>> read_journal(const std::filesystem::path& path);
+/// Reads a journal; empty when there is none. It is foreign data as a backup is: Errc::file for one that
+/// cannot be understood, was changed after it was written, or is of no node, and for one that names an object
+/// that the family of the context does not write for the sake of other writes (drive::means_of_writing()), or
+/// a value outside of its limits.
+Result<std::optional<RestoreJournal>> read_journal(const Context& context, const std::filesystem::path& path);
 
 /// Writes a journal; it is on the disk when this returns.
 Result<void> write_journal(const std::filesystem::path& path, const RestoreJournal& journal);

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "commands/change.hpp"
+#include "commands/cob_id_check.hpp"
 #include "commands/comparison.hpp"
 #include "commands/identity.hpp"
 #include "drive/cia402.hpp"
@@ -83,13 +84,20 @@ Result<void> RestoreTarget::choose_values() {
   return {};
 }
 
+/// A text and a domain are as long as what is written.
+bool RestoreTarget::same_length(ObjectAddress object, const Bytes& data) const {
+  const auto target = drive::target_at(context_->profile, object);
+  const bool fixed = target.entry == nullptr || od::size_of(target.entry->type);
+  return !fixed || data.size() == wanted_.at(object).size();
+}
+
 Result<void> RestoreTarget::read_present() {
   std::vector<ObjectAddress> objects;
   for (const auto& value : wanted_) objects.push_back(value.first);
   const auto read = session::read_objects(*context_->session, node_, objects);
   if (!read) return tl::unexpected<Error>(read.error());
   for (const auto& entry : *read) {
-    if (entry.bytes && entry.bytes->size() == wanted_.at(entry.object).size()) {
+    if (entry.bytes && same_length(entry.object, *entry.bytes)) {
       present_.emplace(entry.object, *entry.bytes);
       continue;
     }
@@ -110,23 +118,48 @@ std::uint32_t RestoreTarget::line_of(ObjectAddress object) const {
   return 0;
 }
 
-/// Nothing is written unless everything can be.
-Result<void> RestoreTarget::check_values() const {
-  for (const auto& [object, data] : wanted_) {
-    if (present_.at(object) == data) continue;
-    const auto target = drive::target_at(context_->profile, object);
-    auto meaning = drive::fitted(drive::meaning(target, node_), data.size());
-    const auto value =
-        meaning.type_known ? od::decode(meaning.type, data) : Result<od::Value>(od::Value(std::uint64_t{0}));
-    const bool writable = od::writable(meaning.access);
-    const auto limits = value && meaning.type_known ? drive::check_limits(meaning, *value) : Result<void>{};
-    if (writable && value && limits) continue;
-    return fail(Errc::negative,
-                fmt::format("{}:{}: {}: {}", title_, line_of(object), name_of(target),
-                            !writable ? "is read-only"
-                            : !value  ? value.error().message
-                                      : limits.error().message),
-                "nothing was written");
+tl::unexpected<Error> RestoreTarget::unfit(Errc code, ObjectAddress object, std::string_view what,
+                                           std::string hint) const {
+  const auto name = name_of(drive::target_at(context_->profile, object));
+  auto error =
+      fail(code, fmt::format("{}:{}: {}: {}", title_, line_of(object), name, what), std::move(hint)).value();
+  error.node = node_;
+  error.object = object;
+  return fail(std::move(error));
+}
+
+/// `outside` tells whether the only thing against it is a limit.
+Result<void> RestoreTarget::check_value(ObjectAddress object, const Bytes& data, bool& outside) const {
+  const auto target = drive::target_at(context_->profile, object);
+  const auto meaning = drive::fitted(drive::meaning(target, node_), data.size());
+  const auto value =
+      meaning.type_known ? od::decode(meaning.type, data) : Result<od::Value>(od::Value(std::uint64_t{0}));
+  if (!od::writable(meaning.access))
+    return unfit(Errc::negative, object, "is read-only", "nothing was written");
+  if (!value) return unfit(Errc::negative, object, value.error().message, "nothing was written");
+  if (const auto free = check_cob_id(context_->profile, object, data, node_); !free)
+    return unfit(Errc::refused, object, free.error().message, "nothing was written; " + free.error().hint);
+  const auto limits = meaning.type_known ? drive::check_limits(meaning, *value) : Result<void>{};
+  outside = !limits;
+  return limits ? limits : unfit(Errc::negative, object, limits.error().message, "nothing was written");
+}
+
+/// Nothing is written unless everything can be. What the drive holds already is none of it. A backup of ours
+/// says what a drive held, within its limits or not: that is named and stays as it is, and keeps nobody from
+/// the rest.
+Result<void> RestoreTarget::check_values() {
+  for (auto next = wanted_.begin(); next != wanted_.end();) {
+    const auto [object, data] = *next++;
+    bool outside = false;
+    const auto fits = present_.at(object) == data ? Result<void>() : check_value(object, data, outside);
+    if (fits) continue;
+    if (!outside || !backup_->proven) return fits;
+    auto error = fits.error();
+    error.message += "; node " + fmt::format("{} keeps {}", node_, to_hex(present_.at(object)));
+    error.hint = "what the drive itself came with is not known to be taken back: `write` it when it matters";
+    left_.push_back(std::move(error));
+    wanted_.erase(object);
+    present_.erase(object);
   }
   return {};
 }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "commands/backup_file.hpp"
 #include "commands/command.hpp"
@@ -26,13 +27,17 @@ class RestoreTarget {
       : context_(&context), backup_(&backup), title_(std::move(title)), node_(node), choice_(choice) {}
 
   /// Checks family, identity and standstill, reads what the drive holds, and checks every value against its
-  /// data. Errc::refused for another or an energised drive, and for what is no setting of this one;
-  /// Errc::negative, with line and entry, for a value that this drive cannot take.
+  /// data. Errc::refused for another or an energised drive, for what is no setting of this one, and for a
+  /// COB-ID that no drive may have; Errc::negative, with line and entry, for a value that this drive cannot
+  /// take.
   Result<void> prepare();
 
   const session::Identity& identity() const { return identity_; }
   const session::Values& wanted() const { return wanted_; }
   const session::Values& present() const { return present_; }
+  /// Values of a backup of ours that are outside of the family's limits, and why: the drive held them, but
+  /// none is sent. They are not among wanted().
+  const std::vector<Error>& left() const { return left_; }
 
  private:
   Result<void> check_identity();
@@ -40,8 +45,11 @@ class RestoreTarget {
   Result<void> leave_out(const Backup::Entry& entry, std::string_view reason);
   Result<void> choose_values();
   Result<void> read_present();
+  bool same_length(ObjectAddress object, const Bytes& data) const;
   std::uint32_t line_of(ObjectAddress object) const;
-  Result<void> check_values() const;
+  Result<void> check_values();
+  Result<void> check_value(ObjectAddress object, const Bytes& data, bool& outside) const;
+  tl::unexpected<Error> unfit(Errc code, ObjectAddress object, std::string_view what, std::string hint) const;
 
   Context* context_;
   const Backup* backup_;
@@ -51,6 +59,7 @@ class RestoreTarget {
   session::Identity identity_;
   session::Values wanted_;
   session::Values present_;
+  std::vector<Error> left_;
 };
 
 }  // namespace servoctl::commands

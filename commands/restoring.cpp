@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "base/file.hpp"
+#include "base/file_lock.hpp"
 #include "commands/change.hpp"
 #include "commands/comparison.hpp"
 #include "commands/restore_journal.hpp"
@@ -28,14 +28,44 @@ class Restoring {
         undoes_(undoes),
         options_(options) {}
 
-  Result<Value> run() {
+  Result<Restored> run() {
+    const auto locked = lock();
+    if (!locked) return tl::unexpected<Error>(locked.error());
+    const auto errors = context_->errors.size();
+    auto answer = carry_through();
+    if (!answer) return tl::unexpected<Error>(answer.error());
+    const bool failed = context_->errors.size() > errors;
+    context_->errors.insert(context_->errors.end(), left_over_.begin(), left_over_.end());
+    return Restored{std::move(*answer), failed};
+  }
+
+ private:
+  /// Two restores of one file and node would take each other's notes for their own.
+  Result<std::vector<FileLock>> lock() const {
+    std::vector<FileLock> out;
+    if (context_->dry_run) return out;
+    for (const auto& file : {journal(), undoes_}) {
+      if (file.empty() || (!out.empty() && file == journal())) continue;
+      auto taken = FileLock::take(file.string() + ".lock");
+      if (!taken) return tl::unexpected<Error>(taken.error());
+      if (!*taken)
+        return fail(Errc::refused,
+                    fmt::format("another servoctl is restoring {} into node {}", title_, node_),
+                    "wait for its end, or look with `ps` who it is");
+      out.push_back(std::move(**taken));
+    }
+    return out;
+  }
+
+  Result<Value> carry_through() {
     if (const auto known = take_up_journals(); !known) return tl::unexpected<Error>(known.error());
     RestoreTarget target(*context_, *backup_, title_, node_, options_.choice);
     if (const auto fits = target.prepare(); !fits) return tl::unexpected<Error>(fits.error());
     auto comparison = compare(context_->profile, {fmt::format("node {}", node_), node_, target.present()},
                               {title_, node_, target.wanted()}, true, context_->chinese);
+    left_over_ = target.left();
     const bool idle = comparison.different == 0 && !options_.keep && left_.means.empty();
-    if (idle) return take_away_journals(result(std::move(comparison.record), "nothing differs", {}));
+    if (idle) return take_away_journals(result(std::move(comparison.record), said("nothing differs"), {}));
     if (context_->dry_run) return planned(target);
     if (const auto answer = context_->confirm(question(comparison.different)); !answer)
       return tl::unexpected<Error>(answer.error());
@@ -45,13 +75,12 @@ class Restoring {
     return carry_out(target, std::move(comparison.record));
   }
 
- private:
   fs::path journal() const { return journal_of(before_); }
 
   /// A restore that was cut off is gone on with or undone, never begun anew: what the drive held before is in
   /// its file, and must not be replaced by what it holds now.
   Result<void> take_up_journals() {
-    const auto found = read_journal(journal());
+    const auto found = read_journal(*context_, journal());
     if (!found) return tl::unexpected<Error>(found.error());
     if (*found && !options_.resume)
       return fail(Errc::refused,
@@ -64,7 +93,7 @@ class Restoring {
                   "leave --resume away");
     if (options_.resume) return resume(**found);
     if (undoes_.empty()) return {};
-    const auto undone = read_journal(undoes_);
+    const auto undone = read_journal(*context_, undoes_);
     if (!undone) return tl::unexpected<Error>(undone.error());
     if (!*undone || (*undone)->node != node_) return {};
     left_ = **undone;
@@ -133,7 +162,7 @@ class Restoring {
                          {.roll_back = options_.roll_back, .keep = options_.keep, .unlock = options_.unlock});
     for (const auto& notice : outcome.notices) context_->notices.push_back(notice);
     context_->notices.push_back(fmt::format("what node {} held before is in {}", node_, before_.string()));
-    if (!outcome.failure) return take_away_journals(result(std::move(record), "restored", outcome));
+    if (!outcome.failure) return take_away_journals(result(std::move(record), said("restored"), outcome));
     context_->errors.push_back(*outcome.failure);
     add_astray(outcome);
     auto out = result(std::move(record), failed_state(outcome), outcome);
@@ -155,6 +184,10 @@ class Restoring {
           to_string(object));
       context_->errors.push_back(std::move(error));
     }
+  }
+
+  std::string said(std::string state) const {
+    return left_over_.empty() ? state : fmt::format("{}; {} left as it is", state, left_over_.size());
   }
 
   static std::string_view failed_state(const session::RestoreOutcome& outcome) {
@@ -182,13 +215,23 @@ class Restoring {
   fs::path before_;
   fs::path undoes_;
   RestoringOptions options_;
-  RestoreJournal left_;  ///< Of what was cut off and is gone on with, or undone.
+  std::vector<Error> left_over_;  ///< Values outside of the limits.
+  RestoreJournal left_;           ///< Of what was cut off and is gone on with, or undone.
 };
 
 }  // namespace
 
-Result<Value> put_into(Context& context, const Backup& backup, const std::string& title, std::uint8_t node,
-                       const fs::path& before, const RestoringOptions& options, const fs::path& undoes) {
+Result<void> check_resume(const Arguments& arguments) {
+  if (!arguments.has("--resume")) return {};
+  for (const auto* option : {"--keep", "--unlock", "--force", "--with-address"})
+    if (arguments.has(option))
+      return fail(Errc::usage, fmt::format("--resume goes on as it was begun: {} has no say", option),
+                  fmt::format("leave {} away", option));
+  return {};
+}
+
+Result<Restored> put_into(Context& context, const Backup& backup, const std::string& title, std::uint8_t node,
+                          const fs::path& before, const RestoringOptions& options, const fs::path& undoes) {
   return Restoring(context, backup, title, node, before, options, undoes).run();
 }
 

@@ -13,6 +13,9 @@ namespace servoctl::commands {
 inline constexpr Parameter kResumeOption{
     .name = "--resume", .help = "go on with what was cut off, as it was begun", .kind = Kind::flag};
 
+/// What is gone on with goes on as it was begun: an option that would say otherwise is refused, not dropped.
+Result<void> check_resume(const Arguments& arguments);
+
 /// How a backup goes into a drive.
 struct RestoringOptions {
   RestoreChoice choice;
@@ -22,13 +25,19 @@ struct RestoringOptions {
   bool resume = false;  ///< Go on with the one that its journal tells of; its options hold then.
 };
 
+/// What came of it.
+struct Restored {
+  report::Value answer;
+  bool failed = false;  ///< Beyond values that are outside of the limits and left as they are.
+};
+
 /// Puts a backup into one node: checks identity, state and every value, shows what differs, asks, saves what
 /// the node holds (`before`) and a journal beside it, and carries the restore out. `title` names the backup
 /// in messages. Where a journal stands already Errc::refused, unless it is to be gone on with. `undoes` is
 /// the journal of the restore that this one takes back, where there is one; it goes away when all is done.
 /// The answer says what differed and how it ended; failures go to `context.errors`.
-Result<report::Value> put_into(Context& context, const Backup& backup, const std::string& title,
-                               std::uint8_t node, const std::filesystem::path& before,
-                               const RestoringOptions& options, const std::filesystem::path& undoes = {});
+Result<Restored> put_into(Context& context, const Backup& backup, const std::string& title, std::uint8_t node,
+                          const std::filesystem::path& before, const RestoringOptions& options,
+                          const std::filesystem::path& undoes = {});
 
 }  // namespace servoctl::commands

@@ -110,6 +110,10 @@ class AllTests {
 };
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
+  for (const auto* option : {"--repeat", "--spread"})
+    if (arguments.has("--no-home") && arguments.has(option))
+      return fail(Errc::usage, fmt::format("{} is of the homing test, which --no-home leaves out", option),
+                  "leave one of them away");
   return AllTests(context, arguments).run();
 }
 

@@ -93,8 +93,11 @@ Result<Words> transfer(const GatewayLine& line) {
   const auto object = address(line);
   if (!object) return tl::unexpected<Error>(object.error());
   Words out{reads ? "read" : "write", *object};
-  if (!reads) out.push_back(words[4]);
+  const bool option =
+      !reads && words[4].starts_with('-') && !parse_real(words[4]) && !parse_integer(words[4]);
+  if (!reads && !option) out.push_back(words[4]);
   if (words.size() > 3) out.insert(out.end(), {"--type", type_of(words[3])});
+  if (option) out.insert(out.end(), {"--", words[4]});
   return out;
 }
 

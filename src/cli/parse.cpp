@@ -194,8 +194,9 @@ Result<ParsedLine> parse_line(const std::vector<std::string>& words) {
 }
 
 bool asks_for_help(const std::vector<std::string>& words) {
-  return std::any_of(words.begin(), words.end(),
-                     [](const std::string& w) { return w == "--help" || w == "-h"; });
+  // Behind `--` stand values, whatever they look like.
+  const auto end = std::find(words.begin(), words.end(), "--");
+  return std::any_of(words.begin(), end, [](const std::string& w) { return w == "--help" || w == "-h"; });
 }
 
 }  // namespace servoctl::cli

@@ -27,7 +27,7 @@ using commands::Needs;
 using report::Value;
 
 bool wants_json(const std::vector<std::string>& words) {
-  for (std::size_t i = 0; i < words.size(); ++i) {
+  for (std::size_t i = 0; i < words.size() && words[i] != "--"; ++i) {
     if (words[i] == "--json" || words[i] == "--output=json" || words[i] == "--output=jsonl" ||
         words[i] == "-ojson")
       return true;

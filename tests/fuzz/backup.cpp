@@ -40,7 +40,10 @@ commands::Context& context() {
 std::map<ObjectAddress, Bytes> values(const Backup& backup) {
   std::map<ObjectAddress, Bytes> out;
   for (const auto& entry : backup.entries)
-    if (entry.bytes) out.emplace(entry.object, *entry.bytes);
+    // What is outside of the limits stands in a table for readers only.
+    if (entry.bytes &&
+        commands::range_missed(profile(), backup.identity.node, entry.object, *entry.bytes).empty())
+      out.emplace(entry.object, *entry.bytes);
   return out;
 }
 
