@@ -106,7 +106,7 @@ constexpr Parameter kGlobal[] = {
      .choices = kLanguages},
     {.name = "--yes", .help = "answer yes to what would be asked", .kind = Kind::flag, .short_name = "-y"},
     {.name = "--force-family",
-     .help = "go on although the drive's identity contradicts -d; --yes never says so",
+     .help = "go on although the identity of the drive contradicts -d; --yes never says so",
      .kind = Kind::flag},
     {.name = "--read-only", .help = "refuse everything that changes a drive", .kind = Kind::flag},
     {.name = "--dry-run", .help = "show the frames, send nothing that changes a drive", .kind = Kind::flag},

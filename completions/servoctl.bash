@@ -1,7 +1,7 @@
 # Completion of servoctl for bash; written by `servoctl completion bash`.
 _servoctl_scan() {
   local word skip=''
-  command='' drive=${SERVOCTL_DRIVE-} source='' options='--bus --node --drive --timeout --retries --json --output --lang --yes --read-only --dry-run --trace --help'
+  command='' drive=${SERVOCTL_DRIVE-} source='' options='--bus --node --drive --timeout --retries --json --output --lang --yes --force-family --read-only --dry-run --trace --help'
   for word in "$@"; do
     if [ -n "$skip" ]; then
       case $skip in -d|--drive) drive=$word ;; esac
