@@ -43,7 +43,7 @@ class Candidates {
       : last_(std::move(last)), shell_(&shell), family_(std::move(family)) {}
 
   void add(std::string_view word) {
-    if (starts_with_nocase(word, last_) && commands::can_be_offered(word) &&
+    if (starts_with_nocase(word, last_) &&
         std::find(out_.words.begin(), out_.words.end(), word) == out_.words.end())
       out_.words.emplace_back(word);
   }
@@ -65,7 +65,7 @@ class Candidates {
   }
 
   void add_families() {
-    for (const auto& family : drive::find_families(shell_->drive_folders())) add(family.name);
+    for (const auto& family : drive::find_families(shell_->drive_folders())) add_name(family.name);
   }
   void add_buses() {
     for (const auto& interface : can::can_interfaces()) add(interface);
@@ -75,6 +75,10 @@ class Candidates {
   Completions take() { return std::move(out_); }
 
  private:
+  /// One that comes from a file.
+  void add_name(std::string_view name) {
+    if (commands::can_be_offered(name)) add(name);
+  }
   const drive::Profile* profile() {
     if (family_.empty()) return nullptr;
     const auto loaded = shell_->profile(family_);
@@ -82,11 +86,11 @@ class Candidates {
   }
   void add_objects() {
     if (const auto* known = profile())
-      for (const auto& name : drive::names(*known)) add(name);
+      for (const auto& name : drive::names(*known)) add_name(name);
   }
   void add_parameters() {
     if (const auto* known = profile())
-      for (const auto& parameter : known->parameters) add(parameter.id);
+      for (const auto& parameter : known->parameters) add_name(parameter.id);
   }
 
   std::string last_;

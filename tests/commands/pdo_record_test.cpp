@@ -218,19 +218,25 @@ TEST(PdoRecord, StaysWhenTheDriveFallsSilentAndGoesWhenItRefuses) {
   }
 }
 
-/// A world in which a change was cut off in the middle.
-void cut_off(World& world) {
+/// How many frames the change takes; before another world, as all have one folder.
+int frames_of_map() {
   World measure(kDm);
-  ASSERT_TRUE(measure.map());
+  EXPECT_TRUE(measure.map());
+  return measure.frames;
+}
+
+/// Cuts a change off in the middle.
+void cut_off(World& world, int frames) {
   Trouble trouble;
-  trouble.kill_at = measure.frames - 4;
+  trouble.kill_at = frames - 4;
   ASSERT_FALSE(world.map(trouble));
   ASSERT_TRUE(world.has_record());
 }
 
 TEST(PdoRecord, IsFoundWhateverWayTheInterfaceIsWritten) {
+  const int frames = frames_of_map();
   World world(kDm);
-  cut_off(world);
+  cut_off(world, frames);
   world.url = "socketcan:can0";
   ASSERT_TRUE(world.run("pdo show", {}));
   EXPECT_NE(world.notices.find("did not come to its end"), std::string::npos);
@@ -243,8 +249,9 @@ TEST(PdoRecord, IsFoundWhateverWayTheInterfaceIsWritten) {
 }
 
 TEST(PdoRecord, OfAnotherDriveAtTheNodeIsNotPutBack) {
+  const int frames = frames_of_map();
   World world(kDm);
-  cut_off(world);
+  cut_off(world, frames);
   world.become_another();
   const auto of_the_other = world.read();
   ASSERT_TRUE(world.run("pdo show", {}));
@@ -256,10 +263,11 @@ TEST(PdoRecord, OfAnotherDriveAtTheNodeIsNotPutBack) {
 }
 
 TEST(PdoRecord, OfAnotherDriveDoesNotKeepThisOneFromHavingItsOwn) {
+  const int frames = frames_of_map();
   World world(kDm);
-  cut_off(world);
+  cut_off(world, frames);
   world.become_another();
-  cut_off(world);
+  cut_off(world, frames);
   EXPECT_EQ(world.records(), 2);
 }
 
