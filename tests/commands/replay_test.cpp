@@ -44,8 +44,9 @@ class ReplayEveryFamily : public Replay, public testing::WithParamInterface<cons
 
 TEST_P(ReplayEveryFamily, CtrlCStopsAndDisablesTheDrive) {
   build(std::string(GetParam()) + "@1", GetParam());
-  std::vector<bool> protection;
-  session->options().protect = [&](bool on) { protection.push_back(on); };
+  std::vector<bool> told;
+  session::Protection protection([&](session::Care worst) { told.push_back(worst != session::Care::none); });
+  session->options().protection = &protection;
   const auto begin = sim_bus.now();
   bool was_enabled = false;
   session->options().cancelled = [&] {
@@ -58,9 +59,9 @@ TEST_P(ReplayEveryFamily, CtrlCStopsAndDisablesTheDrive) {
   EXPECT_TRUE(was_enabled);
   EXPECT_FALSE(drive::is_energised(drive().power_state()));
   EXPECT_TRUE(is_noticed("stopped and disabled")) << "the user is told";
-  ASSERT_FALSE(protection.empty());
-  EXPECT_TRUE(protection.front()) << "a second Ctrl-C does not end the process";
-  EXPECT_FALSE(protection.back());
+  ASSERT_FALSE(told.empty());
+  EXPECT_TRUE(told.front()) << "a second Ctrl-C does not end the process";
+  EXPECT_FALSE(told.back());
 }
 
 TEST_P(ReplayEveryFamily, SaysThatADriveIsLeftEnergised) {

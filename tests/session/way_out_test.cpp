@@ -61,7 +61,7 @@ TEST_P(WayOutOfFamily, WhatWasLeftEnergisedIsTakenDownTogetherAndTheDeadOneIsTol
   const auto done = de_energise(*all.session);
   ASSERT_EQ(done.size(), 8U);
   for (const auto& [node, outcome] : done) EXPECT_EQ(outcome.has_value(), node != 2) << int{node};
-  EXPECT_EQ(all.session->energised(), std::set<std::uint8_t>{2});
+  EXPECT_EQ(all.session->energised().nodes(), std::set<std::uint8_t>{2});
 }
 
 /// A drive that has lost its power by itself starts again with what 6040h holds.
