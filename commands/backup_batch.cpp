@@ -3,7 +3,9 @@
 #include <cctype>
 #include <set>
 
+#include "base/printable.hpp"
 #include "base/text.hpp"
+#include "base/utf8.hpp"
 #include "commands/backup_formats.hpp"
 #include "commands/comparison.hpp"
 #include "commands/reading.hpp"

@@ -15,6 +15,8 @@
 #include "commands/backup_formats.hpp"
 #include "commands/comparison.hpp"
 #include "commands/restoring.hpp"
+#include "drive/naming.hpp"
+#include "drive/quantity.hpp"
 #include "recording_console.hpp"
 #include "sim/sim_bus.hpp"
 #include "sim/sim_drive.hpp"
