@@ -41,7 +41,10 @@ extern const Command kFaultList;
 const Command kFaultList{
     .path = "fault list",
     .summary = "List the faults and warnings of a drive family",
-    .details = "Works without a bus. The code is the one of object 603Fh and of emergency messages.",
+    .details =
+        "Works without a bus. The code is the one of object 603Fh and of emergency messages. `?` marks what "
+        "the "
+        "manual does not state, `!` what it states in more than one way; --json names the lines.",
     .parameters = kParameters,
     .needs = Needs::dictionary,
     .effect = Effect::none,

@@ -35,7 +35,7 @@ report::Table fault_table(std::span<const drive::Fault* const> faults, bool chin
                    {"check_text", "check", Show::text},
                    {"check", "", Show::json},
                    {"check_zh", "", Show::json},
-                   {"mark", "", Show::text},
+                   {"mark", "?!", Show::text},
                    {"assumed", "", Show::json},
                    {"assumed_fields", "", Show::json},
                    {"contradicted", "", Show::json},
@@ -46,7 +46,7 @@ report::Table fault_table(std::span<const drive::Fault* const> faults, bool chin
                           report::text_or_null(f->panel), drive::name(f->kind), name_of(*f, chinese), f->name,
                           report::text_or_null(f->name_zh), f->resettable ? Value(*f->resettable) : Value(),
                           check, report::text_or_null(f->check), report::text_or_null(f->check_zh),
-                          f->doubts.word(), !f->doubts.assumed.empty(), marks_record(f->doubts.assumed),
+                          f->doubts.sign(), !f->doubts.assumed.empty(), marks_record(f->doubts.assumed),
                           !f->doubts.contradicted.empty(), marks_record(f->doubts.contradicted)});
   }
   return table;

@@ -20,7 +20,7 @@ inline constexpr std::array kMotionOptions{
     Parameter{
         .name = "--limit", .help = "greatest speed; raises the safe one knowingly", .kind = Kind::value},
     Parameter{.name = "--max-torque",
-              .help = "stop above this torque; raises the ceiling of `torque`",
+              .help = "stop above this torque; the ceiling of `torque`",
               .kind = Kind::value},
     Parameter{
         .name = "--max-following-error", .help = "stop above this following error", .kind = Kind::value},

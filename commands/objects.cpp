@@ -97,7 +97,7 @@ report::List row(const Context& context, const od::Object& object, const od::Ent
           parameter != nullptr ? Value(parameter->id) : Value(),
           report::text_or_null(std::string(encoding)),
           report::text_or_null(note_zh),
-          doubts.word(),
+          doubts.sign(),
           !doubts.assumed.empty(),
           marks_record(doubts.assumed),
           !doubts.contradicted.empty(),
@@ -131,7 +131,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
                    {"parameter", "", Show::json},
                    {"encoding", "", Show::json},
                    {"note_zh", "", Show::json},
-                   {"mark", "", Show::text},
+                   {"mark", "?!", Show::text},
                    {"assumed", "", Show::json},
                    {"assumed_fields", "", Show::json},
                    {"contradicted", "", Show::json},
@@ -158,7 +158,9 @@ const Command kObjects{
     .summary = "List the object dictionary of a drive family",
     .details =
         "Works without a bus. The pattern is part of a name in English or Chinese, an index, or a form with "
-        "`*`. Of a DCF, value and denotation are what it gives each entry (ParameterValue, Denotation).",
+        "`*`. Of a DCF, value and denotation are what it gives each entry (ParameterValue, Denotation). "
+        "`?` marks what the manual does not state, `!` what it states in more than one way; --json names the "
+        "lines.",
     .parameters = kParameters,
     .needs = Needs::dictionary,
     .effect = Effect::none,

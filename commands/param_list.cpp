@@ -37,7 +37,9 @@ const Command kParamList{
     .details =
         "Works without a bus. Range and default are the numbers the panel shows; one step of them is what "
         "the unit column "
-        "says.",
+        "says. `?` marks what the manual does not state, `!` what it states in more than one way; `param "
+        "explain` "
+        "tells which, with its lines.",
     .parameters = kParameters,
     .needs = Needs::dictionary,
     .effect = Effect::none,

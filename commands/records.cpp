@@ -173,9 +173,9 @@ Record parameter_record(const od::Parameter& p, bool chinese) {
 
 Table parameter_table(std::span<const od::Parameter* const> parameters, bool chinese) {
   Table table;
-  table.columns = {{"id", "", Show::text},      {"name", "", Show::text}, {"range", "", Show::text},
-                   {"default", "", Show::text}, {"unit", "", Show::text}, {"access", "", Show::text},
-                   {"effect", "", Show::text},  {"mark", "", Show::text}};
+  table.columns = {{"id", "", Show::text},      {"name", "", Show::text},  {"range", "", Show::text},
+                   {"default", "", Show::text}, {"unit", "", Show::text},  {"access", "", Show::text},
+                   {"effect", "", Show::text},  {"mark", "?!", Show::text}};
   bool first = true;
   for (const auto* p : parameters) {
     List row{p->id,
@@ -185,7 +185,7 @@ Table parameter_table(std::span<const od::Parameter* const> parameters, bool chi
              unit_text(p->unit, p->scale),
              od::name(p->access),
              od::name(p->effect),
-             p->doubts.word()};
+             p->doubts.sign()};
     for (auto& field : parameter_record(*p, chinese)) {
       if (field.show == Show::text) continue;
       if (first) table.columns.push_back({field.key, "", Show::json});

@@ -17,6 +17,7 @@ const Mark* find(const std::vector<Mark>& marks, std::string_view field) {
 
 std::optional<Mark> parse_mark(std::string_view text) {
   const auto words = split(text, ' ');
+  if (words.empty()) return std::nullopt;
   Mark out;
   out.field = std::string(words.front());
   if (out.field.empty() || parse_digits(out.field, 10)) return std::nullopt;
@@ -55,9 +56,9 @@ bool Doubts::about(std::string_view field) const {
   return find(assumed, field) != nullptr || find(contradicted, field) != nullptr;
 }
 
-std::string_view Doubts::word() const {
-  if (assumed.empty()) return contradicted.empty() ? "" : "contradicted";
-  return contradicted.empty() ? "assumed" : "assumed, contradicted";
+std::string_view Doubts::sign() const {
+  if (assumed.empty()) return contradicted.empty() ? "" : "!";
+  return contradicted.empty() ? "?" : "?!";
 }
 
 }  // namespace servoctl::od

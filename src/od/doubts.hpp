@@ -30,8 +30,8 @@ struct Doubts {
   std::vector<Mark> contradicted;  ///< The manual states another value as well: one of them was taken.
 
   bool about(std::string_view field) const;
-  /// `assumed`, `contradicted`, both or nothing: the column of lists.
-  std::string_view word() const;
+  /// `?` assumed, `!` contradicted, `?!` both, or nothing: the column of lists, which have no room for words.
+  std::string_view sign() const;
 };
 
 }  // namespace servoctl::od

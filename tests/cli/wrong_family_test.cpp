@@ -178,7 +178,9 @@ TEST_F(WrongFamily, WritesNothingByAnyCommand) {
         const auto* command = commands::find_command(path);
         if (command->family == commands::FamilyCheck::never && path != "info") continue;
         const int code = run(line);
-        if (kAnswers.count(path) == 0 && command->effect < commands::Effect::writes) {
+        const bool only_reads =
+            !command->reads_without.empty() && line.find(command->reads_without) == std::string::npos;
+        if (kAnswers.count(path) == 0 && (only_reads || command->effect < commands::Effect::writes)) {
           EXPECT_NE(code, 8) << said;
           continue;
         }
@@ -242,10 +244,8 @@ TEST_F(WrongFamily, AsksAPlainReadForNothing) {
 }
 
 TEST_F(WrongFamily, CostsFourReadsOnce) {
-  EXPECT_EQ(run("write 0x6060 1", "da200", "", ""), 0) << said;
-  const int before = sent;
   EXPECT_EQ(run("write 0x6060 1", "da200", "da200", ""), 0) << said;
-  EXPECT_EQ(sent, before + 4);
+  EXPECT_EQ(sent, 4 + 1) << "1000h, 1018h:01 and 02, 1008h, and the write";
 }
 
 class WrongFamilyPrompt : public testing::Test {

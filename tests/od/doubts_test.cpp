@@ -24,8 +24,8 @@ TEST(Doubts, AreAboutAFieldWhetherAssumedOrContradicted) {
   EXPECT_TRUE(doubts.about("min"));
   EXPECT_TRUE(doubts.about("max"));
   EXPECT_FALSE(doubts.about("m"));
-  EXPECT_EQ(doubts.word(), "assumed, contradicted");
-  EXPECT_EQ(Doubts{}.word(), "");
+  EXPECT_EQ(doubts.sign(), "?!");
+  EXPECT_EQ(Doubts{}.sign(), "");
 }
 
 }  // namespace

@@ -67,8 +67,8 @@ TEST(EdsBounds, LimitTheEntriesThatCompactSubObjMakes) {
   const auto file = read_in_time(text);
   ASSERT_TRUE(file);
   EXPECT_LE(file->dictionary.entry_count(), 101'000U);
-  ASSERT_FALSE(file->diagnostics.empty());
-  EXPECT_EQ(file->diagnostics.front().rule, "too-many-entries");
+  EXPECT_TRUE(std::any_of(file->diagnostics.begin(), file->diagnostics.end(),
+                          [](const auto& d) { return d.rule == "too-many-entries"; }));
 }
 
 TEST(EdsBounds, CountWhatTheyLeaveOut) {

@@ -39,8 +39,6 @@ TEST(EdsCompact, MakesTheCountAndEveryEntry) {
 TEST(EdsCompact, IsNoneWithoutANumberAboveZero) {
   EXPECT_EQ(findings(read(compact("0") + kGood)), Rules{"1:1 missing-sub-number"});
   EXPECT_EQ(findings(read(compact("") + kGood)), Rules{"1:1 missing-sub-number"});
-  EXPECT_EQ(findings(read(compact("255") + kGood)), Rules{"7:15 bad-number"});
-  EXPECT_EQ(read(compact("255") + kGood).dictionary.object(0x2000), nullptr);
   EXPECT_EQ(default_of(read(compact("1")), {0x2000, 1}), "9");
 }
 

@@ -113,9 +113,10 @@ TEST(EdsList, IsComparedWithTheSectionsThereAre) {
   EXPECT_EQ(with("SupportedObjects=\n1=0x2FFF\n2=\n"), Rules{});
   EXPECT_EQ(with("SupportedObjects=0\n1=0x2FFF\n"), Rules{"2:18 wrong-object-count"});
   EXPECT_EQ(with("SupportedObjects=65536\n1=0x2FFF\n"), Rules{"2:18 bad-number"});
-  EXPECT_EQ(with("SupportedObjects=2\n1=0x2FFF\n2=0xFFFF\n"), Rules{"4:3 listed-but-absent"});
+  EXPECT_EQ(with("SupportedObjects=2\n1=0x2FFF\n2=0xFFFF\n"),
+            (Rules{"4:3 listed-but-absent", "4:3 wrong-list"}));
   EXPECT_EQ(with("SupportedObjects=2\n1=0x2FFF\n2=0x10000\n"), Rules{"4:3 bad-number"});
-  EXPECT_EQ(with("SupportedObjects=2\n1=0x2FFF\n2=12287\n"), Rules{});
+  EXPECT_EQ(with("SupportedObjects=2\n1=0x2FFF\n2=12287\n"), Rules{"4:3 listed-twice"});
   EXPECT_EQ(with("SupportedObjects=1\n1=12287\n"), Rules{});
   EXPECT_EQ(with("SupportedObjects=0\n"), Rules{"3:1 not-listed"});
   EXPECT_EQ(with("SupportedObjects=2\n1=0x2FFF\n2=12FFF\n"), Rules{"4:3 bad-number"});

@@ -48,11 +48,11 @@ TEST(Cautions, AboutForcedLimitInputsSayWhichOneIsForced) {
 
 TEST(Inputs, AreReadByThePolarityOfTheFamily) {
   MotionBench bench("gsd600", 131072);
-  EXPECT_TRUE(look(bench).has("60FDh is 0x001F0004: no limit, no home switch", PreflightItem::Weight::good));
+  EXPECT_TRUE(look(bench).has("60FDh is 0x003F0004: no limit, no home switch", PreflightItem::Weight::good));
   bench.drive().track().home.stuck = true;
-  EXPECT_TRUE(look(bench).has("60FDh is 0x001F0000: home switch", PreflightItem::Weight::good));
+  EXPECT_TRUE(look(bench).has("60FDh is 0x003F0000: home switch", PreflightItem::Weight::good));
   bench.drive().track().positive_limit.stuck = true;
-  EXPECT_TRUE(look(bench).has("60FDh is 0x001F0002: positive limit, home switch"));
+  EXPECT_TRUE(look(bench).has("60FDh is 0x003F0002: positive limit, home switch"));
   MotionBench other("sv2");
   EXPECT_TRUE(look(other).has("the manual does not say which level", PreflightItem::Weight::good));
 }

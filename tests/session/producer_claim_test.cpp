@@ -46,15 +46,17 @@ class TwoMasters {
     MotionOptions options;
     options.turn = 131072;
     if (on_sample) options.on_sample = [this, i](const MotionSample& sample) { on_sample(i, sample); };
-    Motion motion(*sessions[i], *wire.cell.profiles.front(), static_cast<std::uint8_t>(i + 1), options);
-    auto& report = reports[i];
-    report.outcome = motion.prepare();
-    if (report.outcome) {
-      const auto plan = plan_jog(motion, kind);
-      if (plan)
-        report = run_jog(motion, kind, *plan);
-      else
-        report.outcome = tl::unexpected<Error>(plan.error());
+    {
+      Motion motion(*sessions[i], *wire.cell.profiles.front(), static_cast<std::uint8_t>(i + 1), options);
+      auto& report = reports[i];
+      report.outcome = motion.prepare();
+      if (report.outcome) {
+        const auto plan = plan_jog(motion, kind);
+        if (plan)
+          report = run_jog(motion, kind, *plan);
+        else
+          report.outcome = tl::unexpected<Error>(plan.error());
+      }
     }
     sessions[i].reset();  // It leaves the bus, so that the other goes on.
   }

@@ -68,7 +68,7 @@ TEST_F(SessionTest, ScansAllNodesInOneTimeout) {
   EXPECT_EQ((*found)[2].node, 127);
   EXPECT_EQ((*found)[1].device_type, 0x0002'0192U);
   EXPECT_EQ((*found)[1].software_version, "1.00");
-  EXPECT_LT(session->now() - before, 510ms);
+  EXPECT_LT(session->now() - before, 530ms) << "and 20 ms for a second node of the same number";
 }
 
 TEST_F(SessionTest, TellsAScanOfALostBusFromAnEmptyOne) {

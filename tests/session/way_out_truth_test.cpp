@@ -102,8 +102,8 @@ TEST_P(WayOutInTrouble, SwitchedOnIsNotWithoutPower) {
   EXPECT_EQ(done.end.verified, bench.drive().power_state() != DriveState::switched_on);
   Several one(family(), 1);
   one.drive(1).misbehaviour().stays_switched_on = true;
-  EXPECT_EQ(Power(*one.session, *one.bus->cell.profiles.front(), 1).disable().has_value(),
-            is_without_power(one.drive(1).power_state()));
+  const auto disabled = Power(*one.session, *one.bus->cell.profiles.front(), 1).disable();
+  EXPECT_EQ(disabled.has_value(), is_without_power(one.drive(1).power_state()));
 }
 
 TEST_P(WayOutInTrouble, AnObjectThatOnlySeemsToBePutBackIsTold) {
