@@ -217,6 +217,7 @@ const Command kNmtWatch{
     .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::writes,
+    .family = FamilyCheck::never,
     .reads_without = "--guard",
     .run = run,
 };

@@ -88,7 +88,7 @@ Result<void> settle_duplicates(Session& session, std::span<const std::uint8_t> n
         requests.push_back({node, object, {}});
   if (requests.empty()) return {};
   (void)session.transfer(requests);
-  return listen_for(session, patience);
+  return listen_for(session, kThoroughly);
 }
 
 Result<void> refuse_duplicate(Session& session, std::uint8_t node) {

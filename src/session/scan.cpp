@@ -72,9 +72,11 @@ Result<std::vector<Identity>> scan(Session& session, std::span<const std::uint8_
     identity.nmt = session.watch().state(identity.node);
     session.identities().keep(identity, session.watch().boots(identity.node));
   }
+  // Where one did not answer, a second node had the whole timeout already.
+  const auto least = found->size() < nodes.size() ? kBriefly : kThoroughly;
   std::vector<std::uint8_t> there;
   for (const auto& identity : *found) there.push_back(identity.node);
-  if (const auto settled = settle_duplicates(session, there, kThoroughly); !settled)
+  if (const auto settled = settle_duplicates(session, there, least); !settled)
     return tl::unexpected<Error>(settled.error());
   return found;
 }

@@ -244,8 +244,11 @@ TEST_F(WrongFamily, AsksAPlainReadForNothing) {
 }
 
 TEST_F(WrongFamily, CostsFourReadsOnce) {
-  EXPECT_EQ(run("write 0x6060 1", "da200", "da200", ""), 0) << said;
-  EXPECT_EQ(sent, 4 + 1) << "1000h, 1018h:01 and 02, 1008h, and the write";
+  open("da200", "da200");
+  EXPECT_EQ(run("write 0x6060 1", ""), 0) << said;
+  EXPECT_EQ(run("write 0x6060 3", ""), 0) << said;
+  close();
+  EXPECT_EQ(sent, 4 + 2);
 }
 
 class WrongFamilyPrompt : public testing::Test {
