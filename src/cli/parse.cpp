@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <deque>
 
 #include "base/text.hpp"
 #include "commands/help.hpp"
@@ -56,7 +55,11 @@ class Parser {
       if (!commands::has_own(command, parameter)) bind(parameter);
   }
 
+  /// Behind the first `--` stand values of arguments, whatever they look like: CLI11 does not see them.
   Result<commands::Arguments> parse(std::vector<std::string> words) {
+    const auto mark = std::find(words.begin(), words.end(), "--");
+    const std::vector<std::string> values(mark == words.end() ? mark : mark + 1, words.end());
+    words.erase(mark, words.end());
     std::reverse(words.begin(), words.end());  // CLI11 takes them from the back.
     try {
       app_.parse(std::move(words));
@@ -66,6 +69,9 @@ class Parser {
       return fail(Errc::usage, fmt::format("{}: {}", command_->path, e.what()), help_hint());
     }
     if (const auto rest = app_.remaining(); !rest.empty()) return superfluous(rest.front());
+    take_results();
+    for (const auto& value : values)
+      if (!take_argument(value)) return one_too_many(value);
     return collect();
   }
 
@@ -73,39 +79,59 @@ class Parser {
   struct Bound {
     const Parameter* parameter;
     CLI::Option* option;
-    std::vector<std::string>* values;
+    std::vector<std::string> values;
   };
 
   void bind(const Parameter& parameter) {
     const auto names = parameter.short_name.empty()
                            ? std::string(parameter.name)
                            : fmt::format("{},{}", parameter.short_name, parameter.name);
-    auto& values = values_.emplace_back();
     CLI::Option* option = nullptr;
     if (parameter.kind == Kind::flag)
       option = app_.add_flag(names);
     else
       option =
-          app_.add_option(names, values)
+          app_.add_option(names)
               ->expected(1, parameter.many ? CLI::detail::expected_max_vector_size : 1)
               ->multi_option_policy(parameter.many || parameter.repeats ? CLI::MultiOptionPolicy::TakeAll
                                                                         : CLI::MultiOptionPolicy::TakeLast)
               ->allow_extra_args(parameter.many);
-    bound_.push_back({&parameter, option, &values});
+    bound_.push_back({&parameter, option, {}});
+  }
+
+  /// The words as they were given: what CLI11 makes of them reads `{}` as nothing.
+  void take_results() {
+    for (auto& entry : bound_) {
+      if (entry.parameter->kind == Kind::flag || entry.option->count() == 0) continue;
+      const auto& all = entry.option->results();
+      const bool every = entry.parameter->many || entry.parameter->repeats;
+      entry.values.assign(every ? all.begin() : all.end() - 1, all.end());
+    }
+  }
+
+  /// Gives the word to the first argument that still takes one.
+  bool take_argument(const std::string& word) {
+    for (auto& entry : bound_) {
+      if (entry.parameter->name.starts_with("-")) continue;
+      if (!entry.values.empty() && !entry.parameter->many) continue;
+      entry.values.push_back(word);
+      return true;
+    }
+    return false;
   }
 
   Result<commands::Arguments> collect() const {
     commands::Arguments out;
     for (const auto& entry : bound_) {
       const auto& parameter = *entry.parameter;
-      if (entry.option->count() == 0) {
+      if (entry.values.empty() && entry.option->count() == 0) {
         if (parameter.required)
           return fail(Errc::usage, fmt::format("{}: {} is missing", command_->path, parameter.name),
                       fmt::format("{}: {}; {}", parameter.name, parameter.help, help_hint()));
         continue;
       }
       if (parameter.kind == Kind::flag) out.add(parameter.name, "true");
-      for (const auto& value : *entry.values) {
+      for (const auto& value : entry.values) {
         if (parameter.kind == Kind::choice &&
             std::find(parameter.choices.begin(), parameter.choices.end(), value) == parameter.choices.end())
           return bad_choice(parameter, value);
@@ -121,10 +147,12 @@ class Parser {
                 "write " + one_of(choices));
   }
 
+  tl::unexpected<Error> one_too_many(const std::string& word) const {
+    return fail(Errc::usage, fmt::format("{}: '{}' is one word too many", command_->path, word), help_hint());
+  }
+
   tl::unexpected<Error> superfluous(const std::string& word) const {
-    if (word.size() < 2 || word.front() != '-')
-      return fail(Errc::usage, fmt::format("{}: '{}' is one word too many", command_->path, word),
-                  help_hint());
+    if (word.size() < 2 || word.front() != '-') return one_too_many(word);
     std::vector<std::string> known;
     for (const auto& entry : bound_)
       if (entry.parameter->name.starts_with("-")) known.emplace_back(entry.parameter->name);
@@ -137,7 +165,6 @@ class Parser {
 
   const Command* command_;
   CLI::App app_;
-  std::deque<std::vector<std::string>> values_;
   std::vector<Bound> bound_;
 };
 
@@ -177,7 +204,7 @@ Result<ParsedLine> parse_line(const std::vector<std::string>& words) {
   const auto match = match_command(words);
   if (match.first == words.size()) {
     for (const auto& word : words)
-      if (global_option(word) == nullptr && word.front() == '-') {
+      if (global_option(word) == nullptr && word.starts_with('-')) {
         std::vector<std::string> known;
         for (const auto& option : commands::global_options()) known.emplace_back(option.name);
         return fail(Errc::usage, fmt::format("there is no option '{}'", word), did_you_mean(word, known));

@@ -49,6 +49,26 @@ TEST(ParseLine, LeavesValuesAsTheyAreWritten) {
   EXPECT_EQ(line->arguments.text("value"), "-010");
 }
 
+TEST(ParseLine, TakesEveryWordBehindTwoDashesAsAValue) {
+  for (const auto* text :
+       {"", "-", "--", "-h", "--help", "--from=/etc/passwd", "--yes", "-n", "{}", "[a,b]", "%%", "a b"}) {
+    const auto line = parse_line({"write", "0x2000", "--type", "string", "--", text});
+    ASSERT_TRUE(line) << text << ": " << line.error().message;
+    EXPECT_EQ(line->arguments.text("object"), "0x2000");
+    EXPECT_EQ(line->arguments.text("--type"), "string");
+    ASSERT_TRUE(line->arguments.has("value")) << text;
+    EXPECT_EQ(line->arguments.text("value"), text);
+    EXPECT_FALSE(line->arguments.has("--yes"));
+    EXPECT_FALSE(line->arguments.has("--from"));
+  }
+  const auto many = parse_line({"read", "a", "--", "[b,c]", "--", "--yes"});
+  ASSERT_TRUE(many) << many.error().message;
+  const auto all = many->arguments.all("object");
+  EXPECT_EQ(Words(all.begin(), all.end()), (Words{"a", "[b,c]", "--", "--yes"}));
+  EXPECT_EQ(parse_line({"write", "a", "b", "--", "c"}).error().message, "write: 'c' is one word too many");
+  EXPECT_EQ(parse_line({"write", "a", "{}"})->arguments.text("value"), "{}");
+}
+
 TEST(ParseLine, GivesManyWordsToTheParameterThatTakesThem) {
   const auto line = parse_line({"read", "a", "b", "--type", "u8", "c"});
   ASSERT_TRUE(line) << line.error().message;
