@@ -114,7 +114,9 @@ class Planner {
     if (!items) return tl::unexpected<Error>(items.error());
     for (const auto& item : *items) {
       if (full_) break;
-      if (const auto room = count(); !room) return room;
+      // A round is its lines; one without any still takes its time.
+      if (statement.body.empty())
+        if (const auto room = count(); !room) return room;
       std::size_t size = item.word.size();
       for (const auto& [column, cell] : item.cells) size += column.size() + cell.size() + 1;
       if (const auto room = count_text(size); !room) return room;
