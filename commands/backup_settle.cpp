@@ -8,7 +8,12 @@
 namespace servoctl::commands {
 namespace {
 
-bool is_pdo(ObjectAddress object) { return object.index >= 0x1400 && object.index <= 0x1BFF; }
+/// What is written twice in a procedure: the records of PDOs, and what assigns fixed ones (invalid or count 0
+/// first, the entries, then what is to be).
+bool is_pdo(ObjectAddress object) {
+  return (object.index >= 0x1400 && object.index <= 0x1BFF) ||
+         (object.index >= 0x1C10 && object.index <= 0x1C2F);
+}
 
 tl::unexpected<Error> refuse(const std::string& file, const Backup::Entry& entry, std::string_view what,
                              std::string hint) {
