@@ -72,8 +72,9 @@ TEST_F(ForeignInput, PutsNoCobIdOfAnotherServiceIntoADrive) {
 TEST_F(ForeignInput, TakesTheRuleForSyncTimeEmcyAndStoredCopiesAsWell) {
   refused("write 0x1005 0x601", "0x1005", "that of SDO");
   refused("write 0x1014 0x000", "0x1014", "that of NMT");
-  refused("param set Pn0118 0", "0x2000:6D", "a reserved service");
-  refused("param set Pn0118 0x600", "0x2000:6D", "that of SDO");
+  refused("param set Pn0118 0", "0x2000:77", "out of range: 512");
+  refused("param set Pn0121 0", "0x2000:7A", "a reserved service");
+  refused("param set Pn0118 0x600", "0x2000:77", "that of SDO");
   EXPECT_EQ(run("param set Pn0118 0x80000600"), 0) << "not valid, so it is no CAN-ID of anybody";
   use("sim:dm@1", "dm");
   refused("write 0x1012 0x80000701", "0x1012", "error control");
@@ -195,7 +196,11 @@ TEST_F(ForeignInput, AFileIsKeptWhenItIsAskedFor) {
   EXPECT_NE(console.out_text.find("\"raw\":450"), std::string::npos) << console.out_text;
   use("sim:sv2@1", "sv2");
   spill("sv2.bin", std::string("\x3C\x00", 2));
-  EXPECT_EQ(run("write 2001h:1 --from %sv2.bin --keep --unlock"), 0) << console.err_text;
+  EXPECT_EQ(run("write 2001h:1 --from %sv2.bin --keep"), 0) << console.err_text;
+  // Its password is on the panel only: that is said, and nothing written.
+  spill("other.bin", std::string("\x3D\x00", 2));
+  EXPECT_EQ(run("write 2001h:1 --from %other.bin --keep --unlock"), 2);
+  EXPECT_NE(console.err_text.find("no password that the bus can give"), std::string::npos);
   ASSERT_EQ(run("nmt reset --yes --wait"), 0);
   EXPECT_EQ(run("read 2001h:1 --json"), 0);
   EXPECT_NE(console.out_text.find("\"raw\":60"), std::string::npos)

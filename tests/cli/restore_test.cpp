@@ -86,6 +86,9 @@ TEST_F(RestoreTest, IsNotPutIntoAnEnergisedDriveNorAnotherKind) {
   EXPECT_EQ(run("restore %drive.json --yes"), 8);
   use("sim:dm@1", "gsd600");
   EXPECT_EQ(run("restore %drive.json --yes"), 8);
+  EXPECT_NE(console.err_text.find("node 1 is no gsd600"), std::string::npos) << console.err_text;
+  // Whoever says that the family is right after all is told by the identity in the backup.
+  EXPECT_EQ(run("restore %drive.json --yes --force-family"), 8);
   EXPECT_NE(console.err_text.find("another drive"), std::string::npos) << console.err_text;
 }
 
