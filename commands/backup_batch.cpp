@@ -149,6 +149,7 @@ class Lines {
       return data;
     auto out = data;
     for (auto& byte : out) byte = static_cast<std::uint8_t>(~byte);
+    if (out.empty()) out.push_back(0);  // Any text but the empty one.
     return out;
   }
 

@@ -81,7 +81,11 @@ class World {
   }
   Result<commands::Restored> restore(const Backup& backup) {
     context.errors.clear();
-    return commands::put_into(context, backup, "drive", 1, folder_ / "before.json", {.unlock = true});
+    // A password that the bus cannot give is told, and nothing written.
+    const auto& store = profile_->rules.store;
+    const auto* password = profile_->parameter(store.unlock);
+    const bool unlock = password != nullptr && password->object && store.unlock_open;
+    return commands::put_into(context, backup, "drive", 1, folder_ / "before.json", {.unlock = unlock});
   }
   /// What a drive that is set holds and one that a backup is put into holds differ in these.
   std::map<ObjectAddress, Bytes> values(const Backup& of) {
