@@ -50,7 +50,7 @@ TEST_F(BatchTest, ShowsLinesAsThePromptDoesAndTheSummaryOnStderr) {
   EXPECT_EQ(run("for NODE in 1-2\nparam set Pn0214 45Hz -n ${NODE}\nexpect .value == 45\nend"), 0);
   EXPECT_TRUE(shown("   1  0x2001:F  Pn0214 Speed loop gain 1  450 = 45 Hz"));
   EXPECT_TRUE(shown("   2  0x2001:F  Pn0214 Speed loop gain 1  450 = 45 Hz"));
-  EXPECT_EQ(console.err_text, "standard input: 4 of 4 lines done\n");
+  EXPECT_TRUE(console.err_text.ends_with("standard input: 4 of 4 lines done\n")) << console.err_text;
 }
 
 TEST_F(BatchTest, ThatStopsInTheMiddleLeavesNoDriveEnergised) {
@@ -113,7 +113,7 @@ TEST_F(BatchTest, TellsAllErrorsBeforeTheFirstLineIsRun) {
   for (const auto* text :
        {":2: Pn0202 Position loop gain 1: 30000 is out of range", ":3: 'fly' is no command",
         ":4: 'read' needs a node", ":5: ", ":6: ", ":7: write: there is no option '--colour'",
-        ":8: Statusword is read-only", ":9: 'wait' takes a time", ":10: '200' is no node-ID",
+        ":8: Statusword is read-only", ":9: wait: 'x' is no time", ":10: '200' is no node-ID",
         ":11: 'run' cannot be a line of a batch file", ":12: "})
     EXPECT_TRUE(told("standard input" + std::string(text))) << text << "\n" << console.err_text;
   EXPECT_FALSE(told(":1:"));

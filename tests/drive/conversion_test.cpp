@@ -49,9 +49,14 @@ TEST(Conversions, CoverAllFamilies) { EXPECT_GT(measured_targets().size(), 500U)
 RC_GTEST_PROP(Conversions, OfTheOwnUnitComeBackExactly, ()) {
   const auto m = meaning(*rc::gen::elementOf(measured_targets()), 1);
   const auto value = any_value(m);
-  if (m.encoding != od::Encoding::plain) RC_PRE(std::isfinite(od::decode_number(m.encoding, value)));
+  // Nearer to 0 a float has not the digits that a value is shown with.
+  if (m.encoding != od::Encoding::plain) {
+    const auto number = od::decode_number(m.encoding, value);
+    RC_PRE(number == 0 || std::isnormal(static_cast<float>(number)));
+  }
   const auto text = fmt::format("{:.17g}{}", scaled(m, value), m.unit);
   const auto back = parse_quantity(m, text);
+  RC_LOG() << text << (back ? "" : ": " + back.error().message);
   RC_ASSERT(back.has_value());
   RC_ASSERT(scaled(m, *back) == scaled(m, value));
   if (m.encoding == od::Encoding::plain) RC_ASSERT(od::compare_numbers(*back, value) == 0);

@@ -253,12 +253,12 @@ EdsFile mapped(const std::string& first, const std::string& second = "0") {
 TEST(EdsMapping, FitsTheObjectsOfTheFile) {
   for (const auto* good : {"0x20000010", "0x20010001", "0x20010008", "0x20020040", "0x00050008", "0"})
     EXPECT_EQ(findings(mapped(good)), Rules{}) << good;
-  EXPECT_EQ(findings(mapped("0x20000008")), Rules{"20:1 mapping-length"});
+  EXPECT_EQ(findings(mapped("0x20000008")), Rules{"19:1 mapping-length"});
   EXPECT_EQ(mapped("0x20000008").diagnostics.front().message,
             "DefaultValue: 0x1A00:1 maps 8 bits of 0x2000:0, which is u16 (16 bits)");
-  EXPECT_EQ(findings(mapped("0x00050010")), Rules{"20:1 mapping-length"});
-  EXPECT_EQ(findings(mapped("0x30000010")), Rules{"20:1 mapping-absent"});
-  EXPECT_EQ(findings(mapped("0x20000110")), Rules{"20:1 mapping-absent"});
+  EXPECT_EQ(findings(mapped("0x00050010")), Rules{"19:1 mapping-length"});
+  EXPECT_EQ(findings(mapped("0x30000010")), Rules{"19:1 mapping-absent"});
+  EXPECT_EQ(findings(mapped("0x20000110")), Rules{"19:1 mapping-absent"});
   EXPECT_EQ(findings(mapped("0x20020040", "0x20000010")), Rules{"14:1 mapping-too-long"});
 }
 
@@ -266,7 +266,7 @@ TEST(EdsMapping, OfADcfIsCheckedAsConfigured) {
   const auto file =
       read("[1600]\nParameterName=M\nObjectType=9\nSubNumber=2\n" + variable("1600sub0", "5", "") +
            variable("1600sub1", "7", "ParameterValue=0x30000010"));
-  EXPECT_EQ(findings(file), Rules{"9:1 mapping-absent"});
+  EXPECT_EQ(findings(file), Rules{"10:1 mapping-absent"});
   EXPECT_EQ(file.diagnostics.front().message.substr(0, 15), "ParameterValue:");
 }
 

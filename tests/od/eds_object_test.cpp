@@ -107,8 +107,10 @@ TEST(EdsDuplicate, OfAnySectionIsToldWithTheLineOfTheFirst) {
                                   variable("2000", "7", ""),      variable("2FFFsub1", "5", "")};
   for (const auto& section : sections) {
     const auto lines = static_cast<std::size_t>(std::count(section.begin(), section.end(), '\n'));
-    const auto file = read(section + section + variable("2FFF", "7", "SubNumber=1\nObjectType=9"));
-    EXPECT_EQ(findings(file), Rules{fmt::format("{}:1 duplicate-section", lines + 1)}) << section;
+    auto file = read(section + section + variable("2FFF", "7", "SubNumber=1\nObjectType=9") +
+                     variable("3000", "7", ""));
+    std::erase_if(file.diagnostics, [](const auto& d) { return d.rule == "wrong-sub-number"; });
+    ASSERT_EQ(findings(file), Rules{fmt::format("{}:1 duplicate-section", lines + 1)}) << section;
     const auto name = section.substr(0, section.find(']') + 1);
     EXPECT_EQ(file.diagnostics.front().message,
               name + " stands here again, first in line 1; the first one counts");

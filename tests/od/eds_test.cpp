@@ -1,15 +1,11 @@
 #include "od/eds.hpp"
 
+#include "eds_support.hpp"
+
 #include <gtest/gtest.h>
 
 namespace servoctl::od {
 namespace {
-
-EdsFile read(std::string_view text) {
-  auto file = read_eds(text, "x.eds");
-  EXPECT_TRUE(file) << (file ? "" : file.error().message);
-  return file.value_or(EdsFile{});
-}
 
 /// `[1000]` as it should be, so that a file has one usable object; 7 lines.
 constexpr std::string_view kGood =
