@@ -12,6 +12,7 @@
 #include "base/printable.hpp"
 #include "cli/batch_command.hpp"
 #include "cli/console.hpp"
+#include "cli/input_lines.hpp"
 #include "cli/line_runner.hpp"
 #include "cli/parse.hpp"
 #include "cli/prompt.hpp"
@@ -35,11 +36,12 @@ void open_standard_descriptors() {
 
 /// Lines from a pipe or file: stops at the first that fails, whose exit code is the answer.
 int run_pipe(Shell& shell) {
+  // A buffer of its own tells what it holds; that of stdio, which it would share, does not.
+  std::ios::sync_with_stdio(false);
   LineRunner runner(shell);
   std::string line;
   int code = 0;
-  while (code == 0 && !runner.wants_exit() && !interrupted() && std::getline(std::cin, line))
-    code = runner.run(line);
+  while (code == 0 && !runner.wants_exit() && next_line(shell, line)) code = runner.run(line);
   if (code == 0 && interrupted()) code = exit_code(Errc::interrupted);
   if (code != 0) shell.let_go();
   return code;

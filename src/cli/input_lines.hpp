@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "cli/shell.hpp"
+
+namespace servoctl::cli {
+
+/// The next line of standard input, which is no terminal. While none is there the bus is served: what it
+/// produces goes on, and nobody who sends waits for us. False at the end of the input, and after a signal.
+bool next_line(Shell& shell, std::string& line);
+
+}  // namespace servoctl::cli
