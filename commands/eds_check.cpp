@@ -37,7 +37,8 @@ std::string standard_input() {
 Result<std::string> text_of(const Context& context, const std::string& path) {
   if (path != kStandardInput) return read_file(path, od::kMostEdsBytes);
   if (context.stays_open)
-    return fail(Errc::usage, "standard input is where the command lines come from", "name a file");
+    return fail(Errc::usage, "standard input holds the command lines, and nothing for this one",
+                "name a file");
   return standard_input();
 }
 
@@ -120,7 +121,8 @@ const Command kEdsCheck{
         "there "
         "are errors; warnings alone are fine. A file that cannot be read stands in the list with its error; "
         "of "
-        "several files the worst makes the exit code. `-` reads standard input.",
+        "several files the worst makes the exit code. `-` reads standard input to its end: in a pipe of "
+        "command lines, what follows the line.",
     .parameters = kParameters,
     .needs = Needs::nothing,
     .effect = Effect::none,
