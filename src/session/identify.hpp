@@ -21,7 +21,7 @@ std::vector<Result<Identity>> identify(Session& session, std::span<const std::ui
 /// How long a second node of the same number is waited for, at least: answers of two drives of one kind are
 /// close together; where somebody looks who is there, others have their time as well.
 inline constexpr Duration kBriefly = std::chrono::milliseconds(2);
-inline constexpr Duration kBeforeWrites = std::chrono::milliseconds(5);
+inline constexpr Duration kBeforeWrites = std::chrono::milliseconds(20);
 inline constexpr Duration kThoroughly = std::chrono::milliseconds(20);
 
 /// Takes in what a second node of the same number may still answer to what was asked: for twice the time that

@@ -29,7 +29,7 @@ def sims(bus, *specs):
     return out
 
 
-for number, (first, second) in enumerate([("gsd600@1", "gsd600@1"), ("gsd600@1", "dm@1"), ("dm@1", "dm@1?delay=10ms"),
+for number, (first, second) in enumerate([("gsd600@1", "gsd600@1"), ("gsd600@1", "dm@1"), ("dm@1", "dm@1?delay=5ms"),
                                           ("da200@1", "da200@1"), ("sv2@1", "ts@1")]):
     bus = f"local:two-nodes-{os.getpid()}-{number}"
     family = first.split("@")[0]
