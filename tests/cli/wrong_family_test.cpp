@@ -200,7 +200,9 @@ TEST_F(WrongFamily, RefusesNoWayOut) {
     if (command->family != commands::FamilyCheck::never || path == "info") continue;
     SCOPED_TRACE(line);
     EXPECT_NE(run(line, "da200", "gsd600"), 8) << said;
-    if (kWaysOut.count(path) > 0) EXPECT_FALSE(written.empty()) << said;
+    if (kWaysOut.count(path) > 0) {
+      EXPECT_FALSE(written.empty()) << said;
+    }
   }
 }
 

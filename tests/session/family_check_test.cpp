@@ -53,9 +53,12 @@ TEST(FamilyCheck, HoldsEveryFamilyAgainstEveryDrive) {
                               : named == drive       ? Kind::proven
                                                      : Kind::contradicted)
           << "-d " << named << " on " << drive << ": " << verdict.why;
-      if (verdict.kind != Kind::proven) EXPECT_NE(verdict.why, "");
-      if (verdict.kind == Kind::contradicted && drive != "ts" && drive != "cia402")
+      if (verdict.kind != Kind::proven) {
+        EXPECT_NE(verdict.why, "");
+      }
+      if (verdict.kind == Kind::contradicted && drive != "ts" && drive != "cia402") {
         EXPECT_EQ(verdict.fitting, std::vector<std::string>{drive});
+      }
     }
   }
 }
