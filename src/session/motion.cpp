@@ -127,6 +127,7 @@ Result<void> Motion::begin(std::int8_t mode, const std::vector<MotionSetting>& s
   if (const auto ready = look_again(); !ready) return ready;
   if (const auto own = claim_producer(*session_, node_, options_.producer, watchdog_); !own) return own;
   monitor_->find_tpdos();
+  guard_.reset();  // The next one hears through what this one put back.
   guard_ = std::make_unique<MotionGuard>(*session_, *units_, node_);
   guard_->set_standstill(standstill_);
   if (const auto done = guard_->spare_flash(); !done) return done;
