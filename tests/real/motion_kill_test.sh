@@ -23,7 +23,7 @@ state() { "$servoctl" status --json | jq -r '.result[0] | "\(.energised) \(.stat
 sim=$!
 wait_for || { cat "$work/sim"; echo "FAILED: the simulated drive does not answer"; exit 1; }
 
-commands=("jog 60rpm --for 2s" "jog -120rpm --turns 3" "move 2rev --relative --speed 120rpm" "home 1 --speed 60rpm")
+commands=("jog 60rpm --for 2s" "jog -120rpm --turns 3" "move 2rev --relative --speed 120rpm" "home 1 --speed 60rpm --search 6rpm")
 signals=(INT TERM HUP QUIT TSTP USR1 KILL INTINT)
 objects=(0x6060 0x60FF 0x1016:1)
 watched=true
