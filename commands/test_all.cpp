@@ -48,6 +48,10 @@ class AllTests {
     // A motor is not moved by way of a bus that has just failed.
     bool may_move = passed(results_.back());
     const bool heard = may_move;
+    // Asked here and not before the command: a drive that does not answer has failed its first test.
+    if (heard && context_->hold_family)
+      if (const auto fits = context_->hold_family(context_->nodes, context_->profile, true); !fits)
+        return tl::unexpected<Error>(fits.error());
     // Nothing is begun that a limit would end half way.
     if (may_move)
       if (const auto possible = check(*jog, *home); !possible) {
@@ -133,6 +137,7 @@ const Command kTestAll{
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,
+    .family = FamilyCheck::never,
     .run = run,
 };
 

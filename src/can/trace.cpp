@@ -56,6 +56,10 @@ std::optional<Duration> parse_time(std::string_view text) {
   return microseconds(static_cast<std::int64_t>(*seconds * 1'000'000 + fraction / 1000));
 }
 
+std::string left_out_words(std::size_t frames, std::string_view file) {
+  return fmt::format("{} frames are missing in the trace {}: nobody read it in time", frames, file);
+}
+
 }  // namespace
 
 std::string to_string(const LogFrame& line) {
@@ -83,7 +87,13 @@ TraceBus::TraceBus(std::unique_ptr<Bus> inner, Descriptor file, std::string file
       clock_offset_(clock_offset),
       failed_(std::move(failed)) {}
 
-TraceBus::~TraceBus() { flush_to_slow_reader(); }
+TraceBus::~TraceBus() {
+  flush_to_slow_reader();
+  missing_ += left_out_ + static_cast<std::size_t>(std::count(buffer_.begin(), buffer_.end(), '\n'));
+  if (file_ && missing_ > 0 && failed_)
+    failed_(fail(Errc::file, left_out_words(missing_, file_name_), "let what reads it read on to its end")
+                .value());
+}
 
 Result<void> TraceBus::send(const Frame& frame) {
   auto result = inner_->send(frame);
@@ -153,7 +163,7 @@ void TraceBus::give_up(int error) {
                 .value());
 }
 
-/// What is left then is lost, because nobody read it.
+/// What is left in the buffer then is lost.
 void TraceBus::flush_to_slow_reader() {
   flush();
   for (auto before = buffer_.size() + 1; stalled_ && buffer_.size() < before;) {
@@ -165,9 +175,10 @@ void TraceBus::flush_to_slow_reader() {
 
 std::vector<std::string> TraceBus::take_notices() {
   auto out = inner_->take_notices();
-  if (const auto count = std::exchange(left_out_, 0); count > 0)
-    out.push_back(
-        fmt::format("{} frames are missing in the trace {}: nobody read it in time", count, file_name_));
+  if (const auto count = std::exchange(left_out_, 0); count > 0) {
+    missing_ += count;
+    out.push_back(left_out_words(count, file_name_));
+  }
   return out;
 }
 

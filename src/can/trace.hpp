@@ -28,9 +28,10 @@ using TraceFailed = std::function<void(const Error& error)>;
 /// A bus that passes everything on to `inner` and writes every frame, sent and received, to `file` in the
 /// form of `candump -L`, which canplayer and log2asc read: `(1736412345.123456) can0 601#4041600000000000`.
 /// An existing file is replaced. A frame reaches the file at most 100 ms late while the bus is in use, as
-/// next_event() asks for; flush_trace() and the end of the bus bring what is left. A pipe or terminal that nobody
-/// reads is not waited for: a megabyte is kept for it, frames beyond that are left out and counted in
-/// take_notices(). Errc::file when the file cannot be made, or is a named pipe that nobody has opened for reading.
+/// next_event() asks for; flush_trace() and the end of the bus bring what is left. A pipe or terminal that
+/// nobody reads is not waited for: a megabyte is kept for it, frames beyond that are left out and counted in
+/// take_notices(), and half a second is given to it at the end; `failed` is told the count of all that is
+/// missing. Errc::file when the file cannot be made, or is a named pipe that nobody has opened for reading.
 /// When it cannot be written later on, `failed` is told, once, and the bus goes on without a trace.
 Result<std::unique_ptr<Bus>> trace_to(std::unique_ptr<Bus> inner, const std::filesystem::path& file,
                                       std::string_view interface_name, TraceClock clock = TraceClock::wall,
@@ -83,9 +84,10 @@ class TraceBus final : public Bus {
   std::string interface_name_;
   Duration clock_offset_;  ///< From the bus's clock to the times in the file.
   std::string buffer_;
-  TimePoint oldest_{};    ///< When the first line in the buffer was put there.
-  bool stalled_ = false;  ///< The reader had no room when it was asked last.
-  std::size_t left_out_ = 0;
+  TimePoint oldest_{};        ///< When the first line in the buffer was put there.
+  bool stalled_ = false;      ///< The reader had no room when it was asked last.
+  std::size_t left_out_ = 0;  ///< Frames since they were last told.
+  std::size_t missing_ = 0;   ///< Frames that were told to be left out.
   TraceFailed failed_;
 };
 

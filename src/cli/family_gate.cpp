@@ -29,7 +29,10 @@ Result<void> FamilyGate::hold(std::span<const std::uint8_t> nodes, const drive::
   if (profile != nullptr && weight == Weight::reads) tell_known(nodes, *profile);
   if (profile != nullptr && weight != Weight::reads)
     if (const auto fits = ask_all(nodes, *profile, weight); !fits) return fits;
-  return weight == Weight::changes ? refuse_duplicates(nodes) : Result<void>{};
+  if (weight != Weight::changes) return {};
+  if (profile == nullptr && !options_.dry_run)
+    if (const auto there = ask_who(nodes); !there) return there;
+  return refuse_duplicates(nodes);
 }
 
 Result<void> FamilyGate::refuse_duplicates(std::span<const std::uint8_t> nodes) {
@@ -37,6 +40,14 @@ Result<void> FamilyGate::refuse_duplicates(std::span<const std::uint8_t> nodes) 
   for (const auto node : nodes)
     if (const auto single = session::refuse_duplicate(*session_, node); !single) return single;
   return {};
+}
+
+/// No family is held against them, but two nodes of one number answer.
+Result<void> FamilyGate::ask_who(std::span<const std::uint8_t> nodes) {
+  const auto identities = session::identify(*session_, nodes, {});
+  for (const auto& identity : identities)
+    if (identity) return {};
+  return tl::unexpected<Error>(identities.front().error());
 }
 
 Result<void> FamilyGate::ask_all(std::span<const std::uint8_t> nodes, const drive::Profile& profile,

@@ -34,6 +34,7 @@ class FamilyGate {
 
  private:
   Result<void> refuse_duplicates(std::span<const std::uint8_t> nodes);
+  Result<void> ask_who(std::span<const std::uint8_t> nodes);
   Result<void> hold_one(const session::Identity& identity, const drive::Profile& profile, bool refuses);
   Result<void> ask_all(std::span<const std::uint8_t> nodes, const drive::Profile& profile, Weight weight);
   void tell_known(std::span<const std::uint8_t> nodes, const drive::Profile& profile);

@@ -287,13 +287,20 @@ TEST_F(TracePipe, ThatNobodyReadsHoldsNothingUpAndCountsWhatIsMissing) {
   EXPECT_EQ(lines + missing, kFrames) << "whole lines only";
 }
 
-TEST_F(TracePipe, IsNotWaitedForAtTheEnd) {
+TEST_F(TracePipe, IsNotWaitedForAtTheEndAndSaysWhatIsMissing) {
   open_reader();
-  auto bus = trace(kStart);
-  for (int i = 0; i < 1'000; ++i) ASSERT_TRUE(bus->send(frame_of("080#")));
+  std::vector<Error> told;
+  auto bus = trace_to(std::make_unique<ScriptedBus>(kStart), file_, "can0", TraceClock::bus,
+                      [&](const Error& error) { told.push_back(error); })
+                 .value();
+  constexpr std::size_t kFrames = 1'000;
+  for (std::size_t i = 0; i < kFrames; ++i) ASSERT_TRUE(bus->send(frame_of("080#")));
   const auto begin = std::chrono::steady_clock::now();
   bus.reset();
   EXPECT_LT(std::chrono::steady_clock::now() - begin, seconds(5));
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_EQ(told.front().code, Errc::file);
+  EXPECT_EQ(std::stoul(told.front().message) + read_lines(), kFrames) << told.front().message;
 }
 
 TEST_F(Trace, IsRefusedWhenTheFileCannotBeMade) {

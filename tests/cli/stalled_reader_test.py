@@ -9,6 +9,7 @@ import pty
 import socket
 import subprocess
 import sys
+import tempfile
 import termios
 import time
 
@@ -83,6 +84,18 @@ try:
     termios.tcflow(tty, termios.TCOON)
     check("terminal: it ends well", process.wait(10) == 0)
     check("terminal: the end is shown", b"verified" in os.read(terminal, 65536))
+
+    # What reads the trace stands still: the line is carried out, what the trace has not got is told and is no success.
+    with tempfile.TemporaryDirectory() as folder:
+        fifo = os.path.join(folder, "trace")
+        os.mkfifo(fifo)
+        reader = os.open(fifo, os.O_RDONLY | os.O_NONBLOCK)
+        fcntl.fcntl(reader, fcntl.F_SETPIPE_SZ, 4096)
+        backup = os.path.join(folder, "backup.json")
+        done = subprocess.run([servoctl, "backup", backup, "--trace", fifo], env=env, capture_output=True, text=True)
+        check(f"trace: exit 7, not {done.returncode}", done.returncode == 7)
+        check(f"trace: it is told\n{done.stderr}", "frames are missing in the trace" in done.stderr)
+        check("trace: the backup is whole", len(json.load(open(backup))) > 3)
 finally:
     drive.terminate()
     drive.wait()

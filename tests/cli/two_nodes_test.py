@@ -47,6 +47,10 @@ for number, (first, second) in enumerate([("gsd600@1", "gsd600@1"), ("gsd600@1",
         for words in (["jog", "60rpm", "--for", "100ms", "--turn", "10000", "--yes"], ["write", "0x6060", "1"], ["store", "--yes"]):
             answer = run(bus, *words, "-n", "1", "-d", family)
             check(what + f"{words[0]} is refused\n{answer.stderr}", answer.returncode == 8)
+        for words in (["write", "0x6060", "1", "--type", "i8"], ["write", "0x1017", "0", "--type", "u16"]):
+            answer = run(bus, *words, "-n", "1")
+            check(what + f"{' '.join(words)} without a family is refused\n{answer.stderr}",
+                  answer.returncode == 8 and "two nodes answer" in answer.stderr)
         answer = run(bus, "disable", "-n", "1", "-d", family)
         check(what + f"disable is not\n{answer.stderr}", answer.returncode != 8)
     finally:
