@@ -1,23 +1,43 @@
 #include "commands/restore_target.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <map>
 
 #include "commands/change.hpp"
 #include "commands/cob_id_check.hpp"
 #include "commands/comparison.hpp"
 #include "commands/identity.hpp"
+#include "commands/pdo_check.hpp"
 #include "drive/cia402.hpp"
 #include "drive/drive_settings.hpp"
 #include "drive/standard_objects.hpp"
+#include "session/pdo_setup.hpp"
 
 namespace servoctl::commands {
+namespace {
+
+using canopen::Pdo;
+
+bool is_pdo_parameter(ObjectAddress object) { return object.index >= 0x1400 && object.index < 0x1C00; }
+
+/// As `pdo map` and its kin would take it: `all` are the PDOs of the drive as they will be.
+Result<void> check_pdo(const drive::Profile& profile, const Pdo& present, const Pdo& wanted,
+                       std::span<const Pdo> all) {
+  if (present.entries != wanted.entries)
+    if (const auto maps = check_mapping(profile, wanted); !maps) return maps;
+  return check_communication(profile, present, wanted, all);
+}
+
+}  // namespace
+
 Result<void> RestoreTarget::prepare() {
   for (const auto step :
        {&RestoreTarget::check_identity, &RestoreTarget::choose_values, &RestoreTarget::read_present})
     if (const auto done = (this->*step)(); !done) return done;
   if (const auto still = check_standstill(); !still) return still;
-  return check_values();
+  if (const auto fit = check_values(); !fit) return fit;
+  return check_pdos();
 }
 
 Result<void> RestoreTarget::check_identity() {
@@ -160,6 +180,38 @@ Result<void> RestoreTarget::check_values() {
     left_.push_back(std::move(error));
     wanted_.erase(object);
     present_.erase(object);
+  }
+  return {};
+}
+
+/// What a drive held as a whole, it takes as a whole; what others wrote, or a part, has to fit the PDOs that
+/// are there.
+Result<void> RestoreTarget::check_pdos() {
+  if (backup_->proven) return {};
+  const auto changes = [this](const auto& value) {
+    return is_pdo_parameter(value.first) && present_.at(value.first) != value.second;
+  };
+  if (std::none_of(wanted_.begin(), wanted_.end(), changes)) return {};
+  const std::uint8_t nodes[] = {node_};
+  auto values = std::move(session::read_pdo_values(*context_->session, context_->profile, nodes).front());
+  if (!values) return tl::unexpected<Error>(values.error());
+  const auto present = session::pdos_of(*values);
+  for (const auto& [object, data] : wanted_)
+    if (is_pdo_parameter(object)) values->insert_or_assign(object, data);
+  const auto wanted = session::pdos_of(*values);
+  for (const auto& was : present) {
+    const auto same = [&](const Pdo& pdo) {
+      return pdo.direction == was.direction && pdo.number == was.number;
+    };
+    const auto of_it = [&](const auto& value) {
+      return changes(value) &&
+             (value.first.index == was.communication_index() || value.first.index == was.mapping_index());
+    };
+    const auto now = std::find_if(wanted.begin(), wanted.end(), same);
+    if (now == wanted.end() || std::none_of(wanted_.begin(), wanted_.end(), of_it)) continue;
+    if (const auto fits = check_pdo(*context_->profile, was, *now, wanted); !fits)
+      return unfit(Errc::refused, std::find_if(wanted_.begin(), wanted_.end(), of_it)->first,
+                   fits.error().message, "nothing was written; " + fits.error().hint);
   }
   return {};
 }

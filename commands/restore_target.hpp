@@ -27,9 +27,9 @@ class RestoreTarget {
       : context_(&context), backup_(&backup), title_(std::move(title)), node_(node), choice_(choice) {}
 
   /// Checks family, identity and standstill, reads what the drive holds, and checks every value against its
-  /// data. Errc::refused for another or an energised drive, for what is no setting of this one, and for a
-  /// COB-ID that no drive may have; Errc::negative, with line and entry, for a value that this drive cannot
-  /// take.
+  /// data. Errc::refused for another or an energised drive, for what is no setting of this one, for a COB-ID
+  /// that no drive may have, and for PDOs that `pdo map` and `pdo enable` would refuse; Errc::negative, with
+  /// line and entry, for a value that this drive cannot take.
   Result<void> prepare();
 
   const session::Identity& identity() const { return identity_; }
@@ -49,6 +49,7 @@ class RestoreTarget {
   std::uint32_t line_of(ObjectAddress object) const;
   Result<void> check_values();
   Result<void> check_value(ObjectAddress object, const Bytes& data, bool& outside) const;
+  Result<void> check_pdos();
   tl::unexpected<Error> unfit(Errc code, ObjectAddress object, std::string_view what, std::string hint) const;
 
   Context* context_;

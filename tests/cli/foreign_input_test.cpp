@@ -28,6 +28,19 @@ class ForeignInput : public BackupTest {
   }
 };
 
+TEST_F(ForeignInput, PutsNoPdosIntoADriveThatPdoMapWouldRefuse) {
+  for (const std::string_view family : {"gsd600", "dm", "ts", "da200", "cia402"}) {
+    SCOPED_TRACE(family);
+    use(fmt::format("sim:{}@1", family), std::string(family));
+    const bool fixed = family == "gsd600" || family == "da200";
+    spill("two.csv", "index,sub,raw\n0x1800,1,hex:A1 02 00 00\n0x1801,1,hex:A1 02 00 00\n");
+    refused("restore %two.csv --yes", "0x1801:1", fixed ? "keeps its COB-ID" : "of the same node");
+    if (family == "cia402") continue;  // What it does not list is left to the drive.
+    spill("absent.csv", "index,sub,raw\n0x1A01,0,hex:01\n0x1A01,1,hex:10 00 FF 5F\n");
+    refused("restore %absent.csv --yes", "0x1A01:1", "0x5FFF");
+  }
+}
+
 struct CobId {
   std::uint32_t value;
   const char* why;
