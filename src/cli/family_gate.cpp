@@ -46,7 +46,8 @@ Result<void> FamilyGate::refuse_duplicates(std::span<const std::uint8_t> nodes) 
 Result<void> FamilyGate::ask_who(std::span<const std::uint8_t> nodes) {
   const auto identities = session::identify(*session_, nodes, {});
   for (const auto& identity : identities)
-    if (identity) return {};
+    // A recording (replay:) answers nothing but what it was asked; a lost bus fails the command itself.
+    if (identity || identity.error().code == Errc::bus) return {};
   return tl::unexpected<Error>(identities.front().error());
 }
 
@@ -100,7 +101,7 @@ Result<void> FamilyGate::hold_one(const session::Identity& identity, const drive
   const bool unproven_read = !contradicted && !refuses;
   if (unproven_read || !session_->identities().is_news(node, profile.family + (contradicted ? "!" : "?")))
     return {};
-  const std::string_view forced = refuses ? "; --force-family goes on all the same" : "";
+  const std::string_view forced = refuses ? "; it goes on because of --force-family" : "";
   notices_->push_back(
       contradicted
           ? fmt::format("node {} is no {}: {}{}", node, profile.family, verdict.why, forced)
