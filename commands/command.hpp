@@ -64,8 +64,9 @@ constexpr bool includes(Needs all, Needs part) {
 enum class Effect : std::uint8_t { none, reads, writes, stores, resets, moves };
 
 /// When the family that was named is held against what the drives say they are, before anything is sent.
-/// `by_effect`: before what changes something; `always`: before an answer, too, that makes sense for the family
-/// alone; `never`: a way out, which nothing may refuse, or the command sees to it (Context::hold_family).
+/// `by_effect`: before what changes something; `always`: before an answer, too, that makes sense for the
+/// family alone; `never`: a way out, which nothing may refuse, or the command sees to it
+/// (Context::hold_family).
 enum class FamilyCheck : std::uint8_t { by_effect, always, never };
 
 /// The words of one command line, by parameter name.
@@ -102,6 +103,7 @@ struct Context {
   std::span<const std::filesystem::path> drive_folders;
   std::filesystem::path state_folder;  ///< For records of changes under way; empty: none are kept.
   std::vector<std::uint8_t> nodes;     ///< Set when the command needs a node; 0 stands for all.
+  bool nodes_typed = false;            ///< In the line itself; else by `use` or the environment.
   bool chinese = false;                ///< Names in Chinese where there are any.
   bool read_only = false;              ///< Nothing in a drive may be changed.
   bool dry_run = false;                ///< Show what would be sent, send nothing.
@@ -122,7 +124,8 @@ struct Context {
   std::function<Result<session::Session*>()> open_bus;
   /// Holds a family against the identity of these nodes, for a command whose words name them; `changes`: it
   /// will write to them. Errc::refused when they contradict it, or two nodes have one number. May be empty.
-  std::function<Result<void>(std::span<const std::uint8_t> nodes, const drive::Profile* profile, bool changes)>
+  std::function<Result<void>(std::span<const std::uint8_t> nodes, const drive::Profile* profile,
+                             bool changes)>
       hold_family;
   /// The data of a family, loaded once; errors as load_profile().
   std::function<Result<const drive::Profile*>(const std::string& family)> family;

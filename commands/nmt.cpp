@@ -38,30 +38,48 @@ bool confirmed(session::Session& session, const Before& before, NmtCommand comma
          session.watch().state(before.node) == canopen::state_after(command);
 }
 
-/// Longest heartbeat period of the nodes, read before the command: a stopped node answers no SDO.
-Duration longest_period(Context& context) {
+/// How the nodes' heartbeats come, read before the command.
+struct Heartbeats {
+  Duration longest{};                ///< Of those that say it.
+  std::vector<std::uint8_t> silent;  ///< Say that they send none.
+};
+
+/// A node that is stopped answers no SDO: it may send heartbeats all the same.
+Heartbeats heartbeats_of(Context& context) {
   std::vector<session::SdoRequest> requests;
   for (const auto node : context.nodes)
     requests.push_back({.node = node, .object = objects::kProducerHeartbeat, .size = 2});
-  Duration longest{};
-  for (const auto& answer : context.session->transfer(requests))
-    if (answer && answer->size() <= 8)
-      longest = std::max<Duration>(longest, std::chrono::milliseconds(load_le(*answer) & 0xFFFFU));
-  return longest;
+  const auto answers = context.session->transfer(requests);
+  Heartbeats out;
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    const auto node = context.nodes[i];
+    out.longest = std::max(out.longest, context.session->watch().period(node));
+    if (!answers[i] || answers[i]->size() > 8) continue;
+    const auto period = std::chrono::milliseconds(load_le(*answers[i]) & 0xFFFFU);
+    out.longest = std::max<Duration>(out.longest, period);
+    if (period == Duration::zero()) out.silent.push_back(node);
+  }
+  return out;
 }
 
-Error unconfirmed(std::uint8_t node, NmtCommand command, Duration period) {
+Error unconfirmed(const Before& before, NmtCommand command, const Heartbeats& heartbeats,
+                  const canopen::NodeWatch& watch) {
   Error error;
   error.code = Errc::timeout;
-  error.node = node;
-  error.message = fmt::format("node {}: '{}' was sent, nothing confirms it", node, canopen::name(command));
+  error.node = before.node;
+  error.message =
+      fmt::format("node {}: '{}' was sent, nothing confirms it", before.node, canopen::name(command));
+  const auto& silent = heartbeats.silent;
   if (is_reset(command))
     error.hint =
         "no boot-up message came: it may restart under another node-ID or bitrate; `scan` shows who is there";
-  else if (period == Duration::zero())
-    error.hint = fmt::format("the node sends no heartbeat: `write 0x1017 500 -n {}` switches it on", node);
+  else if (std::find(silent.begin(), silent.end(), before.node) != silent.end())
+    error.hint =
+        fmt::format("the node sends no heartbeat: `write 0x1017 500 -n {}` switches it on", before.node);
+  else if (watch.heartbeats(before.node) > before.heartbeats)
+    error.hint = "its heartbeats still tell another state";
   else
-    error.hint = "its heartbeats still tell another state, or came no more";
+    error.hint = "no heartbeat came; `read 0x1017` tells whether it sends any, unless it is stopped";
   return error;
 }
 
@@ -100,7 +118,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments, NmtComma
         !answer)
       return tl::unexpected<Error>(answer.error());
   }
-  const auto period = wait && !is_reset(command) ? longest_period(context) : Duration::zero();
+  const auto heartbeats = wait && !is_reset(command) ? heartbeats_of(context) : Heartbeats();
   std::vector<Before> before;
   for (const auto node : context.nodes) {
     before.push_back({node, context.session->watch().boots(node), context.session->watch().heartbeats(node)});
@@ -113,14 +131,14 @@ Result<report::Value> run(Context& context, const Arguments& arguments, NmtComma
     return std::all_of(before.begin(), before.end(),
                        [&](const Before& b) { return confirmed(*context.session, b, command); });
   };
-  const bool hopeless = !is_reset(command) && period == Duration::zero();
-  const auto patience = is_reset(command) ? kBootPatience : std::max(kStatePatience, 2 * period);
+  const bool hopeless = heartbeats.silent.size() == before.size();
+  const auto patience = is_reset(command) ? kBootPatience : std::max(kStatePatience, 2 * heartbeats.longest);
   const auto waited =
       context.session->wait(done, context.session->now() + (hopeless ? Duration::zero() : patience));
   if (!waited) return tl::unexpected<Error>(waited.error());
   for (const auto& entry : before)
     if (!confirmed(*context.session, entry, command))
-      context.errors.push_back(unconfirmed(entry.node, command, period));
+      context.errors.push_back(unconfirmed(entry, command, heartbeats, context.session->watch()));
   return report::Value(result_table(context, before, command, true));
 }
 

@@ -67,21 +67,13 @@ Result<std::vector<std::uint8_t>> nodes_of(Context& context) {
   return out;
 }
 
-/// A node without heartbeat would be silent whatever happens to it.
-void complain_of_silent_nodes(Context& context, std::span<const std::uint8_t> nodes) {
+/// What the nodes say of their heartbeat (1017h); one that is stopped or away says nothing.
+std::vector<Result<Bytes>> ask_for_heartbeats(session::Session& session,
+                                              std::span<const std::uint8_t> nodes) {
   std::vector<session::SdoRequest> requests;
   for (const auto node : nodes)
     requests.push_back({.node = node, .object = objects::kProducerHeartbeat, .size = 2});
-  const auto answers = context.session->transfer(requests);
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    if (answers[i] && (load_le(*answers[i]) & 0xFFFFU) != 0) continue;
-    Error error;
-    error.code = Errc::negative;
-    error.node = nodes[i];
-    error.message = fmt::format("node {}: sends no heartbeat", nodes[i]);
-    error.hint = fmt::format("`write 0x1017 500 -n {}` switches it on; or ask it by --guard 1s", nodes[i]);
-    context.errors.push_back(std::move(error));
-  }
+  return session.transfer(requests);
 }
 
 std::string_view event_name(const NodeEvent& event) {
@@ -95,18 +87,27 @@ std::string_view event_name(const NodeEvent& event) {
 class Log {
  public:
   Log(Context& context, std::span<const std::uint8_t> nodes)
-      : context_(&context), nodes_(nodes), begin_(context.session->now()) {
-    for (const auto node : nodes) boots_before_[node] = context.session->watch().boots(node);
+      : context_(&context), begin_(context.session->now()) {
+    const auto& watch = context.session->watch();
+    for (const auto node : nodes)
+      rows_.push_back({.node = node, .boots = watch.boots(node), .heartbeats = watch.heartbeats(node)});
+  }
+
+  /// What the nodes said when they were asked for their heartbeat, in their order.
+  void told(std::vector<Result<Bytes>> answers) {
+    for (std::size_t i = 0; i < rows_.size(); ++i) rows_[i].told = std::move(answers[i]);
   }
 
   void take_events() {
     for (const auto& event : context_->session->take_events()) {
-      if (std::find(nodes_.begin(), nodes_.end(), event.node) == nodes_.end()) continue;
+      const auto row =
+          std::find_if(rows_.begin(), rows_.end(), [&](const Row& r) { return r.node == event.node; });
+      if (row == rows_.end()) continue;
       const bool lost = std::holds_alternative<NodeEvent::HeartbeatLost>(event.what) ||
                         std::holds_alternative<NodeEvent::GuardingLost>(event.what);
-      lost_[event.node] += lost;
-      gone_[event.node] = lost;
-      emergencies_[event.node] += std::holds_alternative<canopen::Emergency>(event.what) ? event.times : 0;
+      row->lost += lost;
+      row->gone = lost;
+      row->emergencies += std::holds_alternative<canopen::Emergency>(event.what) ? event.times : 0;
       const std::chrono::duration<double> time = event.time - begin_;
       const auto text = notice_text(event, context_->profile, context_->chinese);
       report::Record record{
@@ -116,7 +117,7 @@ class Log {
     }
   }
 
-  /// Errors of nodes that were lost or never heard go to the context.
+  /// Errors of nodes that were lost, never heard, or tell nothing regularly go to the context.
   Value summary() {
     report::Table table;
     table.columns = {{"node"},
@@ -127,36 +128,78 @@ class Log {
                      {"lost"},
                      {"emergencies", "EMCY"}};
     const auto& watch = context_->session->watch();
-    for (const auto node : nodes_) {
-      const auto state = watch.state(node);
-      const auto period = std::chrono::duration_cast<std::chrono::milliseconds>(watch.period(node)).count();
-      table.rows.push_back({node, state.has_value() && !gone_[node],
-                            state ? Value(canopen::name(*state)) : Value(),
-                            period == 0 ? Value() : Value(period), watch.boots(node) - boots_before_[node],
-                            lost_[node], emergencies_[node]});
-      if (lost_[node] > 0 || !state) complain(node, state.has_value());
+    for (const auto& row : rows_) {
+      const auto state = watch.state(row.node);
+      const auto period =
+          std::chrono::duration_cast<std::chrono::milliseconds>(watch.period(row.node)).count();
+      table.rows.push_back({row.node, alive(row), state ? Value(canopen::name(*state)) : Value(),
+                            period == 0 ? Value() : Value(period), watch.boots(row.node) - row.boots,
+                            row.lost, row.emergencies});
+      complain(row);
     }
     return report::Record{{"nodes", std::move(table)}, {"events", std::move(events_), Show::json}};
   }
 
  private:
-  void complain(std::uint8_t node, bool heard) {
+  struct Row {
+    std::uint8_t node = 0;
+    std::uint32_t boots = 0;       ///< When the watch began.
+    std::uint32_t heartbeats = 0;  ///< When the watch began.
+    std::uint32_t lost = 0;
+    bool gone = false;  ///< Nothing has come since it was lost.
+    std::uint32_t emergencies = 0;
+    std::optional<Result<Bytes>> told;  ///< Its 1017h, if it was asked.
+  };
+
+  /// Heartbeats, or answers to node guarding.
+  bool regular(const Row& row) const {
+    return context_->session->watch().heartbeats(row.node) > row.heartbeats;
+  }
+  bool answered(const Row& row) const {
+    return row.told && (*row.told || row.told->error().code == Errc::sdo_abort);
+  }
+  bool heard(const Row& row) const {
+    return context_->session->watch().boots(row.node) > row.boots || row.emergencies > 0;
+  }
+  /// Of a node that was there once and tells nothing regularly, nobody knows.
+  Value alive(const Row& row) const {
+    if (row.gone) return false;
+    if (regular(row)) return true;
+    return answered(row) || heard(row) ? Value() : Value(false);
+  }
+
+  void complain(const Row& row) {
     Error error;
     error.code = Errc::negative;
-    error.node = node;
-    error.message =
-        heard ? fmt::format("node {}: was lost {} time{}", node, lost_[node], lost_[node] == 1 ? "" : "s")
-              : fmt::format("node {}: was never heard", node);
+    error.node = row.node;
+    error.hint = "ask it by --guard 1s";
+    if (row.lost > 0 && context_->session->watch().state(row.node)) {
+      error.message = fmt::format("was lost {} time{}", row.lost, row.lost == 1 ? "" : "s");
+      error.hint.clear();
+    } else if (regular(row)) {
+      return;
+    } else if (row.told && *row.told) {
+      const auto period = load_le(**row.told) & 0xFFFFU;
+      error.message = period == 0 ? "sends no heartbeat"
+                                  : fmt::format("no heartbeat came, although 1017h says {} ms", period);
+      if (period == 0)
+        error.hint =
+            fmt::format("`write 0x1017 500 -n {}` switches it on; or {}", row.node, std::move(error.hint));
+    } else if (answered(row)) {
+      error.message = "no heartbeat came, and it has no 1017h to switch one on";
+    } else if (heard(row)) {
+      error.message = "sends no heartbeat and answers no SDO; its boot-up or emergency messages were heard";
+    } else {
+      error.message = "does not answer and was never heard";
+      error.hint = "is it powered and connected, and is this its node-ID? `scan` shows who answers";
+    }
+    error.message = fmt::format("node {}: {}", row.node, error.message);
     context_->errors.push_back(std::move(error));
   }
 
   Context* context_;
-  std::span<const std::uint8_t> nodes_;
   TimePoint begin_;
-  std::array<std::uint32_t, 128> boots_before_{};
-  std::array<std::uint32_t, 128> lost_{};
-  std::array<bool, 128> gone_{};  ///< Nothing has come since it was lost.
-  std::array<std::uint32_t, 128> emergencies_{};
+  std::vector<Row> rows_;
   report::List events_;
 };
 
@@ -181,12 +224,11 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   if (!nodes) return tl::unexpected<Error>(nodes.error());
   auto& session = *context.session;
   if (plan->guard_time && context.dry_run) return Value(guarding_frames(*nodes));
-  if (plan->guard_time) {
-    for (const auto node : *nodes) session.guard(node, {*plan->guard_time, plan->life_factor});
-  } else {
-    complain_of_silent_nodes(context, *nodes);
-  }
   Log log(context, *nodes);
+  if (plan->guard_time)
+    for (const auto node : *nodes) session.guard(node, {*plan->guard_time, plan->life_factor});
+  else
+    log.told(ask_for_heartbeats(session, *nodes));
   const auto end = plan->length ? session.now() + *plan->length : kNever;
   Result<bool> waited = false;
   while (waited && session.now() < end) {

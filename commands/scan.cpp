@@ -10,7 +10,7 @@ namespace servoctl::commands {
 namespace {
 
 Result<report::Value> run(Context& context, const Arguments&) {
-  auto nodes = context.nodes;
+  auto nodes = context.nodes_typed ? context.nodes : std::vector<std::uint8_t>();
   if (nodes.empty() || nodes.front() == 0) {
     nodes.resize(canopen::kLastNode);
     std::iota(nodes.begin(), nodes.end(), canopen::kFirstNode);
@@ -37,7 +37,7 @@ const Command kScan{
     .path = "scan",
     .summary = "Find the nodes on the bus and what they are",
     .details =
-        "Asks the nodes 1 to 127, or those of --node, for object 1000h at the same time: the answer takes "
+        "Asks the nodes 1 to 127, or those of a --node in the line itself, for object 1000h at the same time: the answer takes "
         "one timeout "
         "however many there are. Families are guessed from the identity; `?` marks a guess that the identity "
         "cannot prove.",

@@ -41,6 +41,7 @@ Result<Settings> apply_options(Settings base, const commands::Arguments& argumen
   };
   text("--bus", base.bus);
   text("--node", base.nodes);
+  base.nodes_typed = arguments.has("--node");
   text("--drive", base.drive);
   if (arguments.has("--timeout")) {
     const auto timeout = read_duration(arguments.text("--timeout"));

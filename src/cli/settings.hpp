@@ -14,9 +14,10 @@ namespace servoctl::cli {
 
 /// What holds for one command line: its global options over what the prompt has set over the environment.
 struct Settings {
-  std::string bus;    ///< URL; empty: none given.
-  std::string nodes;  ///< As written: `1,3,5-8`, `all`; empty: none given.
-  std::string drive;  ///< Family or file; empty: none given.
+  std::string bus;           ///< URL; empty: none given.
+  std::string nodes;         ///< As written: `1,3,5-8`, `all`; empty: none given.
+  bool nodes_typed = false;  ///< In the line itself, not by `use` or the environment.
+  std::string drive;         ///< Family or file; empty: none given.
   Duration timeout = std::chrono::milliseconds(500);
   std::uint32_t retries = 1;
   bool json = false;

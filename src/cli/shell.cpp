@@ -124,6 +124,7 @@ Outcome Shell::help(const std::vector<std::string>& words, Settings settings) {
 Result<Value> Shell::execute(Run& run, const commands::Arguments& arguments) {
   if (const auto ready = prepare(run, arguments); !ready) return tl::unexpected<Error>(ready.error());
   auto& context = run.context;
+  context.nodes_typed = run.settings.nodes_typed;
   context.chinese = run.settings.chinese;
   context.dry_run = run.settings.dry_run;
   context.read_only = run.settings.read_only;

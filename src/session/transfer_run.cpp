@@ -14,12 +14,15 @@ constexpr std::size_t kLongTransfer = 1000;
 /// Requests from which on a list is; a scan asks 127 nodes at once.
 constexpr std::size_t kLongList = 128;
 
-std::string silence_hint(std::uint8_t node) {
+/// A heartbeat says that a node is stopped; of one that sends none nobody knows.
+std::string silence_hint(const canopen::NodeWatch& watch, std::uint8_t node) {
+  if (watch.state(node) == canopen::NmtState::stopped)
+    return fmt::format("node {} is stopped (its heartbeat says so) and answers no SDO: `nmt preop -n {}`",
+                       node, node);
   return fmt::format(
       "is node {} powered and connected, does it run at this bitrate and is this its node-ID? `scan` shows "
-      "who "
-      "answers",
-      node);
+      "who answers; one that is stopped does not: `nmt preop -n {}`",
+      node, node);
 }
 
 }  // namespace
@@ -109,7 +112,8 @@ void TransferRun::finish(Channel& channel, Result<Bytes> result) {
     channel.client.start_upload(request.object, session_->now(), transfer, request.size);
     return;
   }
-  if (silent && result.error().hint.empty()) result.error().hint = silence_hint(request.node);
+  if (silent && result.error().hint.empty())
+    result.error().hint = silence_hint(session_->watch(), request.node);
   results_[channel.current] = result;
   --open_;
   const auto& options = session_->options();

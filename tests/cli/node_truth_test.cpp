@@ -1,0 +1,102 @@
+// What scan, nmt and read say of nodes that are there, stopped, silent or away.
+#include <gtest/gtest.h>
+
+#include "../source_dir.hpp"
+#include "cli/line_runner.hpp"
+#include "cli/shell.hpp"
+#include "recording_console.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+class NodeTruth : public testing::Test {
+ protected:
+  void use(const std::string& bus, const std::string& nodes = {}) {
+    Shell::Options options;
+    options.drive_folders = {std::filesystem::path(source_dir()) / "eds"};
+    options.clock = sim::SimBus::Clock::virtual_time;
+    options.defaults.bus = bus;
+    options.defaults.nodes = nodes;
+    shell = std::make_unique<Shell>(console, options);
+  }
+  int run(std::string_view line) {
+    console.out_text.clear();
+    console.err_text.clear();
+    return LineRunner(*shell).run(line);
+  }
+  bool says(std::string_view what) const {
+    return (console.out_text + console.err_text).find(what) != std::string::npos;
+  }
+  std::string all() const { return console.out_text + console.err_text; }
+
+  RecordingConsole console;
+  std::unique_ptr<Shell> shell;
+};
+
+constexpr const char* kFamilies[] = {"gsd600", "dm", "da200", "ts", "sv2", "cia402"};
+
+TEST_F(NodeTruth, ScanLooksAtEveryNodeUnlessTheLineItselfNamesSome) {
+  use("sim:dm@1,dm@2", "9");
+  EXPECT_EQ(run("scan --json"), 0) << all();
+  EXPECT_TRUE(says("\"node\":1") && says("\"node\":2")) << all();
+  EXPECT_EQ(run("use 9"), 0) << all();
+  EXPECT_EQ(run("scan --json"), 0) << all();
+  EXPECT_TRUE(says("\"node\":1") && says("\"node\":2")) << all();
+  EXPECT_EQ(run("scan --json -n 2"), 0) << all();
+  EXPECT_TRUE(!says("\"node\":1") && says("\"node\":2")) << all();
+  EXPECT_EQ(run("scan -n 9"), 4) << all();
+}
+
+TEST_F(NodeTruth, WatchTellsASilentDriveFromOneThatIsAwayAndOneThatFails) {
+  for (const std::string family : kFamilies) {
+    SCOPED_TRACE(family);
+    // sv2 has no 1017h.
+    const bool produces = family != "sv2";
+    use("sim:" + family + "@1");
+    EXPECT_EQ(run("nmt watch -n 1,9 --for 1s --json"), 1) << all();
+    EXPECT_TRUE(says(R"("node":1,"alive":null)")) << "nobody knows: " << all();
+    EXPECT_TRUE(says(R"("node":9,"alive":false)")) << all();
+    EXPECT_EQ(run("nmt watch -n 1,9 --for 1s"), 1) << all();
+    EXPECT_TRUE(says(produces ? "node 1: sends no heartbeat" : "it has no 1017h")) << all();
+    EXPECT_TRUE(says("node 9: does not answer and was never heard")) << all();
+    EXPECT_FALSE(says("node 9: sends no heartbeat")) << all();
+    EXPECT_EQ(run("nmt watch -n 9 --for 1s --guard 100ms"), 1) << all();
+    EXPECT_TRUE(says("node 9: does not answer and was never heard")) << all();
+  }
+}
+
+TEST_F(NodeTruth, WatchHearsTheEmergencyOfADriveThatAnswersNothing) {
+  use("sim:gsd600@1?silent=10s&fault=0xFF00@300ms");
+  EXPECT_EQ(run("nmt reset -n 1 --yes"), 0) << all();
+  EXPECT_EQ(run("nmt watch -n 1 --for 3s"), 1) << all();
+  EXPECT_FALSE(says("never heard")) << all();
+}
+
+TEST_F(NodeTruth, ANodeThatWasStoppedIsConfirmedByItsHeartbeat) {
+  for (const std::string family : kFamilies) {
+    if (family == "sv2") continue;  // It has neither 1017h nor NMT by heartbeat.
+    SCOPED_TRACE(family);
+    use("sim:" + family + "@1", "1");
+    ASSERT_EQ(run("write 0x1017 100 --type u16"), 0) << all();
+    for (const std::string command : {"start", "preop"}) {
+      SCOPED_TRACE(command);
+      ASSERT_EQ(run("nmt stop --wait"), 0) << all();
+      EXPECT_EQ(run("read 0x1000"), 4) << all();
+      EXPECT_TRUE(says("node 1 is stopped")) << all();
+      EXPECT_TRUE(says("nmt preop -n 1")) << all();
+      EXPECT_EQ(run("nmt " + command + " --wait"), 0) << all();
+      EXPECT_TRUE(says(command == "start" ? "operational" : "pre-operational")) << all();
+    }
+  }
+}
+
+TEST_F(NodeTruth, ANodeWithoutHeartbeatIsNotWaitedFor) {
+  use("sim:dm@1", "1");
+  EXPECT_EQ(run("nmt start --wait"), 4) << all();
+  EXPECT_TRUE(says("sends no heartbeat")) << all();
+  EXPECT_EQ(run("read 0x1000 -n 9"), 4) << all();
+  EXPECT_TRUE(says("one that is stopped does not: `nmt preop -n 9`")) << all();
+}
+
+}  // namespace
+}  // namespace servoctl::cli
