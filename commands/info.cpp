@@ -3,7 +3,9 @@
 #include "commands/command.hpp"
 #include "commands/identity.hpp"
 #include "commands/records.hpp"
+#include "drive/cia402.hpp"
 #include "drive/standard_objects.hpp"
+#include "session/identify.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -35,6 +37,8 @@ Value one(const session::Identity& node, std::span<const drive::Family> families
   Record out{
       {"node", node.node},
       {"device_type", optional_hex(node.device_type), report::Show::everywhere, "device type"},
+      {"device_kind", node.device_type ? Value(drive::device_kind(*node.device_type)) : Value(),
+       report::Show::everywhere, "which is"},
       {"device_name", report::text_or_null(node.device_name), report::Show::everywhere, "device name"},
       {"hardware_version", report::text_or_null(node.hardware_version), report::Show::everywhere, "hardware"},
       {"software_version", report::text_or_null(node.software_version), report::Show::everywhere, "software"},
@@ -55,10 +59,9 @@ Value one(const session::Identity& node, std::span<const drive::Family> families
     out.push_back({"family", profile->family, report::Show::json});
   } else {
     const auto text = guess_text(guesses);
-    out.push_back(
-        {"family",
-         text.empty() ? Value("none fits") : Value(text + "  (a guess by 1000h and 1018h: say -d FAMILY)"),
-         report::Show::text});
+    out.push_back({"family",
+                   text.empty() ? Value("none fits") : Value(text + "  (a guess, no proof: say -d FAMILY)"),
+                   report::Show::text});
   }
   report::List all;
   for (const auto& guess : guesses)
@@ -68,8 +71,10 @@ Value one(const session::Identity& node, std::span<const drive::Family> families
 }
 
 Result<report::Value> run(Context& context, const Arguments&) {
-  const auto found = session::scan(*context.session, context.nodes);
+  auto found = session::scan(*context.session, context.nodes);
   if (!found) return tl::unexpected<Error>(found.error());
+  const auto families = drive::find_families(context.drive_folders);
+  session::look_for_families(*context.session, *found, families);
   std::vector<session::SdoRequest> requests;
   for (const auto& node : *found)
     for (const auto& [object, size] :
@@ -77,7 +82,6 @@ Result<report::Value> run(Context& context, const Arguments&) {
           std::pair{objects::kSupportedModes, 4U}})
       requests.push_back({.node = node.node, .object = object, .size = size});
   const auto answers = context.session->transfer(requests);
-  const auto families = drive::find_families(context.drive_folders);
   report::List out;
   std::size_t at = 0;
   for (const auto node : context.nodes) {

@@ -5,6 +5,7 @@
 #include "canopen/cob_id.hpp"
 #include "commands/command.hpp"
 #include "commands/identity.hpp"
+#include "session/identify.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -15,7 +16,7 @@ Result<report::Value> run(Context& context, const Arguments&) {
     nodes.resize(canopen::kLastNode);
     std::iota(nodes.begin(), nodes.end(), canopen::kFirstNode);
   }
-  const auto found = session::scan(*context.session, nodes);
+  auto found = session::scan(*context.session, nodes);
   if (!found) return tl::unexpected<Error>(found.error());
   if (found->empty()) {
     Error error;
@@ -27,7 +28,9 @@ Result<report::Value> run(Context& context, const Arguments&) {
         "does not answer: `nmt preop -n all`";
     context.errors.push_back(std::move(error));
   }
-  return report::Value(identity_table(*found, drive::find_families(context.drive_folders)));
+  const auto families = drive::find_families(context.drive_folders);
+  session::look_for_families(*context.session, *found, families);
+  return report::Value(identity_table(*found, families));
 }
 
 }  // namespace
@@ -37,10 +40,13 @@ const Command kScan{
     .path = "scan",
     .summary = "Find the nodes on the bus and what they are",
     .details =
-        "Asks the nodes 1 to 127, or those of a --node in the line itself, for object 1000h at the same time: the answer takes "
+        "Asks the nodes 1 to 127, or those of a --node in the line itself, for object 1000h at the same "
+        "time: the answer takes "
         "one timeout "
-        "however many there are. Families are guessed from the identity; `?` marks a guess that the identity "
-        "cannot prove.",
+        "however many there are. Families are guessed from the identity and, where it leaves them open, by "
+        "reading "
+        "two or three objects that only they have; `?` marks a guess that proves nothing. cia402 fits every "
+        "drive of that profile.",
     .parameters = {},
     .needs = Needs::bus,
     .effect = Effect::reads,

@@ -6,6 +6,7 @@
 #include "base/text.hpp"
 #include "session/family_check.hpp"
 #include "session/identify.hpp"
+#include "session/scan.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -22,6 +23,15 @@ std::string forcing_hint(const FamilyVerdict& verdict) {
 }
 
 }  // namespace
+
+/// Before another family is offered, its own objects are looked for.
+std::vector<std::string> FamilyGate::others(session::Identity identity,
+                                            std::span<const drive::Family> families) {
+  session::look_for_families(*session_, std::span(&identity, 1), families);
+  std::vector<std::string> out;
+  for (const auto& guess : session::guess_families(identity, families)) out.push_back(guess.family);
+  return out;
+}
 
 Result<void> FamilyGate::hold(std::span<const std::uint8_t> nodes, const drive::Profile* profile,
                               Weight weight) {
@@ -85,10 +95,11 @@ void FamilyGate::tell_known(std::span<const std::uint8_t> nodes, const drive::Pr
 Result<void> FamilyGate::hold_one(const session::Identity& identity, const drive::Profile& profile,
                                   bool refuses) {
   const auto families = drive::find_families(options_.folders);
-  const auto verdict = session::judge_family(identity, profile, families);
+  auto verdict = session::judge_family(identity, profile, families);
   const auto node = identity.node;
   if (verdict.kind == FamilyVerdict::Kind::proven) return {};
   const bool contradicted = verdict.kind == FamilyVerdict::Kind::contradicted;
+  if (contradicted && refuses) verdict.fitting = others(identity, families);
   if (contradicted && refuses && !options_.force) {
     Error error;
     error.code = Errc::refused;

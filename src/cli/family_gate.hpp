@@ -37,6 +37,7 @@ class FamilyGate {
   Result<void> ask_who(std::span<const std::uint8_t> nodes);
   Result<void> hold_one(const session::Identity& identity, const drive::Profile& profile, bool refuses);
   Result<void> ask_all(std::span<const std::uint8_t> nodes, const drive::Profile& profile, Weight weight);
+  std::vector<std::string> others(session::Identity identity, std::span<const drive::Family> families);
   void tell_known(std::span<const std::uint8_t> nodes, const drive::Profile& profile);
 
   session::Session* session_;

@@ -221,8 +221,9 @@ tl::unexpected<Error> Shell::ask_for_family(Run& run) {
                               : Result<std::vector<std::uint8_t>>(std::vector<std::uint8_t>{});
   if (nodes && !nodes->empty() && nodes->front() != 0) {
     if (const auto opened = open(run.settings)) {
-      const auto found = session::scan(**opened, *nodes);
+      auto found = session::scan(**opened, *nodes);
       if (found && !found->empty()) {
+        session::look_for_families(**opened, *found, families);
         std::vector<std::string> guesses;
         for (const auto& guess : session::guess_families(found->front(), families))
           guesses.push_back(guess.family);

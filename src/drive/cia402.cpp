@@ -1,5 +1,6 @@
 #include "drive/cia402.hpp"
 
+#include <fmt/format.h>
 #include <array>
 
 namespace servoctl::drive {
@@ -120,6 +121,19 @@ std::vector<std::string> statusword_bits(std::uint16_t statusword, std::int8_t m
   for (const int bit : {12, 13})
     if ((statusword & 1U << static_cast<unsigned>(bit)) != 0) out.emplace_back(mode_bit(bit, mode));
   return out;
+}
+
+std::string device_kind(std::uint32_t device_type) {
+  const auto profile = device_type & 0xFFFFU;
+  if (profile == 0) return "no device profile";
+  if (profile != 402)
+    return fmt::format("{} {}", profile >= 400 && profile < 500 ? "CiA" : "device profile", profile);
+  constexpr std::string_view kKinds[] = {"frequency converter", "servo drive", "stepper motor"};
+  std::string out;
+  for (std::size_t i = 0; i < std::size(kKinds); ++i)
+    if ((device_type >> (16 + i) & 1U) != 0)
+      out += fmt::format("{}{}", out.empty() ? "" : " and ", kKinds[i]);
+  return "CiA 402, " + (out.empty() ? std::string("kind of drive not told") : out);
 }
 
 }  // namespace servoctl::drive

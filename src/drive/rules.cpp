@@ -18,6 +18,7 @@ class RulesReader {
     rules_.identity.clear();
     rules_.identity_certain = false;
     rules_.identity_telling = false;
+    rules_.identity_looks.clear();
   }
 
   Result<Rules> read(const toml::table& root) {

@@ -213,6 +213,9 @@ struct Rules {
   /// Whatever matches is of this family or of one that answers like it: enough to take the user's word, and
   /// to contradict the name of another family. Always so where a match is certain.
   bool identity_telling = false;
+  /// Objects of their own that its drives have and few others: where `identity` does not tell, they are
+  /// looked for by reading. All there: it is one of the family or like it; none: it is none.
+  std::vector<ObjectAddress> identity_looks;
 
   std::vector<Numbering> numbering;
   std::map<Measure, Quotients> units;

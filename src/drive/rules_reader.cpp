@@ -115,7 +115,8 @@ TableReader::Handler quotients_into(Quotients& out) {
 Result<void> read_identity(const TableReader& reader, Rules& rules) {
   return reader.read({{"certain", into(rules.identity_certain)},
                       {"telling", into(rules.identity_telling)},
-                      {"match", list_into(rules.identity)}});
+                      {"match", list_into(rules.identity)},
+                      {"looks", into(rules.identity_looks)}});
 }
 
 Result<void> read_numbering(const TableReader& reader, Numbering& out) {

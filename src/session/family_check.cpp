@@ -43,6 +43,25 @@ std::string family_says(const IdentityMark& mark) {
   return mark.mask == ~std::uint64_t{0} ? value : fmt::format("{} in the bits 0x{:08X}", value, mark.mask);
 }
 
+/// Whether the family's own objects are there: all of them, none, or not known.
+Says own_objects(const Identity& identity, const drive::Rules& rules) {
+  std::size_t there = 0;
+  std::size_t away = 0;
+  for (const auto object : rules.identity_looks) {
+    const auto looked = identity.looked.find(object);
+    if (looked == identity.looked.end()) return Says::nothing;
+    ++(looked->second ? there : away);
+  }
+  if (there > 0 && away > 0) return Says::nothing;
+  return there > 0 ? Says::yes : away > 0 ? Says::no : Says::nothing;
+}
+
+std::string names(std::span<const ObjectAddress> objects) {
+  std::string out;
+  for (const auto object : objects) out += (out.empty() ? "" : ", ") + to_string(object);
+  return out;
+}
+
 bool is_telling(const drive::Rules& rules) { return rules.identity_telling || rules.identity_certain; }
 
 /// What is not so, of the family's own marks; soft ones count when they are asked for.
@@ -66,7 +85,7 @@ void judge_by_others(const Identity& identity, const drive::Profile& profile,
   for (const auto& family : families) {
     if (equals_nocase(family.name, profile.family)) continue;
     const auto rules = drive::load_rules(family);
-    if (!rules || !has_marks(*rules) || !fits(identity, *rules)) continue;
+    if (!rules || !may_be(identity, *rules)) continue;
     verdict.fitting.push_back(family.name);
     const bool related = profile.of_file || equals_nocase(family.name, profile.rules.parent);
     if (verdict.kind == FamilyVerdict::Kind::contradicted || !is_telling(*rules) || related) continue;
@@ -88,6 +107,16 @@ bool has_marks(const drive::Rules& rules) {
                      [](const IdentityMark& mark) { return !mark.soft; });
 }
 
+bool may_be(const Identity& identity, const drive::Rules& rules) {
+  if (!fits(identity, rules)) return false;
+  const auto own = own_objects(identity, rules);
+  return own == Says::yes || (own == Says::nothing && has_marks(rules));
+}
+
+bool fits_as_generic(const Identity& identity, const drive::Rules& rules) {
+  return !rules.identity.empty() && !has_marks(rules) && fits(identity, rules);
+}
+
 FamilyVerdict judge_family(const Identity& identity, const drive::Profile& profile,
                            std::span<const drive::Family> families) {
   const auto& rules = profile.rules;
@@ -100,8 +129,17 @@ FamilyVerdict judge_family(const Identity& identity, const drive::Profile& profi
     judge_by_others(identity, profile, families, out);
     return out;
   }
+  if (own_objects(identity, rules) == Says::no) {
+    out.kind = FamilyVerdict::Kind::contradicted;
+    out.object = rules.identity_looks.front();
+    out.why = fmt::format("it has no {}, which every {} has", names(rules.identity_looks), profile.family);
+    judge_by_others(identity, profile, families, out);
+    return out;
+  }
   const auto* soft = violated(identity, rules, true);
-  if (is_telling(rules) && !rules.identity.empty() && soft == nullptr && fits(identity, rules)) {
+  const bool has_own = own_objects(identity, rules) == Says::yes;
+  const bool tells = has_own || (is_telling(rules) && !rules.identity.empty());
+  if (tells && soft == nullptr && fits(identity, rules)) {
     out.kind = FamilyVerdict::Kind::proven;
     return out;
   }

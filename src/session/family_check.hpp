@@ -22,14 +22,20 @@ struct FamilyVerdict {
 
 /// Holds an identity against a family (or a file of the user's own) and the other families there are.
 ///
-/// Contradicted: an object has another value than the family's data states for it; or the family states too
-/// little, and all that tells another family apart (`telling` or `certain`) holds. A file of the user's own
-/// and a family whose parent fits are not contradicted by another family: they may describe the same drive.
+/// Proven: what its data states holds and is telling, or its own objects are there (Rules::identity_looks).
+/// Contradicted: an object has another value than the family's data states for it; or none of its own objects
+/// is there; or the family states too little, and all that tells another family apart (`telling` or
+/// `certain`) holds. A file of the user's own and a family whose parent fits are not contradicted by another
+/// family: they may describe the same drive.
 FamilyVerdict judge_family(const Identity& identity, const drive::Profile& profile,
                            std::span<const drive::Family> families);
 
 /// All marks of the family are there and hold.
 bool fits(const Identity& identity, const drive::Rules& rules);
+/// The marks hold, and its own objects are there, as far as they were looked for.
+bool may_be(const Identity& identity, const drive::Rules& rules);
+/// Only soft marks, which hold: a family for drives of many makers.
+bool fits_as_generic(const Identity& identity, const drive::Rules& rules);
 /// The family states something that other drives do not have.
 bool has_marks(const drive::Rules& rules);
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "drive/standard_objects.hpp"
+#include "session/family_check.hpp"
 
 namespace servoctl::session {
 namespace {
@@ -37,11 +38,16 @@ std::vector<Result<Identity>> identify(Session& session, std::span<const std::ui
                                          [](const auto& mark) { return mark.object == objects::kRevision; });
   const auto known = [&](std::uint8_t node) {
     const auto* found = session.identities().find(node, session.watch().boots(node));
-    return found != nullptr && with_revision && !found->revision ? nullptr : found;
+    const bool whole = found != nullptr && (!with_revision || found->revision) &&
+                       std::all_of(rules.identity_looks.begin(), rules.identity_looks.end(),
+                                   [&](ObjectAddress object) { return found->looked.contains(object); });
+    return whole ? found : nullptr;
   };
   std::vector<ObjectAddress> objects{objects::kDeviceType, objects::kVendorId, objects::kProductCode,
                                      objects::kDeviceName};
   if (with_revision) objects.push_back(objects::kRevision);
+  const auto looks_at = objects.size();
+  objects.insert(objects.end(), rules.identity_looks.begin(), rules.identity_looks.end());
   std::vector<SdoRequest> requests;
   for (const auto node : nodes)
     if (known(node) == nullptr)
@@ -68,12 +74,35 @@ std::vector<Result<Identity>> identify(Session& session, std::span<const std::ui
     identity.product_code = number(here[2]);
     identity.device_name = text(here[3]);
     if (with_revision) identity.revision = number(here[4]);
+    for (std::size_t i = looks_at; i < objects.size(); ++i)
+      identity.looked.emplace(objects[i], here[i].has_value());
     session.identities().keep(identity, session.watch().boots(node));
     out.emplace_back(std::move(identity));
   }
   // What is wrong with the bus is told by what follows.
   if (!requests.empty()) (void)settle_duplicates(session, nodes, kBeforeWrites);
   return out;
+}
+
+void look_for_families(Session& session, std::span<Identity> identities,
+                       std::span<const drive::Family> families) {
+  std::vector<SdoRequest> requests;
+  std::vector<Identity*> whose;
+  for (const auto& family : families) {
+    const auto rules = drive::load_rules(family);
+    if (!rules) continue;
+    for (auto& identity : identities)
+      if (fits(identity, *rules))
+        for (const auto object : rules->identity_looks) {
+          requests.push_back({identity.node, object, {}});
+          whose.push_back(&identity);
+        }
+  }
+  const auto answers = session.transfer(requests);
+  for (std::size_t i = 0; i < answers.size(); ++i)
+    if (tells(answers[i])) whose[i]->looked.insert_or_assign(requests[i].object, answers[i].has_value());
+  for (const auto& identity : identities)
+    session.identities().keep(identity, session.watch().boots(identity.node));
 }
 
 Result<void> settle_duplicates(Session& session, std::span<const std::uint8_t> nodes, Duration least) {

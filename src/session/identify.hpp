@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/result.hpp"
-#include "drive/rules.hpp"
+#include "drive/profile.hpp"
 #include "session/identity.hpp"
 #include "session/session.hpp"
 
@@ -13,10 +13,17 @@ namespace servoctl::session {
 
 /// What the nodes are, as far as it tells a family: 1000h, 1018h:01 and :02, 1008h, and 1018h:03 where a mark
 /// of the rules asks for it. Read in one transfer, all nodes at the same time, and kept in the session until
-/// a node restarts. A node that does not answer has Errc::timeout. Where something was read, listens for a
-/// second node of the same number, see settle_duplicates().
+/// a node restarts; so is whether the family's own objects are there (Rules::identity_looks). A node that
+/// does not answer has Errc::timeout. Where something was read, listens for a second node of the same number,
+/// see settle_duplicates().
 std::vector<Result<Identity>> identify(Session& session, std::span<const std::uint8_t> nodes,
                                        const drive::Rules& rules);
+
+/// Looks for the own objects of every family that the identity leaves open (Rules::identity_looks), by
+/// reading them, all at the same time: what they are is noted in the identities, and kept in the session.
+/// What is not answered stays unknown.
+void look_for_families(Session& session, std::span<Identity> identities,
+                       std::span<const drive::Family> families);
 
 /// How long a second node of the same number is waited for, at least: answers of two drives of one kind are
 /// close together; where somebody looks who is there, others have their time as well.

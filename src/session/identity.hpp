@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 
+#include "base/object_address.hpp"
 #include "canopen/nmt.hpp"
 
 namespace servoctl::session {
@@ -20,6 +22,8 @@ struct Identity {
   std::string hardware_version;               ///< 1009h
   std::string software_version;               ///< 100Ah
   std::optional<canopen::NmtState> nmt;       ///< Heard from heartbeat or boot-up, if any.
+  std::map<ObjectAddress, bool>
+      looked;  ///< Objects of families that were looked for: whether they are there.
 };
 
 }  // namespace servoctl::session

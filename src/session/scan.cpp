@@ -86,10 +86,11 @@ std::vector<Guess> guess_families(const Identity& identity, std::span<const driv
   for (const auto& family : families) {
     const auto rules = drive::load_rules(family);
     if (!rules) continue;
-    if (has_marks(*rules) && fits(identity, *rules)) out.push_back({family.name, rules->identity_certain});
+    const bool generic = fits_as_generic(identity, *rules);
+    if (generic || may_be(identity, *rules)) out.push_back({family.name, rules->identity_certain, generic});
   }
-  std::stable_sort(out.begin(), out.end(),
-                   [](const Guess& a, const Guess& b) { return a.certain && !b.certain; });
+  const auto rank = [](const Guess& guess) { return guess.certain ? 0 : guess.generic ? 2 : 1; };
+  std::stable_sort(out.begin(), out.end(), [&](const Guess& a, const Guess& b) { return rank(a) < rank(b); });
   return out;
 }
 

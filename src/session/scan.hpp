@@ -17,13 +17,15 @@ namespace servoctl::session {
 /// bus is lost.
 Result<std::vector<Identity>> scan(Session& session, std::span<const std::uint8_t> nodes);
 
-/// A family whose identity rule fits a node.
+/// A family whose identity rule fits a node, or whose own objects it has.
 struct Guess {
   std::string family;
   bool certain = false;
+  bool generic = false;  ///< For drives of many makers.
 };
 
-/// Families that fit, certain ones first. Families whose rules cannot be read are left out.
+/// Families that fit, certain ones first, generic ones last. Families whose rules cannot be read are left
+/// out.
 std::vector<Guess> guess_families(const Identity& identity, std::span<const drive::Family> families);
 
 }  // namespace servoctl::session

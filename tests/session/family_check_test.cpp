@@ -63,6 +63,55 @@ TEST(FamilyCheck, HoldsEveryFamilyAgainstEveryDrive) {
   }
 }
 
+/// As it is asked before something is written.
+TEST(FamilyCheck, LooksForObjectsThatOnlyTheFamilyHas) {
+  const std::map<std::pair<std::string, std::string>, Kind> open{
+      {{"cia402", "gsd600"}, Kind::proven},
+      {{"cia402", "sv2"}, Kind::proven},
+      {{"cia402", "ts"}, Kind::unproven},
+  };
+  for (const std::string drive : kFamilies)
+    for (const std::string named : kFamilies) {
+      auto session = Session(sim::open_sim(drive + "@1", kFolders, sim::SimBus::Clock::virtual_time).value(),
+                             "sim", Options{});
+      const std::uint8_t node[] = {1};
+      const auto identity = identify(session, node, profile(named).rules).front().value();
+      const auto expected = open.find({named, drive});
+      const auto verdict = judge(identity, profile(named));
+      EXPECT_EQ(verdict.kind, expected != open.end() ? expected->second
+                              : named == drive       ? Kind::proven
+                                                     : Kind::contradicted)
+          << "-d " << named << " on " << drive << ": " << verdict.why;
+    }
+}
+
+TEST(FamilyCheck, TakesHalfOfTheOwnObjectsForNoProof) {
+  auto identity = identity_of("ts");
+  const auto ts = profile("ts");
+  for (const auto object : ts.rules.identity_looks) identity.looked[object] = true;
+  EXPECT_EQ(judge(identity, ts).kind, Kind::proven);
+  identity.looked[ts.rules.identity_looks.front()] = false;
+  EXPECT_EQ(judge(identity, ts).kind, Kind::unproven);
+}
+
+TEST(FamilyCheck, OffersWhatFitsAndTheGenericFamilyLast) {
+  const std::map<std::string, std::vector<std::string>> fitting{
+      {"gsd600", {"gsd600", "cia402"}}, {"dm", {"dm"}},         {"da200", {"da200"}},
+      {"sv2", {"sv2", "cia402"}},       {"cia402", {"cia402"}}, {"ts", {"ts"}},
+  };
+  const auto families = drive::find_families(kFolders);
+  for (const auto& [drive, expected] : fitting) {
+    auto session = Session(sim::open_sim(drive + "@1", kFolders, sim::SimBus::Clock::virtual_time).value(),
+                           "sim", Options{});
+    const std::uint8_t node[] = {1};
+    auto found = scan(session, node).value();
+    look_for_families(session, found, families);
+    std::vector<std::string> names;
+    for (const auto& guess : guess_families(found.front(), families)) names.push_back(guess.family);
+    EXPECT_EQ(names, expected) << drive;
+  }
+}
+
 TEST(FamilyCheck, NamesTheObjectAndBothValues) {
   const auto verdict = judge(identity_of("da200"), profile("gsd600"));
   EXPECT_EQ(verdict.object, (ObjectAddress{0x1000, 0}));
