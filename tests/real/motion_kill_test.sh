@@ -132,6 +132,7 @@ case $bus in
         *) fail "cable cut: the drive is '$after'" ;;
       esac
       kill "$sim2"; wait "$sim2"
+      ip link set can0 up
     fi
     ;;
 esac
