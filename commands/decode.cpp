@@ -16,7 +16,7 @@ using report::Value;
 
 constexpr Parameter kParameters[] = {
     {.name = "file",
-     .help = "a recording: candump -L or candump -l, --trace, or .asc",
+     .help = "a recording: --trace, candump -L, -l, -ta or plain, or .asc",
      .kind = Kind::file,
      .required = true},
     {.name = "--raw", .help = "show the frames as well", .kind = Kind::flag},
@@ -48,7 +48,8 @@ const Command kDecode{
     .path = "decode",
     .summary = "Explain a recording: PDO and SDO with names and values, NMT, EMCY",
     .details =
-        "Reads what --trace, `candump -L` or `candump -l` wrote, and .asc logs. With -d the objects have "
+        "Reads what --trace or candump wrote (-L, -l, or as on a terminal, -ta -tz -tA -x -a), and .asc "
+        "logs. With -d the objects have "
         "their "
         "names, units "
         "and labels; with -n only these nodes (and frames of the whole bus) are shown, with --service and "

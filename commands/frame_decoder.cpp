@@ -89,7 +89,9 @@ const DecodedFrame& FrameDecoder::decode(const can::Frame& frame) {
     out_.service = "controller";
     out_.text = report ? can::text(*report) : "error frame, or report of the controller";
   } else if (frame.extended) {
-    out_.text = "29-bit identifier";
+    const auto* pdo = frame.remote ? nullptr : pdos_.find(canopen::can_id_of(frame));
+    if (pdo != nullptr) decode_pdo(frame, pdo->node, pdo);
+    if (pdo == nullptr) out_.text = "29-bit identifier";
   } else {
     decode_service(frame);
   }

@@ -201,19 +201,25 @@ void PdoBook::rebuild(std::uint8_t id) {
 /// A producer goes before a consumer, one that is in use before one that is switched off.
 void PdoBook::index() {
   by_id_.fill(nullptr);
+  by_long_id_.clear();
   const auto rank = [](const PdoView& view) {
     return 2 * view.pdo.is_valid() + (view.pdo.direction == canopen::PdoDirection::transmit);
   };
   for (const auto& entry : nodes_)
     for (const auto& view : entry.second.views) {
-      if (view.can_id() >= by_id_.size() || !canopen::service_of(view.can_id()).empty()) continue;
-      auto& place = by_id_[view.can_id()];
+      const auto can_id = view.can_id();
+      const bool is_long = (can_id & canopen::kPdoExtended) != 0;
+      if (!is_long && (can_id >= by_id_.size() || !canopen::service_of(can_id).empty())) continue;
+      auto& place = is_long ? by_long_id_[can_id] : by_id_[can_id];
       if (place == nullptr || rank(view) > rank(*place)) place = &view;
     }
 }
 
 const PdoView* PdoBook::find(std::uint32_t can_id) {
-  if (can_id >= by_id_.size()) return nullptr;
+  if (can_id >= by_id_.size()) {
+    const auto found = by_long_id_.find(can_id);
+    return found == by_long_id_.end() ? nullptr : found->second;
+  }
   if (by_id_[can_id] != nullptr || can_id < kFirstPdoId || can_id > kLastPdoId) return by_id_[can_id];
   const auto id = static_cast<std::uint8_t>(can_id & canopen::kLastNode);
   if (id != 0) node(id);

@@ -71,7 +71,7 @@ class PdoBook {
   /// The node has booted: what was learnt of it holds no longer.
   void forget(std::uint8_t node);
 
-  /// The PDO of this CAN-ID, or null. Holds until the book changes.
+  /// The PDO of this CAN-ID (canopen::can_id_of()), or null. Holds until the book changes.
   const PdoView* find(std::uint32_t can_id);
 
  private:
@@ -89,6 +89,7 @@ class PdoBook {
   bool chinese_;
   std::map<std::uint8_t, Node> nodes_;
   std::array<const PdoView*, 0x800> by_id_{};
+  std::map<std::uint32_t, const PdoView*> by_long_id_;  ///< Of 29 bits.
 };
 
 }  // namespace servoctl::commands

@@ -33,9 +33,9 @@ Result<void> check_usable(const PdoView& view) {
   if (view.pdo.entries.empty())
     return fail(Errc::negative, fmt::format("node {}: {} maps nothing", view.node, view.name),
                 "`pdo map` gives it objects");
-  if (view.can_id() > 0x7FF || view.pdo.bits() > 64)
+  if (view.pdo.bits() > 64)
     return fail(Errc::negative, fmt::format("node {}: {} is no PDO of classical CAN", view.node, view.name),
-                "`pdo show` tells its COB-ID and its length");
+                "`pdo show` tells its length");
   return {};
 }
 
@@ -72,7 +72,7 @@ Result<Message> make_message(Context& context, const PdoView& view, std::span<co
     data.push_back(std::move(change->data));
     ++next;
   }
-  Message out{can::make_frame(view.can_id(), canopen::pack_pdo(view.pdo.entries, data)), {}};
+  Message out{canopen::pdo_frame(view.can_id(), canopen::pack_pdo(view.pdo.entries, data)), {}};
   append_values(view, out.frame.payload(), context.chinese, out.text);
   return out;
 }

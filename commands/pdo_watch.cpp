@@ -93,9 +93,9 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   Listener listener;
   listener.on_pause = [&] { writer.flush(); };
   listener.on_frame = [&](const can::Frame& frame, TimePoint time) {
-    if (frame.extended || frame.remote || frame.error) return;
+    if (frame.remote || frame.error) return;
     for (auto& entry : *watched) {
-      if (entry.view.can_id() != frame.id) continue;
+      if (entry.view.can_id() != canopen::can_id_of(frame)) continue;
       entry.rhythm.add(time);
       show(context, writer, entry, frame, time - begin);
     }

@@ -6,6 +6,7 @@
 #include "base/file.hpp"
 #include "base/text.hpp"
 #include "can/asc.hpp"
+#include "can/candump.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -20,8 +21,6 @@ bool take_line(std::string_view& text, std::string_view& line) {
   text.remove_prefix(std::min(end + 1, text.size()));
   return true;
 }
-
-bool is_fd(std::string_view line) { return line.find("##") != std::string_view::npos; }
 
 }  // namespace
 
@@ -38,8 +37,10 @@ Strays for_each_frame(std::string_view text, const std::function<bool(const can:
       read = reader.read(line);
     } else if (auto frame = can::parse_log_line(line)) {
       read = {can::AscLine::Kind::frame, std::move(*frame)};
+    } else if (auto shown = can::parse_candump_line(line)) {
+      read = {can::AscLine::Kind::frame, std::move(*shown)};
     } else if (!trim(line).empty()) {
-      read.kind = is_fd(line) ? can::AscLine::Kind::unsuited : can::AscLine::Kind::malformed;
+      read.kind = can::is_candump_fd(line) ? can::AscLine::Kind::unsuited : can::AscLine::Kind::malformed;
     }
     if (read.kind == can::AscLine::Kind::frame && !take(read.frame)) break;
     out.unsuited += read.kind == can::AscLine::Kind::unsuited;
@@ -64,7 +65,7 @@ std::vector<std::string> notices(std::string_view path, const Strays& strays) {
 
 tl::unexpected<Error> no_frames(std::string_view path) {
   return fail(Errc::file, fmt::format("{} holds no frame", path),
-              "recordings are in the form of `candump -L` (`--trace FILE` makes them) or .asc");
+              "recordings are in a form of candump (`--trace FILE` makes that of `candump -L`) or .asc");
 }
 
 }  // namespace servoctl::commands

@@ -153,6 +153,12 @@ Result<void> hold_drives(Context& context, const ReplayDrives& drives) {
 
 void tell_plan(Context& context, const ReplayPlan& plan, std::string_view file) {
   for (auto& notice : notices(file, plan.strays)) context.notices.push_back(std::move(notice));
+  if (plan.extended > 0)
+    context.notices.push_back(
+        plan.extended == 1
+            ? "1 frame with an identifier of 29 bits is left out: such are not replayed"
+            : fmt::format("{} frames with identifiers of 29 bits are left out: such are not replayed",
+                          plan.extended));
   std::string dropped;
   for (const auto id : plan.dropped) dropped += fmt::format("{}0x{:03X}", dropped.empty() ? "" : ", ", id);
   if (!dropped.empty())
@@ -171,6 +177,10 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   const auto plan = plan_replay(context, arguments, *text, *drives);
   tell_plan(context, plan, file);
   if (plan.seen == 0) return no_frames(file);
+  if (plan.frames.size() > 1 && plan.frames.back().time == Duration::zero())
+    return fail(Errc::usage,
+                fmt::format("{} has no times: it cannot be told when its frames are to go", file),
+                "`candump -L` and `candump -ta` write them, `--trace FILE` too");
   if (plan.frames.empty())
     return fail(Errc::negative, fmt::format("none of the {} frames of {} is sent", plan.seen, file),
                 "--only and --master leave them out");

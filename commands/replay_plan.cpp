@@ -222,11 +222,14 @@ Result<ReplayDrives> find_drives(Context& context, std::string_view recording) {
 ReplayPlan plan_replay(const Context& context, const Arguments& arguments, std::string_view recording,
                        const ReplayDrives& drives) {
   Choice choice(context, arguments, drives);
+  std::size_t extended = 0;
   auto strays = for_each_frame(recording, [&](const can::LogFrame& line) {
     if (is_of_canopen(line.frame)) choice.add(line);
+    extended += line.frame.extended && !line.frame.error;
     return true;
   });
   auto out = std::move(choice).take();
+  out.extended = extended;
   out.strays = strays;
   return out;
 }

@@ -36,6 +36,7 @@ struct ReplayPlan {
   FrameKinds lasting;               ///< What restarts a drive, re-addresses it, stores or starts an action.
   std::set<std::uint8_t> nodes;     ///< Those that what can move is sent to.
   std::set<std::uint32_t> dropped;  ///< CAN-IDs that --master left out as TPDOs although no drive told so.
+  std::size_t extended = 0;         ///< Frames of 29 bits, which are not sent.
   Strays strays;                    ///< Lines that gave no frame.
 
   std::size_t dangerous() const;

@@ -98,16 +98,17 @@ void Sampler::find_pdos() {
 
 std::vector<Sample> Sampler::on_frame(const can::Frame& frame, TimePoint time) {
   std::vector<Sample> out;
-  if (frame.extended || frame.remote || frame.error) return out;
+  if (frame.remote || frame.error) return out;
   const auto data = frame.payload();
-  if (frame.id > canopen::kSdoAnswer && frame.id <= canopen::kSdoAnswer + canopen::kLastNode &&
-      data.size() >= 4)
+  const auto can_id = canopen::can_id_of(frame);
+  if (!frame.extended && frame.id > canopen::kSdoAnswer &&
+      frame.id <= canopen::kSdoAnswer + canopen::kLastNode && data.size() >= 4)
     for (std::size_t i = 0; i < channels_.size(); ++i)
       if (channels_[i].node + canopen::kSdoAnswer == frame.id &&
           channels_[i].target.address == canopen::sdo_object(frame))
         answered_[i] = time;
   for (const auto& source : sources_) {
-    if (source.can_id != frame.id || data.size() * 8 < source.bits) continue;
+    if (source.can_id != can_id || data.size() * 8 < source.bits) continue;
     const canopen::PdoEntry skipped{{0x0001, 0}, static_cast<std::uint8_t>(source.field.first_bit)};
     const canopen::PdoEntry entries[] = {skipped, source.field.entry};
     out.push_back({source.channel, time, canopen::unpack_pdo(entries, data)->back(), true});

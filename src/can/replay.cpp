@@ -6,6 +6,7 @@
 
 #include "base/file.hpp"
 #include "base/text.hpp"
+#include "can/candump.hpp"
 
 namespace servoctl::can {
 namespace {
@@ -59,11 +60,14 @@ Result<std::unique_ptr<Bus>> open_replay(const std::filesystem::path& file) {
   const auto text = read_file(file, kMaxFile);
   if (!text) return tl::unexpected<Error>(text.error());
   std::vector<LogFrame> lines;
-  for (const auto row : split(std::string_view(*text), '\n'))
-    if (auto line = parse_log_line(row)) lines.push_back(std::move(*line));
+  for (const auto row : split(std::string_view(*text), '\n')) {
+    auto line = parse_log_line(row);
+    if (!line) line = parse_candump_line(row);
+    if (line) lines.push_back(std::move(*line));
+  }
   if (lines.empty())
     return fail(Errc::file, fmt::format("{} holds no frame", file.string()),
-                "recordings are in the form of `candump -L`; `--trace FILE` makes them");
+                "recordings are in a form of candump; `--trace FILE` makes them");
   std::stable_sort(lines.begin(), lines.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
   return std::make_unique<ReplayBus>(std::move(lines), file.string());
 }

@@ -110,4 +110,10 @@ Bytes pack_pdo(std::span<const PdoEntry> entries, std::span<const Bytes> values)
   return out;
 }
 
+can::Frame pdo_frame(std::uint32_t can_id, std::span<const std::uint8_t> data) {
+  auto frame = can::make_frame(can_id & kPdoCobIdMask, data);
+  frame.extended = (can_id & kPdoExtended) != 0;
+  return frame;
+}
+
 }  // namespace servoctl::canopen

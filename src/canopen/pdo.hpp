@@ -10,6 +10,7 @@
 
 #include "base/bytes.hpp"
 #include "base/object_address.hpp"
+#include "can/frame.hpp"
 
 namespace servoctl::canopen {
 
@@ -72,6 +73,14 @@ struct PdoPlace {
 };
 /// Empty for indexes other than 1400h to 1BFFh.
 std::optional<PdoPlace> pdo_at(std::uint16_t index);
+
+/// As Pdo::can_id() has it: with kPdoExtended for a frame of 29 bits.
+inline std::uint32_t can_id_of(const can::Frame& frame) {
+  return frame.id | (frame.extended ? kPdoExtended : 0U);
+}
+
+/// A data frame of this CAN-ID, as can_id_of() tells it.
+can::Frame pdo_frame(std::uint32_t can_id, std::span<const std::uint8_t> data);
 
 /// The service that CiA 301 gives this CAN-ID (7.3.5 and table 40), which no PDO may use: `NMT`, `SDO`, `a
 /// reserved service`; empty when a PDO may.

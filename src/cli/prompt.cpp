@@ -1,11 +1,13 @@
 #include "cli/prompt.hpp"
 
 #include <editline/readline.h>
+#include <langinfo.h>
 #include <poll.h>
 #include <unistd.h>
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <clocale>
 #include <cstdlib>
 #include <cstring>
 #include <optional>
@@ -94,8 +96,16 @@ void Prompt::save_history() const {
   ::unlink(own.c_str());
 }
 
+/// The editor reads characters, not bytes, by the locale; where that knows no UTF-8 (LANG=C), one that does.
+void choose_characters() {
+  const auto* chosen = std::setlocale(LC_CTYPE, "");
+  if (chosen == nullptr || ::nl_langinfo(CODESET) != std::string_view("UTF-8"))
+    (void)std::setlocale(LC_CTYPE, "C.UTF-8");
+}
+
 int Prompt::run() {
   active_ = this;
+  choose_characters();
   rl_readline_name = const_cast<char*>("servoctl");  // NOLINT: the library's type is not const.
   rl_initialize();
   rl_catch_signals = 0;

@@ -89,6 +89,7 @@ DialogueStep PowerDown::next(TimePoint now) {
     case State::stopping:
     case State::switching_off:
     case State::cutting: return {.request = read(objects::kStatusword)};
+    case State::holding: return {.request = read(objects::kControlword)};
     case State::halt: return {.request = command(kHalted)};
     case State::read_mode: return {.request = read(objects::kModeDisplay)};
     case State::zero_target: {
@@ -132,6 +133,7 @@ void PowerDown::on_answer(Result<Bytes> answer, TimePoint now) {
     case State::switching_off: return on_switching_off(answer, now);
     case State::cut: return on_cut(answer, now);
     case State::cutting: return on_cutting(answer, now);
+    case State::holding: return on_holding(answer, now);
     case State::wake:
     case State::silence_by_nmt:
     case State::wake_again:

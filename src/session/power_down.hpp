@@ -57,7 +57,7 @@ bool is_without_power(drive::DriveState state);
 
 /// The way down of one drive; how it goes on when a drive refuses, ignores or does not answer: the next means
 /// is tried, in the end NMT. 00h is written whatever the statusword says, because a drive that has lost its
-/// power by itself may start again with what 6040h holds.
+/// power by itself may start again with what 6040h holds; 6040h is read back for the same reason.
 class PowerDown final : public Dialogue {
  public:
   /// Longest wait for one transition; manuals name none, and a brake takes some tenths of a second.
@@ -91,6 +91,7 @@ class PowerDown final : public Dialogue {
     switching_off,
     cut,
     cutting,
+    holding,
     wake,
     silence_by_nmt,
     wake_again,
@@ -114,6 +115,7 @@ class PowerDown final : public Dialogue {
   void on_switching_off(const Result<Bytes>& answer, TimePoint now);
   void on_cut(const Result<Bytes>& answer, TimePoint now);
   void on_cutting(const Result<Bytes>& answer, TimePoint now);
+  void on_holding(const Result<Bytes>& answer, TimePoint now);
   void cut_again(TimePoint now);
   void end_stop();
   void end_cut();

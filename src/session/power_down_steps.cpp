@@ -20,6 +20,8 @@ constexpr Duration kShortQuickStop = std::chrono::seconds(1);
 constexpr Duration kMostDelay = std::chrono::milliseconds(250);
 constexpr double kSlower = 0.9;
 constexpr int kTries = 3;
+/// Bits 0 to 3 of 6040h: enable operation.
+constexpr std::uint64_t kEnables = 0x000F;
 constexpr int kOtherMeans = 2;
 /// A motor at rest shows some noise: this part of its greatest speed.
 constexpr double kStandstillPart = 50;
@@ -140,12 +142,24 @@ void PowerDown::on_cut(const Result<Bytes>& answer, TimePoint now) {
 void PowerDown::on_cutting(const Result<Bytes>& answer, TimePoint now) {
   const auto state = take_state(answer);
   if (answer && is_without_power(state)) {
-    if (result_.written || tries_ >= kTries) return end_cut();
-    return enter(State::cut, now);
+    if (result_.written) return enter(State::holding, now);
+    return tries_ >= kTries ? end_cut() : enter(State::cut, now);
   }
   if (answer && now < since_ + kPatience) return poll_again(State::cutting, now);
   if (answer && result_.written && !brakes(state)) ++result_.ignored;
   cut_again(now);
+}
+
+/// A drive that acknowledges 0000h and does not take it (another master commands it, or its panel) keeps what
+/// starts it again. One that does not tell has acknowledged it, and that is all that is known.
+void PowerDown::on_holding(const Result<Bytes>& answer, TimePoint now) {
+  const auto word = answer && answer->size() <= 2 ? load_le(*answer) : 0;
+  if ((word & kEnables) != kEnables) return end_cut();
+  result_.written = false;
+  refused_ = drive_error(Errc::negative, plan_.node,
+                         fmt::format("it was acknowledged, and 6040h still reads 0x{:04X}", word), {});
+  if (tries_ >= kTries) return end_cut();
+  enter(State::cut, now);
 }
 
 /// In the end by NMT: some families are disabled outside of Operational, others react to "stop" by 6007h.

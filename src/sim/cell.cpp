@@ -25,7 +25,9 @@ tl::unexpected<Error> bad_spec(std::string what) {
 Result<Place> parse_place(std::string_view text) {
   const auto at = text.find('@');
   Place place;
-  place.family = lower(text.substr(0, at));
+  // The case of a family's name is all the same, that of a file's is not.
+  const auto family = text.substr(0, at);
+  place.family = family.find_first_of("./") == std::string_view::npos ? lower(family) : std::string(family);
   if (place.family.empty()) return bad_spec("a simulated drive has no family name");
   if (at == std::string_view::npos) return place;
   const auto node = parse_digits(text.substr(at + 1), 10);

@@ -60,13 +60,13 @@ void PdoEngine::stop() {
 }
 
 void PdoEngine::on_frame(const can::Frame& frame, TimePoint now) {
-  if (!operational_ || frame.extended || frame.remote || frame.error) return;
+  if (!operational_ || frame.remote || frame.error) return;
   const auto sync = static_cast<std::uint32_t>(values_->number(objects::kSyncCobId)) & canopen::kPdoCobIdMask;
-  if (frame.id == (sync == 0 ? canopen::kSync : sync)) return on_sync(frame, now);
+  if (!frame.extended && frame.id == (sync == 0 ? canopen::kSync : sync)) return on_sync(frame, now);
   for (const auto& known : known_) {
     if (known.direction != PdoDirection::receive) continue;
     const auto pdo = read_pdo(known.direction, known.number);
-    if (pdo.is_valid() && pdo.can_id() == frame.id) on_receive(pdo, frame);
+    if (pdo.is_valid() && pdo.can_id() == canopen::can_id_of(frame)) on_receive(pdo, frame);
   }
 }
 
