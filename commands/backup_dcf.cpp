@@ -107,19 +107,26 @@ Result<std::string> dcf_text(const drive::Profile& profile, const Backup& backup
 }
 
 Result<Backup> read_dcf_backup(std::string_view text, const std::string& file, std::uint8_t node) {
-  const auto dcf = od::read_dcf(text, file);
+  auto dcf = od::read_dcf(text, file);
   if (!dcf) return tl::unexpected<Error>(dcf.error());
   Backup out;
   out.identity.node = dcf->node_id;
+  if (dcf->vendor_number != 0) out.identity.vendor_id = dcf->vendor_number;
+  if (dcf->product_number != 0) out.identity.product_code = dcf->product_number;
+  out.unusable = std::move(dcf->unusable);
+  out.passed_over = std::move(dcf->passed_over);
   for (const auto& value : dcf->values) {
     Backup::Entry entry;
     entry.object = value.object;
     entry.type = value.type;
     entry.line = value.line;
     auto bytes = od::encode(value.type, value.value.for_node(dcf->node_id != 0 ? dcf->node_id : node));
-    if (!bytes)
-      return fail(Errc::file, fmt::format("{}:{}: {}: {}", file, value.line, to_string(value.object),
-                                          bytes.error().message));
+    if (!bytes) {
+      out.unusable.push_back(fail(Errc::file, fmt::format("{}:{}: {}: {}", file, value.line,
+                                                          to_string(value.object), bytes.error().message))
+                                 .value());
+      continue;
+    }
     entry.bytes = std::move(*bytes);
     out.entries.push_back(std::move(entry));
   }

@@ -11,6 +11,7 @@
 #include "commands/backup_formats.hpp"
 #include "commands/cob_id_check.hpp"
 #include "commands/reading.hpp"
+#include "drive/standard_objects.hpp"
 #include "od/eds_section.hpp"
 #include "od/text_encoding.hpp"
 
@@ -73,6 +74,16 @@ std::string_view title_of(BackupFormat format) {
   return {};
 }
 
+/// What the family's own data sheet says although its drives may say something else, proves no other drive.
+void forget_soft_marks(const drive::Profile& profile, session::Identity& identity) {
+  for (const auto& mark : profile.rules.identity) {
+    if (!mark.soft) continue;
+    if (mark.object == objects::kVendorId && identity.vendor_id == mark.value) identity.vendor_id.reset();
+    if (mark.object == objects::kProductCode && identity.product_code == mark.value)
+      identity.product_code.reset();
+  }
+}
+
 Result<Backup> read_foreign(const Context& context, const BackupSource& source, const drive::Profile& profile,
                             std::uint8_t node) {
   switch (source.format) {
@@ -89,6 +100,11 @@ void tell(Context& context, const BackupSource& source, const Backup& backup) {
       "{} is a {}: it proves neither its drive nor that it is whole; its objects and values fit {}",
       source.file, title_of(source.format), backup.family));
   constexpr std::size_t kMostNamed = 4;
+  for (std::size_t i = 0; i < std::min(kMostNamed, backup.passed_over.size()); ++i)
+    context.notices.push_back(backup.passed_over[i]);
+  if (backup.passed_over.size() > kMostNamed)
+    context.notices.push_back(
+        fmt::format("{}: {} more of that kind", source.file, backup.passed_over.size() - kMostNamed));
   std::size_t left_out = 0;
   std::string names;
   for (const auto& entry : backup.entries) {
@@ -99,6 +115,26 @@ void tell(Context& context, const BackupSource& source, const Backup& backup) {
   if (left_out > kMostNamed) names += fmt::format(" and {} more", left_out - kMostNamed);
   if (left_out > 0)
     context.notices.push_back(fmt::format("{}: no settings, and left out: {}", source.file, names));
+}
+
+/// All are named, none is left out without being told to.
+Result<void> judge_unusable(Context& context, const Backup& backup, bool skip_invalid) {
+  auto& errors = context.errors;
+  if (skip_invalid || backup.unusable.empty()) {
+    for (auto error : backup.unusable) {
+      error.code = Errc::negative;
+      error.message += "; it is left out";
+      error.hint.clear();
+      errors.push_back(std::move(error));
+    }
+    return {};
+  }
+  errors.insert(errors.end(), backup.unusable.begin() + 1, backup.unusable.end());
+  auto error = backup.unusable.front();
+  error.hint +=
+      fmt::format("{}--skip-invalid leaves {} out", error.hint.empty() ? "" : "; ",
+                  backup.unusable.size() == 1 ? "it" : fmt::format("these {}", backup.unusable.size()));
+  return fail(std::move(error));
 }
 
 }  // namespace
@@ -198,7 +234,7 @@ std::string family_of(const Context& context, const BackupSource& source) {
 }
 
 Result<Backup> read_backup(Context& context, const BackupSource& source, const drive::Profile* profile,
-                           std::uint8_t node) {
+                           std::uint8_t node, bool skip_invalid) {
   if (source.format == BackupFormat::json) return read_json_backup(source.text, source.file);
   if (profile == nullptr)
     return fail(Errc::usage, fmt::format("{} does not say of which family it is", source.file),
@@ -206,17 +242,20 @@ Result<Backup> read_backup(Context& context, const BackupSource& source, const d
   auto backup = read_foreign(context, source, *profile, node);
   if (!backup) return backup;
   if (backup->identity.node == 0) backup->identity.node = node;
+  forget_soft_marks(*profile, backup->identity);
   const bool procedure = source.format == BackupFormat::batch || source.format == BackupFormat::concise_dcf;
-  if (const auto settled = settle(*backup, source.file, *profile, procedure); !settled)
-    return tl::unexpected<Error>(settled.error());
+  settle(*backup, source.file, *profile, procedure);
+  if (const auto usable = judge_unusable(context, *backup, skip_invalid); !usable)
+    return tl::unexpected<Error>(usable.error());
   tell(context, source, *backup);
   return backup;
 }
 
-Result<Backup> read_backup(Context& context, const std::filesystem::path& file, std::uint8_t node) {
+Result<Backup> read_backup(Context& context, const std::filesystem::path& file, std::uint8_t node,
+                           bool skip_invalid) {
   const auto source = open_backup(file);
   if (!source) return tl::unexpected<Error>(source.error());
-  return read_backup(context, *source, context.profile, node);
+  return read_backup(context, *source, context.profile, node, skip_invalid);
 }
 
 Result<Backup> read_backup(const std::filesystem::path& file) {

@@ -29,7 +29,15 @@ struct Backup {
   std::string bus;
   session::Identity identity;
   std::vector<Entry> entries;
+  /// Of a file of another form: entries that cannot be used, with line and reason. They are not in `entries`.
+  std::vector<Error> unusable;
+  std::vector<std::string> passed_over;  ///< Entries that mean nothing, with the line.
 };
+
+/// `--skip-invalid`, for the commands that read files of other forms.
+inline constexpr Parameter kSkipInvalidOption{.name = "--skip-invalid",
+                                              .help = "leave out entries that cannot be used, and name them",
+                                              .kind = Kind::flag};
 
 /// The forms settings are kept in. All are read; the last one is not written.
 enum class BackupFormat : std::uint8_t {
@@ -85,13 +93,15 @@ std::string family_of(const Context& context, const BackupSource& source);
 
 /// Takes a backup apart. Errc::file, with line and entry, when it is truncated, edited (the checksum does not
 /// fit), of a newer version, has an entry twice, or in another format than JSON an entry the family does not
-/// know or whose value does not fit. What is no setting (commands, targets, readings) is left out, with the
+/// know or whose value does not fit; with `skip_invalid` such an entry is left out, and its error in
+/// `context.errors`. What is no setting (commands, targets, readings) is left out, with the
 /// reason. A file that says no node is taken as of `node`; `profile` may be null for JSON alone. What a
 /// format cannot prove is told in `context.notices`.
 Result<Backup> read_backup(Context& context, const BackupSource& source, const drive::Profile* profile,
-                           std::uint8_t node);
+                           std::uint8_t node, bool skip_invalid = false);
 /// The same, with the family of the context.
-Result<Backup> read_backup(Context& context, const std::filesystem::path& file, std::uint8_t node);
+Result<Backup> read_backup(Context& context, const std::filesystem::path& file, std::uint8_t node,
+                           bool skip_invalid = false);
 /// A backup in JSON: what servoctl keeps for itself.
 Result<Backup> read_backup(const std::filesystem::path& file);
 

@@ -59,8 +59,8 @@ std::string commented_line(const drive::Profile* profile, std::uint8_t node, Obj
 Result<Backup> read_concise_dcf(std::string_view bytes, const std::string& file);
 
 /// Adds what the family knows to what a file of another format than JSON says: id, name, type. Leaves out,
-/// with the reason, what is no setting. Errc::file for an object the family does not know, one that stands
-/// twice (unless `procedure`, and of a PDO: then the last counts), and bytes of another length.
-Result<void> settle(Backup& backup, const std::string& file, const drive::Profile& profile, bool procedure);
+/// with the reason, what is no setting. Takes out as unusable an object the family does not know, one that
+/// stands twice (unless `procedure`, and of a PDO: then the last counts), and bytes of another length.
+void settle(Backup& backup, const std::string& file, const drive::Profile& profile, bool procedure);
 
 }  // namespace servoctl::commands

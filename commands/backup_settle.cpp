@@ -57,13 +57,13 @@ Result<void> settle_value(Backup::Entry& entry, const drive::Target& target, con
 
 }  // namespace
 
-Result<void> settle(Backup& backup, const std::string& file, const drive::Profile& profile, bool procedure) {
+void settle(Backup& backup, const std::string& file, const drive::Profile& profile, bool procedure) {
   std::map<ObjectAddress, std::string_view> reasons;
   for (const auto& setting : drive::settings_of(profile))
     reasons.emplace(setting.entry->address, setting.left_out);
   backup.family = profile.family;
   std::map<ObjectAddress, Backup::Entry> entries;
-  for (auto& entry : backup.entries) {
+  const auto take = [&](Backup::Entry& entry) -> Result<void> {
     const auto target = drive::target_at(&profile, entry.object);
     if (target.entry == nullptr && target.parameter == nullptr)
       return refuse(file, entry, fmt::format("is unknown to {}", profile.family),
@@ -82,10 +82,12 @@ Result<void> settle(Backup& backup, const std::string& file, const drive::Profil
     if (entry.bytes)
       if (const auto fits = settle_value(entry, target, file, backup.identity.node); !fits) return fits;
     entries.insert_or_assign(entry.object, std::move(entry));
-  }
+    return {};
+  };
+  for (auto& entry : backup.entries)
+    if (const auto taken = take(entry); !taken) backup.unusable.push_back(taken.error());
   backup.entries.clear();
   for (auto& entry : entries) backup.entries.push_back(std::move(entry.second));
-  return {};
 }
 
 }  // namespace servoctl::commands

@@ -19,6 +19,7 @@ constexpr Parameter kParameters[] = {
     {.name = "a", .help = "a backup, data sheet, node:N or factory", .kind = Kind::file, .required = true},
     {.name = "b", .help = "a backup, data sheet, node:N or factory", .kind = Kind::file, .required = true},
     {.name = "--batch", .help = "the command lines that turn A into B", .kind = Kind::flag},
+    kSkipInvalidOption,
 };
 
 /// One word of `diff`: a file, a drive on the bus, or the factory values.
@@ -52,8 +53,8 @@ Result<Operand> parse_operand(std::string_view word) {
 /// One comparison of two operands.
 class Difference {
  public:
-  Difference(Context& context, std::vector<Operand> operands)
-      : context_(&context), operands_(std::move(operands)) {}
+  Difference(Context& context, std::vector<Operand> operands, bool skip_invalid)
+      : context_(&context), operands_(std::move(operands)), skip_invalid_(skip_invalid) {}
 
   Result<Value> run(bool batch) {
     if (const auto found = find_family(); !found) return tl::unexpected<Error>(found.error());
@@ -107,7 +108,7 @@ class Difference {
   }
 
   Result<Side> side_of_file(std::size_t i) {
-    const auto backup = read_backup(*context_, *operands_[i].source, profile_, other_node(i));
+    const auto backup = read_backup(*context_, *operands_[i].source, profile_, other_node(i), skip_invalid_);
     if (!backup) return tl::unexpected<Error>(backup.error());
     if (!family_.empty() && family_ != backup->family)
       return fail(Errc::negative,
@@ -145,6 +146,7 @@ class Difference {
 
   Context* context_;
   std::vector<Operand> operands_;
+  bool skip_invalid_ = false;
   const drive::Profile* profile_ = nullptr;
   std::string family_;  ///< Of the files read so far.
   Side sides_[2];
@@ -162,7 +164,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
     return batch ? fail(Errc::usage, "two data sheets (EDS) have no settings that lines could write",
                         "leave --batch out to compare their dictionaries")
                  : compare_data_sheets(context, *operands[0].source, *operands[1].source);
-  return Difference(context, std::move(operands)).run(batch);
+  return Difference(context, std::move(operands), arguments.has("--skip-invalid")).run(batch);
 }
 
 }  // namespace
@@ -182,7 +184,9 @@ const Command kDiff{
         "factory "
         "node:1 --batch` is all that was set on a drive. Two data sheets (EDS; or an EDS and a DCF) are "
         "compared "
-        "entry by entry: name, type, access, mapping, default and limits.",
+        "entry by entry: name, type, access, mapping, default and limits. A file of another form with an "
+        "entry that "
+        "cannot be used is refused; --skip-invalid compares the rest.",
     .parameters = kParameters,
     .needs = Needs::nothing,
     .effect = Effect::reads,

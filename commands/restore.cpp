@@ -17,6 +17,7 @@ constexpr Parameter kParameters[] = {
     {.name = "--with-address", .help = "node-ID and bitrate as well", .kind = Kind::flag},
     {.name = "--no-rollback", .help = "leave things as they are when a write fails", .kind = Kind::flag},
     {.name = "--force", .help = "although identity or family are others", .kind = Kind::flag},
+    kSkipInvalidOption,
     kKeepOption,
     kUnlockOption,
     kResumeOption,
@@ -39,19 +40,20 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   if (const auto alone = check_resume(arguments); !alone) return tl::unexpected<Error>(alone.error());
   const std::string file(arguments.text("file"));
   const auto node = context.nodes.front();
-  auto backup = read_backup(context, file, node);
+  auto backup = read_backup(context, file, node, arguments.has("--skip-invalid"));
   if (backup)
     if (const auto kept = keep_part(context, *backup, file, arguments.text("--only")); !kept)
       return tl::unexpected<Error>(kept.error());
   if (!backup) return tl::unexpected<Error>(backup.error());
-  auto done = put_into(
-      context, *backup, file, node, fmt::format("{}.before-node-{}.json", file, node),
-      {.choice = {.with_address = arguments.has("--with-address"), .force = arguments.has("--force")},
-       .roll_back = !arguments.has("--no-rollback"),
-       .keep = arguments.has("--keep"),
-       .unlock = arguments.has("--unlock"),
-       .resume = arguments.has("--resume")},
-      journal_of(file));
+  auto done = put_into(context, *backup, file, node, fmt::format("{}.before-node-{}.json", file, node),
+                       {.choice = {.with_address = arguments.has("--with-address"),
+                                   .force = arguments.has("--force"),
+                                   .skip_invalid = arguments.has("--skip-invalid")},
+                        .roll_back = !arguments.has("--no-rollback"),
+                        .keep = arguments.has("--keep"),
+                        .unlock = arguments.has("--unlock"),
+                        .resume = arguments.has("--resume")},
+                       journal_of(file));
   if (!done) return tl::unexpected<Error>(done.error());
   return std::move(done->answer);
 }
@@ -71,7 +73,9 @@ const Command kRestore{
         "--with-address is given; COB-IDs follow the node they go to. While it runs a journal stands beside "
         "that file: after a pulled cable or a crash --resume goes on, and restoring FILE.before-node-N.json "
         "takes everything back. A COB-ID that CiA 301 keeps for another service is refused. A value of a "
-        "backup of ours outside of the limits is named and left as it is (exit code 1), the rest restored.",
+        "backup of ours outside of the limits is named and left as it is (exit code 1), the rest restored; "
+        "entries of another tool's file that "
+        "cannot be used, or not by this drive, are refused, and with --skip-invalid named and left out.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::stores,

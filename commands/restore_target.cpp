@@ -173,10 +173,16 @@ Result<void> RestoreTarget::check_values() {
     bool outside = false;
     const auto fits = present_.at(object) == data ? Result<void>() : check_value(object, data, outside);
     if (fits) continue;
-    if (!outside || !backup_->proven) return fits;
     auto error = fits.error();
+    const bool skipped = choice_.skip_invalid && error.code == Errc::negative;
+    if (!skipped && (!outside || !backup_->proven)) {
+      if (error.code == Errc::negative) error.hint += "; --skip-invalid restores the rest";
+      return fail(std::move(error));
+    }
     error.message += "; node " + fmt::format("{} keeps {}", node_, to_hex(present_.at(object)));
-    error.hint = "what the drive itself came with is not known to be taken back: `write` it when it matters";
+    error.hint =
+        skipped ? ""
+                : "what the drive itself came with is not known to be taken back: `write` it when it matters";
     left_.push_back(std::move(error));
     wanted_.erase(object);
     present_.erase(object);

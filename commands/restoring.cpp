@@ -111,7 +111,7 @@ class Restoring {
               "the same values are needed to go on; `restore {} -n {}` puts back what was there before",
               before_.string(), node_));
     left_ = found;
-    options_.choice = {found.with_address, found.force};
+    options_.choice = {found.with_address, found.force, options_.choice.skip_invalid};
     options_.keep = found.keep;
     options_.unlock = found.unlock;
     return {};

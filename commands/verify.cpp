@@ -12,13 +12,14 @@ constexpr std::string_view kFactory = "factory";
 
 constexpr Parameter kParameters[] = {
     {.name = "file", .help = "a backup of any format, or factory", .kind = Kind::file, .required = true},
+    kSkipInvalidOption,
 };
 
 Result<Value> run(Context& context, const Arguments& arguments) {
   const auto name = arguments.text("file");
   std::optional<Backup> backup;
   if (name != kFactory) {
-    auto read = read_backup(context, name, context.nodes.front());
+    auto read = read_backup(context, name, context.nodes.front(), arguments.has("--skip-invalid"));
     if (!read) return tl::unexpected<Error>(read.error());
     if (read->family != context.profile->family)
       return fail(Errc::refused,
@@ -55,7 +56,10 @@ const Command kVerify{
     .path = "verify",
     .summary = "Compare a drive with a backup or the factory values",
     .details =
-        "Reads every value of the backup from the drive; exit code 1 when one differs or is not there.",
+        "Reads every value of the backup from the drive; exit code 1 when one differs or is not there. A "
+        "file of "
+        "another form with an entry that cannot be used is refused; --skip-invalid verifies the rest, exit "
+        "code 1.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::reads,

@@ -134,8 +134,9 @@ _servoctl_scan() {
     'write') options+=' --type --from --transfer --keep --unlock' ;;
     'param set') options+=' --keep --unlock' ;;
     'backup') options+=' --format --only' ;;
-    'diff') options+=' --batch' ;;
-    'restore') options+=' --only --with-address --no-rollback --force --keep --unlock --resume' ;;
+    'diff') options+=' --batch --skip-invalid' ;;
+    'verify') options+=' --skip-invalid' ;;
+    'restore') options+=' --only --with-address --no-rollback --force --skip-invalid --keep --unlock --resume' ;;
     'clone') options+=' --from --to --force --keep --unlock --resume' ;;
     'enable') options+=' --turn' ;;
     'jog') options+=' --for --turns --until-key --accel --csv --limit --max-torque --max-following-error --window --turn --master-node --plot' ;;

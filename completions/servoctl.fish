@@ -98,14 +98,17 @@ complete -c servoctl -n __servoctl_at -a diff -d 'Compare backups, drives, facto
 complete -c servoctl -n '__servoctl_in diff' -r -F
 complete -c servoctl -n '__servoctl_in diff' -r -F
 complete -c servoctl -n '__servoctl_in diff' -l batch -d 'the command lines that turn A into B'
+complete -c servoctl -n '__servoctl_in diff' -l skip-invalid -d 'leave out entries that cannot be used, and name them'
 complete -c servoctl -n __servoctl_at -a verify -d 'Compare a drive with a backup or the factory values'
 complete -c servoctl -n '__servoctl_in verify' -r -F
+complete -c servoctl -n '__servoctl_in verify' -l skip-invalid -d 'leave out entries that cannot be used, and name them'
 complete -c servoctl -n __servoctl_at -a restore -d 'Put a backup into a drive: all of it or nothing'
 complete -c servoctl -n '__servoctl_in restore' -r -F
 complete -c servoctl -n '__servoctl_in restore' -l only -x -d 'communication, pdo, params, or a group of parameters'
 complete -c servoctl -n '__servoctl_in restore' -l with-address -d 'node-ID and bitrate as well'
 complete -c servoctl -n '__servoctl_in restore' -l no-rollback -d 'leave things as they are when a write fails'
 complete -c servoctl -n '__servoctl_in restore' -l force -d 'although identity or family are others'
+complete -c servoctl -n '__servoctl_in restore' -l skip-invalid -d 'leave out entries that cannot be used, and name them'
 complete -c servoctl -n '__servoctl_in restore' -l keep -d 'make the values survive power-off'
 complete -c servoctl -n '__servoctl_in restore' -l unlock -d 'give the family'\''s password before, take it back after'
 complete -c servoctl -n '__servoctl_in restore' -l resume -d 'go on with what was cut off, as it was begun'

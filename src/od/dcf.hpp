@@ -40,13 +40,20 @@ struct DcfValue {
 
 /// What a device configuration file wants a device to hold.
 struct Dcf {
-  std::uint8_t node_id = 0;      ///< 0: not said.
+  std::uint8_t node_id = 0;         ///< 0: not said.
+  std::uint32_t vendor_number = 0;  ///< Of [DeviceInfo], as 1018h:01 and :02; 0: not said.
+  std::uint32_t product_number = 0;
   std::vector<DcfValue> values;  ///< In rising address; without those of domains, which have none.
+  /// ParameterValues that cannot be used: no value of their type, twice there, of an object that is described
+  /// wrongly or not at all. Errc::file, with the line, in its order.
+  std::vector<Error> unusable;
+  /// ParameterValues that mean nothing: of a record or array as a whole, or in a list ([2100Value]) beside
+  /// the same sub-index with one of its own. With the line.
+  std::vector<std::string> passed_over;
 };
 
-/// Reads a DCF of any tool. Unlike read_eds() it leaves out no value: Errc::file, with the line, for a
-/// ParameterValue that cannot be used, that stands twice or whose object is described wrongly, and when there
-/// is none at all. `file` is used in messages.
+/// Reads a DCF of any tool. Unlike read_eds() it leaves out no value without a word: see Dcf::unusable.
+/// Errc::file when there is no ParameterValue at all. `file` is used in messages.
 Result<Dcf> read_dcf(std::string_view text, std::string_view file);
 
 }  // namespace servoctl::od

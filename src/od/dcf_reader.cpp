@@ -7,8 +7,10 @@
 #include "od/dcf.hpp"
 #include "od/eds.hpp"
 #include "od/eds_compact.hpp"
+#include "od/eds_findings.hpp"
 #include "od/eds_keys.hpp"
 #include "od/eds_section.hpp"
+#include "od/eds_value.hpp"
 #include "od/ini.hpp"
 #include "od/text_encoding.hpp"
 
@@ -33,52 +35,73 @@ class Reader {
   }
 
   Result<Dcf> read() {
-    for (const auto& section : ini_.sections)
-      if (const auto found = find_places(section); !found) return tl::unexpected<Error>(found.error());
-    Dcf out{eds_->node_id, {}};
-    for (const auto& object : eds_->dictionary.objects())
-      for (const auto& entry : object.entries) {
-        auto* place = place_of(entry);
-        if (place == nullptr) continue;
-        place->taken = entry.configured || entry.type == DataType::domain;
-        if (entry.configured)
-          out.values.push_back({entry.address, entry.type, *entry.configured, place->key->line});
-      }
-    if (const auto all = check_taken(); !all) return tl::unexpected<Error>(all.error());
-    if (places_.empty())
+    for (const auto& section : ini_.sections) find_places(section);
+    if (places_.empty() && out_.unusable.empty())
       return fail(Errc::file, fmt::format("{}: there is no ParameterValue in it", file_),
                   "it is a data sheet (EDS), or a DCF in which nothing is configured");
-    return out;
+    out_.node_id = eds_->node_id;
+    out_.vendor_number = eds_->device.vendor_number;
+    out_.product_number = eds_->device.product_number;
+    for (const auto& object : eds_->dictionary.objects())
+      for (const auto& entry : object.entries) take(entry);
+    for (const auto& place : places_)
+      if (!place.taken) pass(place);
+    std::ranges::sort(out_.unusable, {}, [](const Error& error) { return error.line; });
+    return std::move(out_);
   }
 
  private:
-  Result<void> find_places(const IniSection& section) {
+  void find_places(const IniSection& section) {
     const auto name = parse_section_name(section.name);
     if (name && name->kind == SectionKind::values) return find_listed(section, name->index);
     // A section with a name that only resembles one of the standard is found as well.
     for (const auto& key : section.keys) {
       if (!equals_nocase(key.key, "ParameterValue") || key.value.empty()) continue;
-      if (!sections_.emplace(section.line, places_.size()).second)
-        return refuse(key.line, fmt::format("[{}] has a second ParameterValue", section.name),
-                      "remove one of them");
-      places_.push_back({&section, &key});
+      if (sections_.emplace(section.line, places_.size()).second)
+        places_.push_back({&section, &key});
+      else
+        refuse(key.line, fmt::format("[{}] has a second ParameterValue", section.name), "remove one of them");
     }
-    return {};
   }
 
-  Result<void> find_listed(const IniSection& section, std::uint16_t index) {
+  void find_listed(const IniSection& section, std::uint16_t index) {
     for (const auto& key : section.keys) {
       if (equals_nocase(key.key, "NrOfEntries") || key.value.empty()) continue;
       const auto sub = parse_digits(key.key, 10);
       if (!sub || *sub > 0xFF)
-        return refuse(key.line, fmt::format("[{}] has no entry '{}'", section.name, clip(key.key, 40)),
-                      "its keys are the decimal numbers of sub-indexes");
-      if (!listed_.emplace(list_key(index, static_cast<std::uint8_t>(*sub)), places_.size()).second)
-        return refuse(key.line, fmt::format("[{}] has a second entry {}", section.name, *sub),
-                      "remove one of them");
-      places_.push_back({&section, &key});
+        refuse(key.line, fmt::format("[{}] has no entry '{}'", section.name, clip(key.key, 40)),
+               "its keys are the decimal numbers of sub-indexes");
+      else if (listed_.emplace(list_key(index, static_cast<std::uint8_t>(*sub)), places_.size()).second)
+        places_.push_back({&section, &key});
+      else
+        refuse(key.line, fmt::format("[{}] has a second entry {}", section.name, *sub), "remove one of them");
     }
-    return {};
+  }
+
+  /// What the file has for an entry: its own ParameterValue goes before that of a list.
+  void take(const Entry& entry) {
+    auto* place = place_of(entry);
+    if (place == nullptr) return;
+    place->taken = true;
+    tell_double(entry, *place);
+    if (entry.type == DataType::domain) return;
+    auto value = entry.configured;
+    // Entries of a compact list have theirs already.
+    Findings findings;
+    if (!value) value = eds_value(place->key, entry.type, findings, ValueUse::written);
+    if (value) out_.values.push_back({entry.address, entry.type, *value, place->key->line});
+    if (!value) place->taken = false;
+  }
+
+  void tell_double(const Entry& entry, const Place& place) {
+    const auto listed = listed_.find(list_key(entry.address.index, entry.address.sub));
+    if (listed == listed_.end() || &places_[listed->second] == &place) return;
+    auto& other = places_[listed->second];
+    other.taken = true;
+    out_.passed_over.push_back(
+        fmt::format("{}:{}: [{}] has a value of {} as well, which counts for nothing beside "
+                    "the one in line {}",
+                    file_, other.key->line, other.section->name, to_string(entry.address), place.key->line));
   }
 
   Place* place_of(const Entry& entry) {
@@ -89,33 +112,45 @@ class Reader {
     return listed == listed_.end() ? nullptr : &places_[listed->second];
   }
 
-  Result<void> check_taken() const {
-    for (const auto& place : places_) {
-      if (place.taken) continue;
-      const auto first = place.section->line;
-      const auto last = place.section->keys.back().line;
-      const auto& all = eds_->diagnostics;
-      const auto why = std::find_if(all.begin(), all.end(), [&](const Diagnostic& d) {
-        return d.severity == Severity::error && d.line >= first && d.line <= last &&
-               (d.line == place.key->line || d.rule != "bad-value");
-      });
-      if (why != all.end()) return refuse(why->line, why->message, why->remedy);
-      return refuse(place.key->line,
-                    fmt::format("[{}] describes no object that could hold the value", place.section->name),
-                    "give the object its section, with DataType and AccessType");
-    }
-    return {};
+  /// Of an object with sub-indexes itself, which holds nothing.
+  bool is_of_whole(const Place& place) const {
+    const auto name = parse_section_name(place.section->name);
+    if (!name || name->kind != SectionKind::object) return false;
+    const auto& objects = eds_->dictionary.objects();
+    return std::any_of(objects.begin(), objects.end(), [&](const Object& object) {
+      return object.index == name->index && object.code != ObjectCode::var && !object.entries.empty();
+    });
   }
 
-  tl::unexpected<Error> refuse(std::uint32_t line, std::string_view what, std::string hint) const {
+  void pass(const Place& place) {
+    if (is_of_whole(place)) {
+      out_.passed_over.push_back(fmt::format("{}:{}: [{}] has sub-indexes and holds no value of its own",
+                                             file_, place.key->line, place.section->name));
+      return;
+    }
+    const auto first = place.section->line;
+    const auto last = place.section->keys.back().line;
+    const auto& all = eds_->diagnostics;
+    const auto why = std::find_if(all.begin(), all.end(), [&](const Diagnostic& d) {
+      return d.severity == Severity::error && d.line >= first && d.line <= last &&
+             (d.line == place.key->line || d.rule != "bad-value");
+    });
+    if (why != all.end()) return refuse(why->line, why->message, why->remedy);
+    refuse(place.key->line,
+           fmt::format("[{}] describes no object that could hold the value", place.section->name),
+           "give the object its section, with DataType and AccessType");
+  }
+
+  void refuse(std::uint32_t line, std::string_view what, std::string hint) {
     auto error = fail(Errc::file, fmt::format("{}:{}: {}", file_, line, what), std::move(hint)).value();
     error.line = line;
-    return fail(std::move(error));
+    out_.unusable.push_back(std::move(error));
   }
 
   IniText ini_;
   const EdsFile* eds_;
   std::string_view file_;
+  Dcf out_;
   std::vector<Place> places_;
   std::unordered_map<std::uint32_t, std::size_t> sections_;  ///< Position in places_ by line of the section.
   std::unordered_map<std::uint32_t, std::size_t> listed_;

@@ -41,6 +41,62 @@ TEST_F(ForeignInput, PutsNoPdosIntoADriveThatPdoMapWouldRefuse) {
   }
 }
 
+TEST_F(ForeignInput, NamesTheEntriesThatCannotBeUsedAndLeavesThemOutWhenItIsTold) {
+  use("sim:gsd600@1", "gsd600");
+  const auto entry = [](std::string_view section, std::string_view type, std::string_view value) {
+    return fmt::format(
+        "[{}]\nParameterName=x\nObjectType=0x7\nDataType={}\nAccessType=rw\nParameterValue={}\n", section,
+        type, value);
+  };
+  // Pn0214 (1 to 65535) fits, Pn0049 (1 to 127, 0x2000:32) does not fit its limit, a word is no number, the
+  // last is no object of this drive.
+  const auto good = entry("2001subF", "0x6", "450");
+  const auto text = good + entry("60FE", "0x7", "many") + entry("5FFF", "0x6", "1");
+  spill("t.dcf", text);
+  EXPECT_EQ(run("restore %t.dcf --yes"), 7);
+  EXPECT_NE(console.err_text.find("--skip-invalid leaves these 2 out"), std::string::npos)
+      << console.err_text;
+  EXPECT_NE(console.err_text.find("'many' is no number"), std::string::npos) << console.err_text;
+  EXPECT_NE(console.err_text.find("0x5FFF:0 is unknown to gsd600"), std::string::npos) << console.err_text;
+  EXPECT_EQ(run("diff %t.dcf factory"), 7);
+  EXPECT_EQ(run("diff %t.dcf factory --skip-invalid"), 1) << console.err_text;
+  EXPECT_NE(console.out_text.find("450"), std::string::npos) << console.out_text;
+  EXPECT_EQ(run("restore %t.dcf --yes --skip-invalid"), 1) << console.err_text;
+  EXPECT_NE(console.err_text.find("it is left out"), std::string::npos) << console.err_text;
+  EXPECT_NE(value("0x2001:F").find("\"raw\":450"), std::string::npos);
+  EXPECT_EQ(run("verify %t.dcf --skip-invalid"), 1) << console.err_text;
+
+  const auto above = entry("2001subF", "0x6", "460") + entry("2000sub6", "0x6", "40000");
+  spill("above.dcf", above);
+  EXPECT_EQ(run("restore %above.dcf --yes"), 1);
+  EXPECT_NE(console.err_text.find("--skip-invalid restores the rest"), std::string::npos) << console.err_text;
+  EXPECT_NE(value("0x2001:F").find("\"raw\":450"), std::string::npos);
+  EXPECT_EQ(run("restore %above.dcf --yes --skip-invalid"), 1) << console.err_text;
+  EXPECT_NE(console.err_text.find("out of range"), std::string::npos) << console.err_text;
+  EXPECT_NE(value("0x2001:F").find("\"raw\":460"), std::string::npos);
+}
+
+TEST_F(ForeignInput, PutsNoDcfOfAnotherMakersDriveIntoOne) {
+  for (const std::string family : {"gsd600", "dm", "da200", "ts", "sv2"}) {
+    SCOPED_TRACE(family);
+    use("sim:" + family + "@1", family);
+    const auto sheet = [](std::string_view info) {
+      return fmt::format(
+          "[DeviceInfo]\n{}[6083]\nParameterName=x\nObjectType=0x7\nDataType=0x7\nAccessType=rw\n"
+          "ParameterValue=77\n",
+          info);
+    };
+    spill("other.dcf", sheet("VendorNumber=0x123\nProductNumber=0x77\n"));
+    EXPECT_EQ(run("restore %other.dcf --yes"), 8) << console.err_text;
+    EXPECT_NE(console.err_text.find("is another drive than that of"), std::string::npos) << console.err_text;
+    spill("silent.dcf", sheet("VendorNumber=0\n"));
+    EXPECT_EQ(run("restore %silent.dcf --yes --dry-run"), 0) << console.err_text;
+    // What servoctl makes of the family's own data sheet goes back.
+    EXPECT_EQ(run("backup %own.dcf"), 0) << console.err_text;
+    EXPECT_EQ(run("restore %own.dcf --yes"), 0) << console.err_text;
+  }
+}
+
 struct CobId {
   std::uint32_t value;
   const char* why;

@@ -43,7 +43,8 @@ DcfSettings settings() {
 
 std::string refusal(const std::string& text) {
   const auto dcf = read_dcf(text, "x.dcf");
-  return dcf ? std::string("taken") : dcf.error().message;
+  if (!dcf) return dcf.error().message;
+  return dcf->unusable.empty() ? std::string("taken") : dcf->unusable.front().message;
 }
 
 std::string replaced(std::string text, std::string_view from, std::string_view to) {
@@ -114,6 +115,41 @@ TEST(Dcf, NeverLosesAValueSilently) {
   EXPECT_EQ(refusal(kSheet + "[1600Value]\n1=9\n01=8\n"), "x.dcf:60: [1600Value] has a second entry 1");
   EXPECT_EQ(refusal(kSheet + "[1600Value]\none=9\n"), "x.dcf:59: [1600Value] has no entry 'one'");
   EXPECT_EQ(refusal(with("ParameterValue=7\n", "")), "x.dcf: there is no ParameterValue in it");
+}
+
+/// Entries of an array, each with its own section, or as a compact list.
+std::string entries(std::string_view main, std::string_view first, std::string_view list) {
+  return fmt::format(
+      "[2100]\nParameterName=A\nObjectType=8\nSubNumber=3\n{}[2100sub0]\nParameterName=n\nDataType=5\n"
+      "AccessType=ro\n[2100sub1]\nParameterName=a\nDataType=6\nAccessType=rw\n{}[2100sub2]\nParameterName=b\n"
+      "DataType=6\nAccessType=rw\n{}",
+      main, first, list);
+}
+
+TEST(Dcf, PassesOverTheValueOfAWholeRecordAndTellsIt) {
+  const auto dcf = read_dcf(entries("ParameterValue=9\n", "ParameterValue=1\n", ""), "x.dcf").value();
+  EXPECT_TRUE(dcf.unusable.empty());
+  ASSERT_EQ(dcf.values.size(), 1U);
+  EXPECT_EQ(dcf.values[0].object, (ObjectAddress{0x2100, 1}));
+  ASSERT_EQ(dcf.passed_over.size(), 1U);
+  EXPECT_EQ(dcf.passed_over[0], "x.dcf:5: [2100] has sub-indexes and holds no value of its own");
+}
+
+TEST(Dcf, TakesAListOfValuesBesideExplicitSubIndexes) {
+  const auto dcf = read_dcf(entries("", "", "[2100Value]\nNrOfEntries=2\n1=5\n2=0x10\n"), "x.dcf").value();
+  EXPECT_TRUE(dcf.unusable.empty() && dcf.passed_over.empty());
+  ASSERT_EQ(dcf.values.size(), 2U);
+  EXPECT_EQ(to_string(dcf.values[0].value.value), "5");
+  EXPECT_EQ(to_string(dcf.values[1].value.value), "16");
+  const auto both =
+      read_dcf(entries("", "ParameterValue=7\n", "[2100Value]\n1=5\n2=6\n3=1\n"), "x.dcf").value();
+  ASSERT_EQ(both.values.size(), 2U);
+  EXPECT_EQ(to_string(both.values[0].value.value), "7") << "its own goes before that of the list";
+  EXPECT_EQ(both.passed_over.size(), 1U);
+  ASSERT_EQ(both.unusable.size(), 1U) << "there is no sub-index 3";
+  const auto wrong = read_dcf(entries("", "", "[2100Value]\n1=five\n2=6\n"), "x.dcf").value();
+  EXPECT_EQ(wrong.values.size(), 1U);
+  EXPECT_EQ(wrong.unusable.size(), 1U);
 }
 
 }  // namespace

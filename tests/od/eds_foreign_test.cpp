@@ -166,8 +166,8 @@ TEST(Dcf, TakesAMisspeltParameterValueAndRefusesTwo) {
   ASSERT_EQ(dcf->values.size(), 1U);
   EXPECT_EQ(to_string(dcf->values[0].value.value), "5");
   const auto two = read_dcf(text + "ParameterValue=6\n", "x.dcf");
-  ASSERT_FALSE(two);
-  EXPECT_EQ(two.error().message, "x.dcf:6: [2000] has a second ParameterValue");
+  ASSERT_EQ(two->unusable.size(), 1U);
+  EXPECT_EQ(two->unusable[0].message, "x.dcf:6: [2000] has a second ParameterValue");
 }
 
 TEST(EdsObject, ThatIsAVarAndHasSubIndexesIsTold) {
@@ -284,7 +284,7 @@ TEST(EdsNodeIdSum, ThatNoNodeFitsIsTold) {
   EXPECT_EQ(can_id("$NODEID+0x40000180"), Rules{});
   EXPECT_EQ(can_id("$NODEID+0x7FF"), Rules{"9:14 node-id-sum"});
   EXPECT_EQ(can_id("$NODEID+0x200007FF"), Rules{});
-  EXPECT_FALSE(read_dcf(variable("2000", "5", "ParameterValue=$NODEID+0xFF"), "x.dcf"));
+  EXPECT_EQ(read_dcf(variable("2000", "5", "ParameterValue=$NODEID+0xFF"), "x.dcf")->unusable.size(), 1U);
 }
 
 TEST(EdsValue, WithALeadingZeroTellsBothReadings) {
@@ -304,15 +304,16 @@ TEST(Dcf, RefusesAParameterValueThatIsTwoNumbers) {
     return read_dcf(variable("2000", "7", "ParameterValue=" + std::string(value)), "x.dcf");
   };
   const auto octal = with("0777");
-  ASSERT_FALSE(octal);
+  ASSERT_EQ(octal->unusable.size(), 1U);
   EXPECT_EQ(
-      octal.error().message,
+      octal->unusable[0].message,
       "x.dcf:5: ParameterValue: '0777' is 511 by the standard (a leading zero means octal), and 777 to most "
       "who write it; not taken");
-  EXPECT_EQ(octal.error().hint, "write 0x1FF or 777");
-  for (const auto* value : {"007", "0", "00", "0x0777"}) EXPECT_TRUE(with(value)) << value;
-  EXPECT_FALSE(
-      read_dcf(variable("2000", "7", "ObjectType=8\nCompactSubObj=1") + "[2000Value]\n1=010\n", "x.dcf"));
+  EXPECT_EQ(octal->unusable[0].hint, "write 0x1FF or 777");
+  for (const auto* value : {"007", "0", "00", "0x0777"}) EXPECT_TRUE(with(value)->unusable.empty()) << value;
+  EXPECT_EQ(read_dcf(variable("2000", "7", "ObjectType=8\nCompactSubObj=1") + "[2000Value]\n1=010\n", "x.dcf")
+                ->unusable.size(),
+            1U);
 }
 
 TEST(EdsSection, OfAVendorIsNoOffence) {
