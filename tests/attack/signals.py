@@ -28,7 +28,7 @@ number = 0
 
 
 def status(env):
-    run = subprocess.run([servoctl, "status", "--timeout", "300ms", "--json"], env=env, capture_output=True, timeout=60)
+    run = subprocess.run([servoctl, "status", "--timeout", "2s", "--json"], env=env, capture_output=True, timeout=60)
     return json.loads(run.stdout)["result"][0] if run.returncode == 0 else None
 
 
@@ -121,7 +121,7 @@ def attack(env, family, folder):
     what = f"{number}: {family}, {place}, {output}, {' '.join(names)} {gap * 1000:g} ms apart after {delay * 1000:.0f} ms"
     run = Run(env, place, output, FAMILIES[family], folder)
     reads = output != "held terminal"
-    if place in ("batch", "pipe", "prompt") and not until(lambda: energised(env), 20):
+    if place in ("batch", "pipe", "prompt") and not until(lambda: energised(env), 60):
         failures.append(f"{what}: the drive is not enabled, nothing was tried")
     elif place in ("jog", "move"):
         time.sleep(rng.uniform(0, 2.5))
