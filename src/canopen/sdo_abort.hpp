@@ -20,6 +20,7 @@ inline constexpr std::uint32_t kReadOnly = 0x0601'0002;
 inline constexpr std::uint32_t kNoObject = 0x0602'0000;
 inline constexpr std::uint32_t kNotMappable = 0x0604'0041;
 inline constexpr std::uint32_t kPdoLength = 0x0604'0042;
+inline constexpr std::uint32_t kIncompatible = 0x0604'0043;
 inline constexpr std::uint32_t kLength = 0x0607'0010;
 inline constexpr std::uint32_t kTooLong = 0x0607'0012;
 inline constexpr std::uint32_t kTooShort = 0x0607'0013;
