@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <string>
 
+#include "base/object_address.hpp"
+
 namespace servoctl::canopen {
 
 /// SDO abort codes of CiA 301, 7.2.4.3.17, as far as the machines here raise them themselves.
@@ -41,6 +43,9 @@ std::string sdo_abort_text(std::uint32_t code);
 
 /// What the user can do about it; empty when the code leaves nothing to say.
 std::string sdo_abort_hint(std::uint32_t code);
+
+/// The same of a write, where CiA 301 says more of its object: parameters of PDOs, 1016h and 1019h.
+std::string sdo_abort_hint(std::uint32_t code, ObjectAddress object);
 
 /// Whether a server that answers a request for a block transfer with this code may take an ordinary one: it
 /// says something about the kind of transfer, nothing about the object.
