@@ -130,6 +130,7 @@ Value pdo(const Rules& rules) {
              {"most_entries", r.most_entries, Show::everywhere, "entries at most"},
              {"most_bits", r.most_bits, Show::everywhere, "bits at most"},
              {"clears_entries", r.clears_entries, Show::json},
+             {"mapped_abort", Hex{r.mapped_abort, 8}, Show::json},
              {"presets", text_list(presets), Show::everywhere, "recommended mappings"},
              {"refused_types", number_list(r.refused_types), Show::everywhere, "types refused"},
              {"assign_rpdo", report::text_or_null(r.assign_rpdo), Show::everywhere, "RPDO assignment"},

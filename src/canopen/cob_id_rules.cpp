@@ -40,6 +40,11 @@ bool is_its_own(std::string_view service, std::uint32_t can_id, std::uint8_t nod
 
 }  // namespace
 
+bool is_restricted(std::uint32_t can_id) {
+  const auto service = service_of(can_id);
+  return !service.empty() && service != "SYNC" && service != "TIME" && service != "EMCY";
+}
+
 std::string cob_id_conflict(ObjectAddress object, std::uint32_t cob_id, std::uint8_t node) {
   const auto service = service_at(object);
   if (service.empty() || !in_use(service, cob_id) || (cob_id & kExtended) != 0) return {};

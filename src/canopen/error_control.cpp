@@ -7,6 +7,12 @@
 
 namespace servoctl::canopen {
 
+std::uint8_t watched_node(std::uint32_t consumer_entry) {
+  const auto node = consumer_entry >> 16U & 0xFFU;
+  const bool on = (consumer_entry & 0xFFFFU) != 0 && node <= kLastNode;
+  return on ? static_cast<std::uint8_t>(node) : std::uint8_t{0};
+}
+
 void ErrorControlSlave::boot(NmtState state, TimePoint now) {
   tx_ = heartbeat_frame(node_, NmtState::initialising);
   state_ = state;

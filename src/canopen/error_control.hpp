@@ -9,6 +9,10 @@
 
 namespace servoctl::canopen {
 
+/// The node that an entry of 1016h with this value watches (CiA 301, 7.5.2.19): bits 23-16, with a time in ms
+/// in bits 15-0. 0, for none, where either is zero or the number is no node-ID.
+std::uint8_t watched_node(std::uint32_t consumer_entry);
+
 /// The error control services of an NMT slave (CiA 301, 7.2.8.2.2): boot-up, heartbeat, and answers to node
 /// guarding with life guarding. Performs no I/O and reads no clock.
 class ErrorControlSlave {

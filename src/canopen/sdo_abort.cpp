@@ -4,6 +4,8 @@
 #include <array>
 #include <string_view>
 
+#include "canopen/pdo.hpp"
+
 namespace servoctl::canopen {
 namespace {
 
@@ -86,6 +88,18 @@ std::string sdo_abort_text(std::uint32_t code) {
 std::string sdo_abort_hint(std::uint32_t code) {
   const auto* row = find(code);
   return row != nullptr ? std::string(row->hint) : "look the code up in the drive's manual";
+}
+
+std::string sdo_abort_hint(std::uint32_t code, ObjectAddress object) {
+  const bool by_state =
+      code == sdo_abort::kUnsupportedAccess || code == sdo_abort::kGeneral || code == sdo_abort::kDeviceState;
+  if (by_state && pdo_at(object.index))
+    return "a PDO is changed in steps (invalid, count 0, entries, count): `pdo map` takes them";
+  if (by_state && object == ObjectAddress{0x1019, 0})
+    return "it changes while 1006h is 0 only: write 0 there first, and the period again behind it";
+  if (code == sdo_abort::kIncompatible && object.index == 0x1016)
+    return "another entry watches this node already: write 0 there first";
+  return sdo_abort_hint(code);
 }
 
 bool refuses_block_transfer(std::uint32_t code) {

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <string>
 
+#include "base/object_address.hpp"
+
 namespace servoctl::canopen {
 
 /// SDO abort codes of CiA 301, 7.2.4.3.17, as far as the machines here raise them themselves.
@@ -20,6 +22,7 @@ inline constexpr std::uint32_t kReadOnly = 0x0601'0002;
 inline constexpr std::uint32_t kNoObject = 0x0602'0000;
 inline constexpr std::uint32_t kNotMappable = 0x0604'0041;
 inline constexpr std::uint32_t kPdoLength = 0x0604'0042;
+inline constexpr std::uint32_t kIncompatible = 0x0604'0043;
 inline constexpr std::uint32_t kLength = 0x0607'0010;
 inline constexpr std::uint32_t kTooLong = 0x0607'0012;
 inline constexpr std::uint32_t kTooShort = 0x0607'0013;
@@ -40,6 +43,9 @@ std::string sdo_abort_text(std::uint32_t code);
 
 /// What the user can do about it; empty when the code leaves nothing to say.
 std::string sdo_abort_hint(std::uint32_t code);
+
+/// The same of a write, where CiA 301 says more of its object: parameters of PDOs, 1016h and 1019h.
+std::string sdo_abort_hint(std::uint32_t code, ObjectAddress object);
 
 /// Whether a server that answers a request for a block transfer with this code may take an ordinary one: it
 /// says something about the kind of transfer, nothing about the object.

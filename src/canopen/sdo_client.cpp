@@ -94,9 +94,10 @@ void SdoClient::on_abort(const can::Frame& frame, TimePoint now) {
   const bool may_fall_back = transfer_ != Transfer::block && refuses_block_transfer(code);
   if (state_ == State::block_upload_initiate && may_fall_back) return begin_upload(now);
   if (state_ == State::block_download_initiate && may_fall_back) return begin_download(false, now);
+  const bool reads = state_ == State::upload_initiate || state_ == State::block_upload_initiate;
   auto refused =
       error(Errc::sdo_abort, fmt::format("refused: {} (abort 0x{:08X})", sdo_abort_text(code), code),
-            sdo_abort_hint(code));
+            reads ? sdo_abort_hint(code) : sdo_abort_hint(code, object_));
   refused.abort_code = code;
   finish(tl::unexpected<Error>(std::move(refused)));
 }

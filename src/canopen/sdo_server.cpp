@@ -72,6 +72,7 @@ void SdoServer::on_download_initiate(const can::Frame& frame, TimePoint now) {
   if (!options_.segmented) return abort(object, sdo_abort::kCommand);
   if (size_indicated) announced_ = sdo_data(frame);
   if (announced_ > kMaxSdoDownload) return abort(object, sdo_abort::kOutOfMemory);
+  if (const auto code = store_->check_writable(object); code != 0) return abort(object, code);
   state_ = State::download;
   deadline_ = now + options_.timeout;
   tx_ = sdo_frame(kSdoAnswer + node_, 0x60, object);

@@ -69,6 +69,7 @@ void SdoServer::on_block_download_initiate(const can::Frame& frame, TimePoint no
   if (!options_.block) return abort(object_, sdo_abort::kCommand);
   if ((frame.data[0] & kSizeIndicated) != 0) announced_ = sdo_data(frame);
   if (announced_ > kMaxSdoDownload) return abort(object_, sdo_abort::kOutOfMemory);
+  if (const auto code = store_->check_writable(object_); code != 0) return abort(object_, code);
   crc_ = options_.crc && (frame.data[0] & kCrcSupported) != 0;
   receiver_.start(options_.block_size, frame.data);
   nudged_ = false;

@@ -91,6 +91,9 @@ struct PdoRules {
   std::uint8_t most_entries = 64;
   std::uint16_t most_bits = 64;
   bool whole_bytes = false;
+  /// Abort code of an entry that is written while the count of its mapping is not 0 (CiA 301, 7.5.2.36,
+  /// leaves it open: stacks answer 0601 0000h or 0800 0000h).
+  std::uint32_t mapped_abort = 0x0601'0000;
   std::vector<std::int64_t> refused_types;  ///< Transmission types the drive does not know.
   /// What vendor-specific types mean here, in words; `on change` and `by the event timer` say that nothing
   /// else makes the drive send.

@@ -184,6 +184,7 @@ Result<void> read_pdo(const TableReader& reader, Rules& rules) {
                       {"most_entries", into(out.most_entries)},
                       {"most_bits", into(out.most_bits)},
                       {"whole_bytes", into(out.whole_bytes)},
+                      {"mapped_abort", into(out.mapped_abort)},
                       {"refused_types", into(out.refused_types)},
                       {"types", types},
                       {"preset", presets},

@@ -17,6 +17,10 @@ inline constexpr ObjectAddress kSerialNumber{0x1018, 4};
 inline constexpr ObjectAddress kErrorRegister{0x1001, 0};
 inline constexpr ObjectAddress kErrorHistory{0x1003, 0};  ///< Pre-defined error field, its count.
 inline constexpr ObjectAddress kSyncCobId{0x1005, 0};
+inline constexpr ObjectAddress kSyncPeriod{0x1006, 0};  ///< Communication cycle period, µs.
+inline constexpr ObjectAddress kTimeCobId{0x1012, 0};
+inline constexpr ObjectAddress kEmergencyCobId{0x1014, 0};
+inline constexpr ObjectAddress kSyncOverflow{0x1019, 0};  ///< Synchronous counter overflow value.
 inline constexpr ObjectAddress kGuardTime{0x100C, 0};  ///< ms.
 inline constexpr ObjectAddress kLifeTimeFactor{0x100D, 0};
 inline constexpr std::uint16_t kStoreIndex = 0x1010;

@@ -6,6 +6,7 @@
 
 #include "base/duration.hpp"
 #include "canopen/cob_id.hpp"
+#include "canopen/error_control.hpp"
 #include "drive/naming.hpp"
 #include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
@@ -23,8 +24,7 @@ bool has(const drive::Profile& profile, ObjectAddress object) {
   return profile.dictionary.find(object) != nullptr;
 }
 
-std::uint8_t node_of(std::uint64_t entry) { return static_cast<std::uint8_t>(entry >> 16U & 0x7FU); }
-bool is_free(std::uint64_t entry) { return node_of(entry) == 0 || (entry & 0xFFFFU) == 0; }
+std::uint8_t node_of(std::uint64_t entry) { return canopen::watched_node(static_cast<std::uint32_t>(entry)); }
 
 /// Whether a node is there that has not been heard: its heartbeats must not be sent by two.
 bool answers(Session& session, std::uint8_t node) {
@@ -54,6 +54,7 @@ Result<WatchdogPlan> plan_heartbeat(Session& session, const drive::Profile& prof
       requests.push_back({.node = node, .object = {objects::kConsumerHeartbeatIndex, sub}});
   const auto answers = session.transfer(requests);
   bool any = false;
+  std::uint8_t own = 0;
   WatchdogPlan plan;
   for (std::size_t i = 0; i < answers.size(); ++i) {
     if (!answers[i] && answers[i].error().code != Errc::sdo_abort)
@@ -61,9 +62,13 @@ Result<WatchdogPlan> plan_heartbeat(Session& session, const drive::Profile& prof
     if (!answers[i]) continue;
     any = true;
     const auto entry = load_le(*answers[i]);
-    if (!is_free(entry)) plan.watched.insert(node_of(entry));
-    if (plan.entry == 0 && is_free(entry)) plan.entry = requests[i].object.sub;
+    const auto watched = node_of(entry);
+    if (watched != 0) plan.watched.insert(watched);
+    if (plan.entry == 0 && watched == 0) plan.entry = requests[i].object.sub;
+    // One that is left from before is used again: a drive takes no second entry for the same node.
+    if (watched != 0 && watched == producer) own = requests[i].object.sub;
   }
+  if (own != 0) plan.entry = own;
   if (plan.entry == 0) {
     if (any) plan.remark = "all entries of 1016h are taken";
     return plan;

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "canopen/pdo.hpp"
+#include "session/communication_order.hpp"
 
 namespace servoctl::session {
 namespace {
@@ -106,6 +107,7 @@ std::vector<PlannedWrite> plan_writes(const drive::Profile* profile, const Value
     else
       (blocks.empty() ? before : after).push_back({object, data});
   }
+  before = in_allowed_order(std::move(before), present);
   std::vector<BlockPlan> plans;
   for (const auto block : blocks) plans.emplace_back(profile, present, wanted, block);
   add_blocks(plans, before);

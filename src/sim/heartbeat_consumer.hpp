@@ -14,11 +14,13 @@ class HeartbeatConsumer {
  public:
   static constexpr std::size_t kMost = 8;
 
-  /// `entry` 1..8 was written: bits 23-16 node-ID, bits 15-0 time in ms; either zero switches it off.
+  /// `entry` 1..8 was written, as canopen::watched_node() reads it.
   void set(std::uint8_t entry, std::uint32_t value);
   void on_frame(const can::Frame& frame, TimePoint now);
   /// True once when a producer has become silent.
   bool take_lost(TimePoint now);
+  /// True once when a producer that had become silent is heard again, and none is silent any more.
+  bool take_found();
   TimePoint deadline() const;
 
  private:
@@ -26,8 +28,10 @@ class HeartbeatConsumer {
     std::uint8_t node = 0;
     Duration time{};
     TimePoint ends = kNever;
+    bool lost = false;
   };
   std::array<Entry, kMost> entries_{};
+  bool found_ = false;
 };
 
 }  // namespace servoctl::sim

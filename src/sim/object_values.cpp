@@ -1,7 +1,10 @@
 #include "sim/object_values.hpp"
 
+#include <algorithm>
+
 #include "canopen/sdo_abort.hpp"
 #include "drive/quantity.hpp"
+#include "drive/standard_objects.hpp"
 
 namespace servoctl::sim {
 namespace abort = canopen::sdo_abort;
@@ -18,7 +21,20 @@ void ObjectValues::load_defaults(std::uint8_t node) {
   }
   // The identity its family tells, where the dictionary states none.
   for (const auto& mark : profile_->rules.identity)
-    if (has(mark.object) && mark.text.empty() && number(mark.object) == 0) set_number(mark.object, mark.value);
+    if (has(mark.object) && mark.text.empty() && number(mark.object) == 0)
+      set_number(mark.object, mark.value);
+  if (has(objects::kSupportedModes) && number(objects::kSupportedModes) == 0)
+    set_number(objects::kSupportedModes, supported_modes());
+}
+
+/// 6502h as the modes that 6060h takes: bit 0 for mode 1 (CiA 402-2, 6502h).
+std::uint32_t ObjectValues::supported_modes() const {
+  const auto* mode = profile_->dictionary.find(objects::kModeOfOperation);
+  std::uint32_t out = 0;
+  if (mode == nullptr) return out;
+  for (const auto& label : mode->labels)
+    if (label.value >= 1 && label.value <= 16) out |= 1U << static_cast<unsigned>(label.value - 1);
+  return out;
 }
 
 const Bytes& ObjectValues::get(ObjectAddress object) const {
@@ -39,11 +55,24 @@ std::uint32_t ObjectValues::check_read(ObjectAddress object) const {
   return od::readable(entry->access) ? 0 : abort::kWriteOnly;
 }
 
-std::uint32_t ObjectValues::check_write(ObjectAddress object, ByteSpan data, std::uint8_t node) const {
+std::uint8_t ObjectValues::last_sub(std::uint16_t index) const {
+  const auto* object = profile_->dictionary.object(index);
+  std::uint8_t out = 0;
+  if (object == nullptr) return out;
+  for (const auto& entry : object->entries) out = std::max(out, entry.address.sub);
+  return out;
+}
+
+std::uint32_t ObjectValues::check_writable(ObjectAddress object) const {
   const auto* entry = profile_->dictionary.find(object);
   if (entry == nullptr)
     return profile_->dictionary.object(object.index) == nullptr ? abort::kNoObject : abort::kNoSubIndex;
-  if (!od::writable(entry->access)) return abort::kReadOnly;
+  return od::writable(entry->access) ? 0 : abort::kReadOnly;
+}
+
+std::uint32_t ObjectValues::check_write(ObjectAddress object, ByteSpan data, std::uint8_t node) const {
+  if (const auto code = check_writable(object); code != 0) return code;
+  const auto* entry = profile_->dictionary.find(object);
   const auto size = od::size_of(entry->type);
   if (size && data.size() != *size) {
     if (profile_->rules.sdo.exact_length) return abort::kLength;

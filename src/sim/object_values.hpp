@@ -20,6 +20,8 @@ class ObjectValues {
 
   /// Abort code when the entry cannot be read, or 0.
   std::uint32_t check_read(ObjectAddress object) const;
+  /// Abort code when the entry cannot be written, whatever the data, or 0.
+  std::uint32_t check_writable(ObjectAddress object) const;
   /// Abort code when the entry does not take these bytes, or 0.
   std::uint32_t check_write(ObjectAddress object, ByteSpan data, std::uint8_t node) const;
 
@@ -28,9 +30,13 @@ class ObjectValues {
   void set(ObjectAddress object, ByteSpan data) { values_[object].assign(data.begin(), data.end()); }
   /// Sets a number in the size the entry has.
   void set_number(ObjectAddress object, std::uint64_t value);
+  /// The highest sub-index the object has; 0 for one that does not exist.
+  std::uint8_t last_sub(std::uint16_t index) const;
   bool has(ObjectAddress object) const { return profile_->dictionary.find(object) != nullptr; }
 
  private:
+  std::uint32_t supported_modes() const;
+
   const drive::Profile* profile_;
   std::unordered_map<ObjectAddress, Bytes> values_;
 };

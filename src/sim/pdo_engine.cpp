@@ -56,6 +56,7 @@ void PdoEngine::stop() {
   operational_ = false;
   next_look_ = kNever;
   work_.clear();
+  short_.clear();
   tx_.clear();
 }
 
@@ -73,9 +74,10 @@ void PdoEngine::on_frame(const can::Frame& frame, TimePoint now) {
 void PdoEngine::on_receive(const Pdo& pdo, const can::Frame& frame) {
   const auto data = frame.payload();
   if (pdo.bits() > data.size() * 8) {
-    length_error_ = true;
+    short_.insert(pdo.communication_index());
     return;
   }
+  short_.erase(pdo.communication_index());
   if (pdo.type <= kLastSynchronous)
     work(pdo).data = Bytes(data.begin(), data.end());
   else
@@ -176,7 +178,5 @@ TimePoint PdoEngine::deadline() const {
   if (!tx_.empty()) return TimePoint::min();
   return next_look_;
 }
-
-bool PdoEngine::take_length_error() { return std::exchange(length_error_, false); }
 
 }  // namespace servoctl::sim

@@ -4,6 +4,7 @@
 #include <deque>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "base/time.hpp"
 #include "can/frame.hpp"
@@ -33,9 +34,9 @@ class PdoEngine {
   std::optional<can::Frame> take_frame();
   TimePoint deadline() const;
 
-  /// True once after an RPDO came that was shorter than its mapping and was dropped (CiA 301, table 26:
-  /// 8210h).
-  bool take_length_error();
+  /// Whether an RPDO came shorter than its mapping and was dropped, and none that fits has come since (CiA
+  /// 301, table 26: 8210h).
+  bool has_length_error() const { return !short_.empty(); }
 
  private:
   /// One PDO between its frames.
@@ -63,7 +64,7 @@ class PdoEngine {
   std::map<std::uint16_t, Work> work_;
   bool operational_ = false;
   TimePoint next_look_ = kNever;
-  bool length_error_ = false;
+  std::set<std::uint16_t> short_;  ///< Communication records of RPDOs whose last frame was too short.
   std::deque<can::Frame> tx_;
 };
 

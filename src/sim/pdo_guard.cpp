@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "canopen/cob_id_rules.hpp"
+#include "canopen/pdo.hpp"
 #include "canopen/sdo_abort.hpp"
 #include "drive/naming.hpp"
 
@@ -10,8 +12,6 @@ namespace abort = canopen::sdo_abort;
 using drive::PdoRules;
 
 namespace {
-
-constexpr std::uint32_t kInvalidBit = 0x8000'0000;
 
 bool in(std::uint16_t index, std::uint16_t first, std::uint16_t last) {
   return index >= first && index <= last;
@@ -29,7 +29,7 @@ bool PdoGuard::is_mapping(ObjectAddress object) {
 }
 
 bool PdoGuard::is_valid(std::uint16_t communication_index) const {
-  return (values_->number({communication_index, 1}) & kInvalidBit) == 0;
+  return (values_->number({communication_index, 1}) & canopen::kPdoInvalid) == 0;
 }
 
 bool PdoGuard::allowed(PdoRules::When when, std::uint16_t communication_index, bool operational) const {
@@ -50,39 +50,47 @@ std::uint32_t PdoGuard::check(ObjectAddress object, ByteSpan data, bool operatio
       return check_cob_id(object, static_cast<std::uint32_t>(value));
     }
     if (!allowed(rules.parameters, object.index, operational)) return abort::kDeviceState;
-    const auto& refused = rules.refused_types;
-    const bool unknown = value > 240 && value < 252;
-    if (object.sub == 2 && (unknown || (is_transmit(object.index) &&
-                                        std::find(refused.begin(), refused.end(),
-                                                  static_cast<std::int64_t>(value)) != refused.end())))
-      return abort::kRange;
-    return 0;
+    return object.sub == 2 && !knows_type(object.index, static_cast<std::uint8_t>(value)) ? abort::kRange : 0;
   }
   if (!is_mapping(object)) return 0;
   if (!allowed(rules.mapping, communication_of(object.index), operational)) return abort::kDeviceState;
   return check_mapping(object, value);
 }
 
+/// CiA 301, tables 67 and 72: an RPDO has no types for remote frames, a TPDO only while bit 30 allows them.
+bool PdoGuard::knows_type(std::uint16_t index, std::uint8_t type) const {
+  if (type <= 240) return true;
+  if (type < 252) return false;
+  if (!is_transmit(index)) return type > 253;
+  const auto& refused = profile_->rules.pdo.refused_types;
+  if (std::find(refused.begin(), refused.end(), type) != refused.end()) return false;
+  return type > 253 || (values_->number({index, 1}) & canopen::kPdoNoRtr) == 0;
+}
+
 std::uint32_t PdoGuard::check_cob_id(ObjectAddress object, std::uint32_t cob_id) const {
   const auto now = static_cast<std::uint32_t>(values_->number(object));
   if (((cob_id ^ now) & ~profile_->rules.pdo.cob_id_bits) != 0) return abort::kRange;
-  const bool was_valid = (now & kInvalidBit) == 0;
-  const bool stays_valid = was_valid && (cob_id & kInvalidBit) == 0;
+  const bool was_valid = (now & canopen::kPdoInvalid) == 0;
+  const bool is_valid = (cob_id & canopen::kPdoInvalid) == 0;
+  const bool basic = (cob_id & canopen::kPdoExtended) == 0;
+  if (is_valid && basic && canopen::is_restricted(cob_id & canopen::kPdoCobIdMask)) return abort::kRange;
+  const bool stays_valid = was_valid && is_valid;
   return stays_valid && cob_id != now ? abort::kRange : 0;  // 7.5.2.33: bits 0 to 29 only while invalid.
 }
 
 std::uint32_t PdoGuard::check_mapping(ObjectAddress object, std::uint64_t value) const {
   if (object.sub == 0) return check_count(object.index, value);
-  if (values_->number({object.index, 0}) != 0) return abort::kDeviceState;
+  if (values_->number({object.index, 0}) != 0) return profile_->rules.pdo.mapped_abort;
   return value == 0 ? 0 : check_entry(object.index, static_cast<std::uint32_t>(value));
 }
 
 std::uint32_t PdoGuard::check_count(std::uint16_t index, std::uint64_t count) const {
   const auto& rules = profile_->rules.pdo;
-  if (count > rules.most_entries) return abort::kPdoLength;
+  if (count > std::min(rules.most_entries, values_->last_sub(index))) return abort::kPdoLength;
   std::uint32_t bits = 0;
   for (std::uint8_t sub = 1; sub <= count; ++sub) {
     const auto entry = static_cast<std::uint32_t>(values_->number({index, sub}));
+    if (entry == 0) return abort::kPdoLength;  // Nothing is mapped there.
     if (const auto code = check_entry(index, entry); code != 0) return code;
     bits += entry & 0xFFU;
   }

@@ -24,6 +24,7 @@ class PdoGuard {
 
  private:
   std::uint32_t check_cob_id(ObjectAddress object, std::uint32_t cob_id) const;
+  bool knows_type(std::uint16_t index, std::uint8_t type) const;
   std::uint32_t check_mapping(ObjectAddress object, std::uint64_t value) const;
   std::uint32_t check_count(std::uint16_t index, std::uint64_t count) const;
   std::uint32_t check_entry(std::uint16_t index, std::uint32_t mapping) const;

@@ -58,7 +58,12 @@ void SimDrive::on_frame(const can::Frame& frame, TimePoint now) {
   }
   consumer_.on_frame(frame, now);
   error_control_.on_frame(frame, now);
-  while (const auto answer = error_control_.take_frame()) tx_.push_back(*answer);
+  bool guarded = false;
+  for (auto answer = error_control_.take_frame(); answer; answer = error_control_.take_frame()) {
+    tx_.push_back(*answer);
+    guarded = true;
+  }
+  if (consumer_.take_found() || guarded) end_error(ErrorLog::Source::master);
   if (nmt_ == NmtState::stopped) return;  // CiA 301, table 39: no SDO in this state.
   pdos_.on_frame(frame, now);
   collect_pdos();
@@ -68,7 +73,9 @@ void SimDrive::on_frame(const can::Frame& frame, TimePoint now) {
 
 void SimDrive::collect_pdos() {
   while (const auto frame = pdos_.take_frame()) tx_.push_back(*frame);
-  if (pdos_.take_length_error()) send_emergency(kPdoLengthError, {});
+  const bool known = errors_.is_present(ErrorLog::Source::rpdo);
+  if (pdos_.has_length_error() && !known) begin_error(ErrorLog::Source::rpdo, kPdoLengthError, {});
+  if (!pdos_.has_length_error()) end_error(ErrorLog::Source::rpdo);
 }
 
 void SimDrive::collect_answers(TimePoint now) {
@@ -150,9 +157,13 @@ void SimDrive::power_on(TimePoint now) {
       if (p.object && p.effect == od::Effect::restart) at_start_[*p.object] = values_.number(*p.object);
     power_.reset();
     axis_.reset(now);
-    history_.clear();
+    errors_ = {};
+    errors_.set_capacity(values_.last_sub(objects::kErrorHistory.index));
     fault_ = nullptr;
   }
+  errors_.end(ErrorLog::Source::rpdo);
+  errors_.end(ErrorLog::Source::master);
+  values_.set_number(objects::kErrorRegister, errors_.error_register());
   load_mirrors();
   server_ = canopen::SdoServer(node_, *this, server_options(profile_->rules));
   const auto* autostart = parameter(profile_->rules.nmt.autostart);

@@ -13,6 +13,7 @@
 #include "drive/profile.hpp"
 #include "sim/axis.hpp"
 #include "sim/device.hpp"
+#include "sim/error_log.hpp"
 #include "sim/heartbeat_consumer.hpp"
 #include "sim/memory.hpp"
 #include "sim/object_values.hpp"
@@ -88,12 +89,14 @@ class SimDrive final : public Device, private canopen::ObjectStore {
   };
 
   std::uint32_t read(ObjectAddress object, Bytes& out) override;
+  std::uint32_t check_writable(ObjectAddress object) override;
   std::uint32_t write(ObjectAddress object, ByteSpan data) override;
   std::uint32_t check_state(ObjectAddress object, ByteSpan data) const;
   void after_write(ObjectAddress object, ByteSpan data);
   bool feigns(std::uint16_t controlword);
   std::uint32_t write_command(ObjectAddress object, ByteSpan data, bool& handled);
-  std::uint32_t save_objects();
+  std::uint32_t save_objects(std::uint8_t group);
+  std::uint32_t restore_objects(std::uint8_t group);
 
   void power_on(TimePoint now);
   void reset_communication(TimePoint now);
@@ -106,6 +109,8 @@ class SimDrive final : public Device, private canopen::ObjectStore {
   bool is_kept(ObjectAddress object) const;
   bool may_reset() const;
   void clear_fault();
+  void begin_error(ErrorLog::Source source, std::uint16_t code, std::array<std::uint8_t, 5> vendor);
+  void end_error(ErrorLog::Source source);
   bool raise_alarm(std::string_view panel);
   void raise_access_alarm(ObjectAddress object, std::uint32_t code);
   void collect_answers(TimePoint now);
@@ -137,7 +142,7 @@ class SimDrive final : public Device, private canopen::ObjectStore {
   TimePoint now_{};
   TimePoint boot_at_ = TimePoint::min();  ///< When the boot-up message is due; kNever once it is sent.
   bool full_restart_ = true;
-  std::deque<std::uint32_t> history_;
+  ErrorLog errors_;
   const drive::Fault* fault_ = nullptr;  ///< The present one, when its code tells which it is.
   std::uint64_t flash_writes_ = 0;
   std::deque<can::Frame> tx_;

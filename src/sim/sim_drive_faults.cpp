@@ -13,11 +13,9 @@ using canopen::NmtState;
 
 namespace {
 
-constexpr std::size_t kHistorySize = 8;
 /// EMCY of a life guarding or heartbeat error (CiA 301, table 26).
 constexpr std::uint16_t kLifeGuardError = 0x8130;
 constexpr std::uint16_t kQuickStopWord = 0x0002;
-constexpr std::uint64_t kGenericAndVendor = 0x81;  ///< Bits of 1001h.
 
 }  // namespace
 
@@ -28,12 +26,23 @@ void SimDrive::raise_fault(std::uint16_t code, std::array<std::uint8_t, 5> vendo
   fault_ = found.size() == 1 ? found.front() : nullptr;
   power_.raise_fault(now);
   values_.set_number(objects::kErrorCode, code);
-  values_.set_number(objects::kErrorRegister, kGenericAndVendor);
   if (const auto alarm = drive::resolve(profile_, profile_->rules.fault.alarm); alarm)
     values_.set_number(alarm->address, code);
-  history_.push_front(static_cast<std::uint32_t>(vendor[0] | vendor[1] << 8U) << 16U | code);
-  if (history_.size() > kHistorySize) history_.pop_back();
+  begin_error(ErrorLog::Source::fault, code, vendor);
+}
+
+/// An error that is no fault of the drive, or is one: told once, when it begins.
+void SimDrive::begin_error(ErrorLog::Source source, std::uint16_t code, std::array<std::uint8_t, 5> vendor) {
+  errors_.begin(source, code, static_cast<std::uint16_t>(vendor[0] | vendor[1] << 8U));
+  values_.set_number(objects::kErrorRegister, errors_.error_register());
   send_emergency(code, vendor);
+}
+
+/// It is over: code 0000h tells so, with what is still wrong in the register (CiA 301, 7.2.7.1).
+void SimDrive::end_error(ErrorLog::Source source) {
+  if (!errors_.end(source)) return;
+  values_.set_number(objects::kErrorRegister, errors_.error_register());
+  send_emergency(0, {});
 }
 
 /// A heartbeat that 1016h watches, or the question of life guarding, has not come: emergency, and what 6007h
@@ -43,7 +52,7 @@ void SimDrive::on_master_lost(TimePoint now) {
   const bool has_option = values_.has(objects::kAbortConnectionOption);
   const auto option = has_option ? values_.number(objects::kAbortConnectionOption) : kFault;
   if (option == kFault) return raise_fault(kLifeGuardError, {}, now);
-  send_emergency(kLifeGuardError, {});
+  begin_error(ErrorLog::Source::master, kLifeGuardError, {});
   if (option == kDisable) power_.disable();
   if (option == kQuickStop) power_.on_controlword(kQuickStopWord, 0, false, now);
 }
@@ -78,9 +87,10 @@ bool SimDrive::may_reset() const {
 
 void SimDrive::clear_fault() {
   fault_ = nullptr;
+  errors_.end(ErrorLog::Source::fault);
   axis_.clear_error();
   values_.set_number(objects::kErrorCode, 0);
-  values_.set_number(objects::kErrorRegister, 0);
+  values_.set_number(objects::kErrorRegister, errors_.error_register());
   if (const auto alarm = drive::resolve(profile_, profile_->rules.fault.alarm); alarm)
     values_.set_number(alarm->address, 0);
   send_emergency(0, {});

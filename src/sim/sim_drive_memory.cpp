@@ -8,6 +8,21 @@
 namespace servoctl::sim {
 namespace abort = canopen::sdo_abort;
 
+namespace {
+
+/// Whether sub-index 1..4 of 1010h and 1011h speaks of an object: all, communication, application (the device
+/// profile), manufacturer (CiA 301, 7.5.2.13).
+bool is_in(std::uint8_t group, std::uint16_t index) {
+  switch (group) {
+    case 2: return index < 0x2000;
+    case 3: return index >= 0x6000;
+    case 4: return index >= 0x2000 && index < 0x6000;
+    default: return true;
+  }
+}
+
+}  // namespace
+
 void SimDrive::restore_if_asked() {
   auto& cells = memory_->cells(key_);
   const auto set = [&](const std::string& id) {
@@ -35,12 +50,17 @@ std::uint64_t SimDrive::effective(ObjectAddress object) const {
   return found == at_start_.end() ? values_.number(object) : found->second;
 }
 
-std::uint32_t SimDrive::save_objects() {
+std::uint32_t SimDrive::restore_objects(std::uint8_t group) {
+  std::erase_if(memory_->cells(key_), [&](const auto& cell) { return is_in(group, cell.first.index); });
+  return memory_->save() ? 0 : abort::kCannotStore;
+}
+
+std::uint32_t SimDrive::save_objects(std::uint8_t group) {
   auto& cells = memory_->cells(key_);
   for (const auto& object : profile_->dictionary.objects())
     for (const auto& entry : object.entries)
-      if (entry.access == od::Access::rw && !entry.command && !entry.is_volatile &&
-          entry.address != objects::kControlword)
+      if (is_in(group, object.index) && entry.access == od::Access::rw && !entry.command &&
+          !entry.is_volatile && entry.address != objects::kControlword)
         cells[entry.address] = values_.get(entry.address);
   return memory_->save() ? 0 : abort::kCannotStore;
 }

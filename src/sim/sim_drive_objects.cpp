@@ -4,6 +4,7 @@
 #include "canopen/sdo_abort.hpp"
 #include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
+#include "sim/communication_guard.hpp"
 #include "sim/pdo_guard.hpp"
 #include "sim/sim_drive.hpp"
 
@@ -25,9 +26,10 @@ std::uint32_t SimDrive::read(ObjectAddress object, Bytes& out) {
     return 0;
   }
   if (object.index == objects::kErrorHistory.index) {
-    if (object.sub == 0) out = store_le(history_.size(), 1);
-    if (object.sub > 0 && object.sub > history_.size()) return abort::kNoData;
-    if (object.sub > 0) out = store_le(history_[object.sub - 1U], 4);
+    const auto& history = errors_.history();
+    if (object.sub == 0) out = store_le(history.size(), 1);
+    if (object.sub > 0 && object.sub > history.size()) return abort::kNoData;
+    if (object.sub > 0) out = store_le(history[object.sub - 1U], 4);
     return 0;
   }
   out = values_.get(object);
@@ -47,6 +49,7 @@ std::uint32_t SimDrive::check_state(ObjectAddress object, ByteSpan data) const {
     if (!value || drive::label_of(drive::meaning(target, node_), *value) == nullptr) return abort::kRange;
   }
   if (is_locked(object)) return abort::kLocalControl;
+  if (const auto code = CommunicationGuard(values_).check(object, data); code != 0) return code;
   return PdoGuard(*profile_, values_).check(object, data, nmt_ == NmtState::operational);
 }
 
@@ -61,6 +64,13 @@ bool SimDrive::is_locked(ObjectAddress object) const {
   };
   return std::any_of(store.locked.begin(), store.locked.end(), guarded) &&
          static_cast<std::int64_t>(values_.number(*password->object)) != *store.unlock_open;
+}
+
+std::uint32_t SimDrive::check_writable(ObjectAddress object) {
+  if (misbehaviour_.missing.contains(object.index)) return abort::kNoObject;
+  const auto code = values_.check_writable(object);
+  if (code != 0) raise_access_alarm(object, code);
+  return code;
 }
 
 std::uint32_t SimDrive::write(ObjectAddress object, ByteSpan data) {
@@ -86,16 +96,13 @@ std::uint32_t SimDrive::write(ObjectAddress object, ByteSpan data) {
 std::uint32_t SimDrive::write_command(ObjectAddress object, ByteSpan data, bool& handled) {
   handled = true;
   if (object == objects::kErrorHistory) {
-    history_.clear();
+    errors_.clear_history();
     return 0;
   }
-  if (object == objects::kStoreAll)
-    return load_le(data) == objects::kSaveSignature ? save_objects() : abort::kCannotStore;
-  if (object == objects::kRestoreAll) {
-    if (load_le(data) != objects::kLoadSignature) return abort::kCannotStore;
-    memory_->cells(key_).clear();
-    return memory_->save() ? 0 : abort::kCannotStore;
-  }
+  if (object.index == objects::kStoreIndex)
+    return load_le(data) == objects::kSaveSignature ? save_objects(object.sub) : abort::kCannotStore;
+  if (object.index == objects::kRestoreIndex)
+    return load_le(data) == objects::kLoadSignature ? restore_objects(object.sub) : abort::kCannotStore;
   handled = false;
   return 0;
 }

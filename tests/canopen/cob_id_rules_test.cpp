@@ -49,5 +49,10 @@ TEST(CobIdRules, TakeWhatIsNotInUseWhatIsFreeAndWhatHas29Bits) {
     EXPECT_EQ(cob_id_conflict({0x1800, 1}, id, 1), "") << id;
 }
 
+TEST(CobIdRules, KnowEveryRestrictedCanId) {
+  for (std::uint32_t id = 0; id <= 0x7FF; ++id)
+    EXPECT_EQ(is_restricted(id), restricted(id)) << std::hex << id;
+}
+
 }  // namespace
 }  // namespace servoctl::canopen

@@ -61,6 +61,17 @@ TEST(SdoAbort, OfAVendorIsNamedByItsClass) {
   EXPECT_EQ(sdo_abort_hint(0x0504'0002), "");
 }
 
+TEST(SdoAbort, OfWhatIsWrittenInStepsNamesThem) {  // CiA 301, 7.5.2.19, 7.5.2.22, 7.5.2.36
+  for (const auto code : {sdo_abort::kUnsupportedAccess, sdo_abort::kGeneral, sdo_abort::kDeviceState}) {
+    for (const ObjectAddress object : {ObjectAddress{0x1600, 1}, {0x1A03, 0}, {0x1800, 2}})
+      EXPECT_NE(sdo_abort_hint(code, object).find("`pdo map`"), std::string::npos);
+    EXPECT_NE(sdo_abort_hint(code, {0x1019, 0}).find("1006h"), std::string::npos);
+    EXPECT_EQ(sdo_abort_hint(code, {0x605A, 0}), sdo_abort_hint(code));
+  }
+  EXPECT_NE(sdo_abort_hint(sdo_abort::kIncompatible, {0x1016, 2}).find("another entry"), std::string::npos);
+  EXPECT_EQ(sdo_abort_hint(sdo_abort::kRange, {0x1600, 1}), sdo_abort_hint(sdo_abort::kRange));
+}
+
 TEST(SdoAbort, OfTheKindOfTransferLeavesTheObjectOpen) {
   for (const auto code : {sdo_abort::kCommand, sdo_abort::kBlockSize, sdo_abort::kOutOfMemory,
                           sdo_abort::kUnsupportedAccess, sdo_abort::kGeneral})

@@ -129,6 +129,13 @@ TEST_F(SdoClientTest, ReportsTheAbortOfTheNode) {
                  0x0609'0011);
 }
 
+TEST_F(SdoClientTest, ARefusedWriteOfAMappingNamesTheStepsARefusedReadDoesNot) {
+  download({0x1600, 1}, {0x10, 0x00, 0x40, 0x60}, {"> 602#2300160110004060", "< 582#8000160100000106"});
+  EXPECT_NE(result().error().hint.find("`pdo map`"), std::string::npos);
+  upload({0x1600, 1}, {"> 602#4000160100000000", "< 582#8000160100000106"});
+  EXPECT_EQ(result().error().hint, "");
+}
+
 TEST_F(SdoClientTest, ReportsAnAbortInTheMiddleOfASegmentedTransfer) {
   download({0x2000, 0}, counted(20),
            {"> 602#2100200014000000", "< 582#6000200000000000", "> 602#0001020304050607",

@@ -28,6 +28,9 @@ class Store final : public ObjectStore {
     values[object] = Bytes(data.begin(), data.end());
     return 0;
   }
+  std::uint32_t check_writable(ObjectAddress object) override {
+    return object == ObjectAddress{0x1008, 0} ? sdo_abort::kReadOnly : 0;
+  }
   std::map<ObjectAddress, Bytes> values;
   std::uint32_t refusal = 0;
 };
@@ -66,6 +69,13 @@ TEST_F(SdoServerTest, GivesALongObjectInSegments) {
   play(server, now,
        {"< 602#4008100000000000", "> 582#4108100008000000", "< 602#6000000000000000",
         "> 582#0001020304050607", "< 602#7000000000000000", "> 582#1D08000000000000"});
+}
+
+TEST_F(SdoServerTest, RefusesALongerTransferToWhatIsReadOnlyWhereItBegins) {  // 7.2.4.3.3, 7.2.4.3.9
+  play(server, now, {"< 602#2108100008000000", "> 582#8008100002000106"});
+  play(server, now, {"< 602#2008100000000000", "> 582#8008100002000106"});
+  play(server, now, {"< 602#C208100008000000", "> 582#8008100002000106"});
+  EXPECT_EQ(server.deadline(), kNever);
 }
 
 TEST_F(SdoServerTest, TakesALongObjectInSegmentsAndWritesItAtTheEnd) {

@@ -87,6 +87,20 @@ TEST_F(Watchdog, CtrlCEndsTheListening) {
   EXPECT_EQ(found.error().code, Errc::interrupted);
 }
 
+TEST_F(Watchdog, AnEntryThatWatchesTheNodeIdOfTheUserAlreadyIsUsedAgain) {  // CiA 301, 7.5.2.19
+  write({0x1016, 3}, 0x0064'01F4, 4);
+  const auto found = plan(std::uint8_t{100});
+  EXPECT_EQ(found.kind, Kind::heartbeat);
+  EXPECT_EQ(found.entry, 3);
+}
+
+TEST_F(Watchdog, AnEntryWithNoNodeIdIsFree) {
+  write({0x1016, 1}, 0x00C8'01F4, 4);  // 200
+  const auto found = plan();
+  EXPECT_EQ(found.entry, 1);
+  EXPECT_EQ(found.watched, std::set<std::uint8_t>{});
+}
+
 TEST_F(Watchdog, GuardingWhoseAlarmIsMaskedIsNotPromised) {
   take_all_entries();
   const auto found = plan();

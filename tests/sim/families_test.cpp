@@ -155,7 +155,7 @@ TEST_F(FamilyTest, Sv2KeepsItsFixedPdos) {
 TEST_F(FamilyTest, Sv2ClearsAFaultByItsOwnObjectAndOnlyWhereItCanBeCleared) {
   boot("sv2@1");
   drive().raise_fault(0x8611, {}, bus.now());
-  EXPECT_EQ(next(), "081#1186810000000000");
+  EXPECT_EQ(next(), "081#1186210000000000");
   EXPECT_EQ(next(100ms), "");
   EXPECT_EQ(sdo("601#2B05200101000000"), "581#6005200100000000");
   EXPECT_EQ(sdo("601#403F600000000000"), "581#4B3F600000000000");

@@ -62,7 +62,7 @@ TEST_F(LostMaster, IsAFaultWhereNothingElseIsSet) {
   enable_and_fall_silent("gsd600");
   EXPECT_EQ(next(499ms), "");
   EXPECT_EQ(drive().power_state(), drive::DriveState::operation_enabled);
-  EXPECT_EQ(next(50ms), "081#3081810000000000");  // Life guard or heartbeat error (CiA 301, table 26).
+  EXPECT_EQ(next(50ms), "081#3081110000000000");  // Life guard or heartbeat error (CiA 301, table 26).
   (void)next(50ms);
   EXPECT_EQ(drive().power_state(), drive::DriveState::fault);
 }

@@ -91,7 +91,7 @@ TEST_F(InMotion, OfTheDa200APositionErrorIsItsAlarm22) {  // 943, 1148
   enable("1");
   write(kTarget, "100000");
   control("31");
-  expect_alarm("pp", 943, "5", "0085811600");  // Er22-0: bytes 3 and 4 are 22 and 0 (336).
+  expect_alarm("pp", 943, "5", "0085211600");  // Er22-0: bytes 3 and 4 are 22 and 0 (336).
 }
 
 TEST_F(InMotion, OfTheDa200SlippageIsTold) {  // 654, 943
