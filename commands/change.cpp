@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <set>
 
-#include "canopen/sdo_client.hpp"
 #include "commands/cob_id_check.hpp"
 #include "commands/keeping_nodes.hpp"
 #include "drive/cia402.hpp"
@@ -17,6 +16,8 @@ namespace {
 using report::Show;
 using report::Value;
 
+constexpr std::uint32_t kNoSuchObject = 0x0602'0000;  ///< CiA 301, table of SDO abort codes.
+
 /// An object whose length no manual tells is read to learn it: a write of another length would be refused or
 /// worse.
 Result<drive::Meaning> learn_size(Context& context, std::uint8_t node, const drive::Target& target,
@@ -25,7 +26,10 @@ Result<drive::Meaning> learn_size(Context& context, std::uint8_t node, const dri
   if (!bytes) {
     auto error = bytes.error();
     error.message = "the object's size is not known and reading it to learn it failed: " + error.message;
-    error.hint = "say the type: --type i32, or the drive family: -d FAMILY";
+    const bool absent = error.abort_code == kNoSuchObject;
+    error.hint = context.profile == nullptr ? "say the type: --type i32, or the drive family: -d FAMILY"
+                 : absent ? fmt::format("`objects -d {}` lists the objects it has", context.profile->family)
+                          : std::string("say the type: --type i32");
     return tl::unexpected<Error>(std::move(error));
   }
   auto learned = drive::fitted(meaning, bytes->size());
@@ -158,7 +162,7 @@ Error with_password_hint(const Context& context, const Change& change, Error err
   return error;
 }
 
-report::List change_row(const Change& change, const Result<session::Written>& written, session::Kept kept,
+report::List change_row(const Change& change, const Result<session::Written>& written, const Value& kept,
                         const Context& context) {
   const Reading reading{change.node, change.target, change.type, change.data, change.bridge};
   const auto decoded = decode_value(reading, change.data);
@@ -186,7 +190,8 @@ report::List change_row(const Change& change, const Result<session::Written>& wr
           state,
           written.has_value(),
           written ? Value(written->read_back.has_value()) : Value(false),
-          written && kept != session::Kept::unknown ? Value(kept == session::Kept::yes) : Value(),
+          written ? kept : Value(),
+          written ? kept_text(kept) : Value(),
           written ? report::text_or_null(effect_text(effect)) : Value(),
           report::text_or_null(std::string(od::name(effect))),
           written ? Value() : error_record(written.error(), abort_words(context, written.error()))};
@@ -232,20 +237,6 @@ Result<void> confirm_changes(Context& context, std::span<const Change> changes) 
   return {};
 }
 
-Value planned_frames(std::span<const Change> changes) {
-  report::Table table;
-  table.columns = {{"node"}, {"object"}, {"name"}, {"frame"}};
-  for (const auto& change : changes) {
-    canopen::SdoClient client(change.node, std::chrono::seconds(1));
-    client.start_download(change.target.address, change.data, TimePoint{}, change.transfer);
-    const auto frame = client.take_frame();
-    table.rows.push_back({change.node, to_string(change.target.address),
-                          report::text_or_null(change.target.label()),
-                          frame ? can::to_string(*frame) : std::string()});
-  }
-  return table;
-}
-
 Result<Value> write_changes(Context& context, std::span<const Change> changes, const WriteOptions& options) {
   std::vector<session::SdoRequest> requests;
   for (const auto& change : changes)
@@ -274,13 +265,14 @@ Result<Value> write_changes(Context& context, std::span<const Change> changes, c
                    {"state", "result", Show::text},
                    {"written", "", Show::json},
                    {"read_back", "", Show::json},
-                   {"kept"},
+                   {"kept", "", Show::json},
+                   {"kept_text", "kept", Show::text},
                    {"when", "takes effect", Show::text},
                    {"effect", "", Show::json},
                    {"error", "", Show::json}};
   table.json_only = std::none_of(written.begin(), written.end(), [](const auto& w) { return w.has_value(); });
   for (std::size_t i = 0; i < changes.size(); ++i) {
-    table.rows.push_back(change_row(changes[i], written[i], keeping.kept(changes[i].node), context));
+    table.rows.push_back(change_row(changes[i], written[i], keeping.kept(changes[i]), context));
     if (!written[i]) context.errors.push_back(with_password_hint(context, changes[i], written[i].error()));
     if (written[i] && written[i]->answer_lost)
       context.notices.push_back(fmt::format(

@@ -47,6 +47,11 @@ struct WriteOptions {
   bool unlock = false;  ///< Give the family's password before, and take it back after.
 };
 
+/// What write_changes() would send: the values, and what the family's password and memory need around them.
+/// Only reads. Errors as there.
+Result<report::Value> planned_changes(Context& context, std::span<const Change> changes,
+                                      const WriteOptions& options);
+
 /// `--keep` and `--unlock`, for the commands that have them.
 inline constexpr Parameter kKeepOption{
     .name = "--keep", .help = "make the values survive power-off", .kind = Kind::flag};

@@ -15,7 +15,7 @@ using report::Value;
 
 constexpr Parameter kParameters[] = {
     {.name = "--from", .help = "node whose settings are taken", .kind = Kind::number, .required = true},
-    {.name = "--to", .help = "nodes that get them: 2,3", .kind = Kind::text, .required = true},
+    {.name = "--to", .help = "nodes that get them: 2,3,5-8", .kind = Kind::text, .required = true},
     {.name = "--force", .help = "although identities differ", .kind = Kind::flag},
     kKeepOption,
     kUnlockOption,
@@ -25,11 +25,15 @@ constexpr Parameter kParameters[] = {
 Result<std::vector<std::uint8_t>> nodes_of(std::string_view text) {
   std::vector<std::uint8_t> out;
   for (const auto part : split(text, ',')) {
-    const auto number = parse_digits(part, 10);
-    if (!number || *number < canopen::kFirstNode || *number > canopen::kLastNode)
-      return fail(Errc::usage, fmt::format("'{}' is no node-ID (1..127)", part), "write 2 or 2,3,4");
-    const auto node = static_cast<std::uint8_t>(*number);
-    if (std::find(out.begin(), out.end(), node) == out.end()) out.push_back(node);
+    const auto dash = part.find('-');
+    const auto first = parse_digits(part.substr(0, dash), 10);
+    const auto last = dash == std::string_view::npos ? first : parse_digits(part.substr(dash + 1), 10);
+    if (!first || !last || *first < canopen::kFirstNode || *last > canopen::kLastNode || *first > *last)
+      return fail(Errc::usage, fmt::format("'{}' is no node-ID (1..127)", part), "write 2, 2,3,4 or 2-4");
+    for (auto number = *first; number <= *last; ++number) {
+      const auto node = static_cast<std::uint8_t>(number);
+      if (std::find(out.begin(), out.end(), node) == out.end()) out.push_back(node);
+    }
   }
   return out;
 }

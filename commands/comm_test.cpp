@@ -49,7 +49,7 @@ class Communication {
 
   Result<TestResult> run() {
     const auto begin = session_->now();
-    out_.test = "comm";
+    out_.test = kCommTestName;
     out_.node = node_;
     take_notices();
     emergencies_ = reports_ = 0;

@@ -5,6 +5,8 @@
 
 namespace servoctl::commands {
 
+inline constexpr std::string_view kCommTestName = "comm";
+
 /// What `test comm` looks at.
 struct CommTest {
   std::uint32_t count = 200;                          ///< Reads of 1000h.

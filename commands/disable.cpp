@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "commands/command.hpp"
+#include "commands/planned_messages.hpp"
 #include "commands/records.hpp"
 #include "drive/cia402.hpp"
 #include "session/power.hpp"
@@ -34,20 +35,23 @@ void tell(Context& context, std::uint8_t node, const session::PowerDownResult& d
             : fmt::format("WHETHER NODE {} IS ENERGISED IS NOT KNOWN: TAKE THE POWER AWAY", node));
 }
 
+Value planned(const Context& context, session::PowerAim aim) {
+  std::vector<session::PlannedMessage> messages;
+  for (const auto node : context.nodes)
+    for (auto& message : session::planned_power_down(node, aim)) messages.push_back(std::move(message));
+  return planned_messages(context, messages);
+}
+
 /// All nodes are told at the same time, whatever becomes of the others.
 Result<Value> run(Context& context, session::PowerAim aim, std::string_view done_word) {
+  if (context.dry_run) return planned(context, aim);
   auto table = state_table();
   std::vector<session::PowerDownPlan> plans;
   for (const auto node : context.nodes) {
-    if (context.dry_run) {
-      table.rows.push_back({node, Value(), Value(), fmt::format("would be {}", done_word), Value()});
-      continue;
-    }
     plans.emplace_back();
     plans.back().node = node;
     plans.back().aim = aim;
   }
-  if (context.dry_run) return Value(std::move(table));
   const auto done = session::take_down(*context.session, plans);
   for (std::size_t i = 0; i < plans.size(); ++i) tell(context, plans[i].node, done[i], done_word, table);
   return Value(std::move(table));

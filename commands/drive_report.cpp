@@ -138,13 +138,27 @@ class Collection {
     return out;
   }
 
+  /// Of several tests of the communication the last one given counts.
+  bool is_superseded(const TestResult& result) const {
+    if (result.test != kCommTestName) return false;
+    const auto last = std::find_if(earlier_->rbegin(), earlier_->rend(), [&](const TestResult& other) {
+      return other.test == result.test && other.node == result.node;
+    });
+    return &*last != &result;
+  }
+
   Result<void> add_tests(std::uint8_t node, DriveReport& drive) {
-    auto comm = test_communication(*context_, node, {});
-    if (!comm) return tl::unexpected<Error>(comm.error());
-    comm->origin = origin_of(*context_, node);
-    drive.tests.push_back(std::move(*comm));
+    const bool tested = std::any_of(earlier_->begin(), earlier_->end(), [&](const TestResult& result) {
+      return result.node == node && result.test == kCommTestName;
+    });
+    if (!tested) {
+      auto comm = test_communication(*context_, node, {});
+      if (!comm) return tl::unexpected<Error>(comm.error());
+      comm->origin = origin_of(*context_, node);
+      drive.tests.push_back(std::move(*comm));
+    }
     for (const auto& result : *earlier_)
-      if (result.node == node) drive.tests.push_back(result);
+      if (result.node == node && !is_superseded(result)) drive.tests.push_back(result);
     for (const auto& result : drive.tests) {
       ++tests_;
       if (passed(result)) continue;

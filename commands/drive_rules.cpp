@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/number.hpp"
 #include "commands/records.hpp"
 #include "drive/standard_objects.hpp"
 
@@ -53,7 +54,7 @@ std::string product(const std::vector<Quotient::Factor>& factors) {
     if (const auto* object = std::get_if<ObjectAddress>(&factor))
       out += to_string(*object);
     else
-      out += fmt::format("{:g}", std::get<double>(factor));
+      out += plain_number(std::get<double>(factor), 6);
   }
   return out.empty() ? "1" : out;
 }

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "commands/command.hpp"
+#include "commands/planned_messages.hpp"
 #include "commands/records.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/fault_reset.hpp"
@@ -27,13 +28,23 @@ void add_failure(Context& context, report::Table& table, std::uint8_t node, cons
   context.errors.push_back(error);
 }
 
-Result<Value> run_reset(Context& context, const Arguments&) {
-  if (context.dry_run) {
-    auto table = result_table();
-    for (const auto node : context.nodes)
-      table.rows.push_back({node, "would be reset if it is in fault", Value()});
-    return Value(std::move(table));
+Value planned_resets(Context& context) {
+  std::vector<session::PlannedMessage> messages;
+  for (const auto node : context.nodes) {
+    const auto planned = session::plan_fault_reset(*context.session, context.profile, node);
+    if (!planned) {
+      context.errors.push_back(planned.error());
+      continue;
+    }
+    if (planned->empty())
+      context.notices.push_back(fmt::format("node {} is in no fault: nothing would be sent", node));
+    messages.insert(messages.end(), planned->begin(), planned->end());
   }
+  return planned_messages(context, messages);
+}
+
+Result<Value> run_reset(Context& context, const Arguments&) {
+  if (context.dry_run) return planned_resets(context);
   const auto question = fmt::format("Reset the fault of {}? Its cause must be gone.", whom(context));
   if (const auto answer = context.confirm(question); !answer) return tl::unexpected<Error>(answer.error());
   auto table = result_table();
@@ -48,17 +59,16 @@ Result<Value> run_reset(Context& context, const Arguments&) {
 }
 
 Result<Value> run_clear(Context& context, const Arguments&) {
+  std::vector<session::PlannedMessage> planned;
+  for (const auto node : context.nodes)
+    planned.push_back(session::planned_write({node, objects::kErrorHistory, Bytes{0}}));
+  if (context.dry_run) return planned_messages(context, planned);
+  const auto question = fmt::format("Clear the fault history of {}?", whom(context));
+  if (const auto answer = context.confirm(question); !answer) return tl::unexpected<Error>(answer.error());
   auto table = result_table();
-  if (!context.dry_run) {
-    const auto question = fmt::format("Clear the fault history of {}?", whom(context));
-    if (const auto answer = context.confirm(question); !answer) return tl::unexpected<Error>(answer.error());
-  }
-  for (const auto node : context.nodes) {
-    if (context.dry_run) {
-      table.rows.push_back({node, "would be cleared", Value()});
-      continue;
-    }
-    const auto written = context.session->download(node, objects::kErrorHistory, {0});
+  for (const auto& each : planned) {
+    const auto node = each.node;
+    const auto written = context.session->download(node, each.write->object, *each.write->data);
     const auto left =
         written ? context.session->upload(node, objects::kErrorHistory) : Result<Bytes>(Bytes{});
     if (!written) {

@@ -26,7 +26,8 @@ report::Table new_table(bool kept) {
                    {"file"},
                    {"state", "result", Show::text},
                    {"error", "", Show::json}};
-  if (kept) table.columns.push_back({"kept"});
+  if (kept) table.columns.push_back({"kept", "", Show::json});
+  if (kept) table.columns.push_back({"kept_text", "kept", Show::text});
   return table;
 }
 
@@ -98,11 +99,11 @@ Result<Value> write_from_file(Context& context, std::span<const Change> changes,
                         : lost                  ? "written (the answer was lost, the content was read back)"
                         : written[i]->read_back ? "written, read back"
                                                 : "written";
-    const auto kept = keeping.kept(changes[i].node);
     table.rows.push_back(row(changes[i].node, changes[i].target, changes[i].data.size(), file, state,
                              written[i] ? Value() : error_record(written[i].error())));
-    const bool told = written[i] && kept != session::Kept::unknown;
-    table.rows.back().push_back(told ? Value(kept == session::Kept::yes) : Value());
+    const auto kept = written[i] ? keeping.kept(changes[i]) : Value();
+    table.rows.back().push_back(kept);
+    table.rows.back().push_back(written[i] ? kept_text(kept) : Value());
     if (!written[i]) context.errors.push_back(written[i].error());
   }
   return Value(std::move(table));

@@ -237,8 +237,14 @@ Result<MotionTest> test_jog(Context& context, const Arguments& arguments, const 
   const auto plan = [&](session::Motion& motion) {
     auto planned = session::plan_jog(motion, jog);
     if (planned)
-      planned->summary = fmt::format("turn at {:g} {} for {}, then back", planned->value, planned->unit,
-                                     to_string(test.length));
+      planned->summary = fmt::format("turn at {} {} for {}, then back", number_text(planned->value),
+                                     planned->unit, to_string(test.length));
+    if (const auto back = planned ? motion.units().bytes(objects::kTargetVelocity, -planned->value)
+                                  : std::optional<Bytes>()) {
+      const auto rest = planned->moving.back();
+      planned->moving.emplace_back(objects::kTargetVelocity, *back);
+      planned->moving.push_back(rest);
+    }
     return planned;
   };
   const auto run = [&](session::Motion& motion, const session::MotionPlan& planned) {

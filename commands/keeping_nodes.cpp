@@ -2,7 +2,16 @@
 
 #include <algorithm>
 
+#include "drive/standard_objects.hpp"
+
 namespace servoctl::commands {
+namespace {
+
+/// Manufacturer-specific profile area (CiA 301, 7.4.1).
+constexpr std::uint16_t kFirstOfVendor = 0x2000;
+constexpr std::uint16_t kLastOfVendor = 0x5FFF;
+
+}  // namespace
 
 KeepingNodes::KeepingNodes(Context& context, std::span<const Change> changes)
     : context_(&context), changes_(changes) {
@@ -10,6 +19,10 @@ KeepingNodes::KeepingNodes(Context& context, std::span<const Change> changes)
     if (nodes_.find(change.node) == nodes_.end())
       nodes_.emplace(change.node,
                      std::make_unique<session::StorageScope>(*context.session, context.profile, change.node));
+}
+
+void KeepingNodes::rehearse(session::Rehearsal& rehearsal) {
+  for (auto& each : nodes_) each.second->rehearse(rehearsal);
 }
 
 Result<void> KeepingNodes::open(const WriteOptions& options) {
@@ -45,6 +58,27 @@ void KeepingNodes::close_node(std::uint8_t node, session::StorageScope& storage,
   if (!kept) context_->errors.push_back(kept.error());
   kept_[node] = kept.value_or(session::Kept::unknown);
   for (const auto& notice : storage.notices()) context_->notices.push_back(notice);
+}
+
+report::Value KeepingNodes::kept(const Change& change) const {
+  const auto kept = kept_.at(change.node);
+  const auto index = change.target.address.index;
+  const auto* profile = context_->profile;
+  if (change.target.address == objects::kControlword) return false;
+  // A switch of the memory is for the objects that go through it.
+  if (profile != nullptr && !profile->rules.store.flash_switch.empty() && !goes_to_memory(change)) return {};
+  if (kept != session::Kept::unknown) return kept == session::Kept::yes;
+  // CiA 301, 7.5.2.13: what is not stored by 1010h is lost. Manuals leave open whether that holds for panel
+  // parameters.
+  const bool of_standard = index < kFirstOfVendor || index > kLastOfVendor;
+  const bool stores = profile != nullptr && profile->rules.store.objects &&
+                      profile->dictionary.find({objects::kStoreIndex, 1}) != nullptr;
+  return of_standard && stores ? report::Value(false) : report::Value();
+}
+
+report::Value kept_text(const report::Value& kept) {
+  const auto* known = std::get_if<bool>(&kept.data());
+  return known == nullptr ? "not stated" : *known ? "yes" : "no";
 }
 
 /// Not the controlword, not communication objects, and not the switch that chooses the memory.

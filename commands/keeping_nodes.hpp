@@ -16,13 +16,17 @@ class KeepingNodes {
   /// `changes` outlive it.
   KeepingNodes(Context& context, std::span<const Change> changes);
 
+  /// From now on nothing is sent: what would be goes there, which outlives this.
+  void rehearse(session::Rehearsal& rehearsal);
+
   /// Before the writes. After an error nothing is open any more.
   Result<void> open(const WriteOptions& options);
   /// After the writes: a node of which one write failed stores nothing. What goes wrong is in
   /// `context.errors`.
   void close(std::span<const Result<session::Written>> written);
 
-  session::Kept kept(std::uint8_t node) const { return kept_.at(node); }
+  /// Whether a value that was written survives power-off; null where no manual tells.
+  report::Value kept(const Change& change) const;
 
  private:
   bool goes_to_memory(const Change& change) const;
@@ -33,5 +37,8 @@ class KeepingNodes {
   std::map<std::uint8_t, std::unique_ptr<session::StorageScope>> nodes_;
   std::map<std::uint8_t, session::Kept> kept_;
 };
+
+/// `yes`, `no`, or that it is not stated.
+report::Value kept_text(const report::Value& kept);
 
 }  // namespace servoctl::commands

@@ -2,6 +2,7 @@
 
 #include "base/text.hpp"
 #include "commands/command.hpp"
+#include "commands/planned_messages.hpp"
 #include "commands/records.hpp"
 #include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
@@ -20,32 +21,21 @@ constexpr Parameter kParameters[] = {
      .kind = Kind::value},
 };
 
-std::vector<std::string> words_of(const std::string& label) {
-  std::vector<std::string> out{label};
-  const auto open = label.rfind('(');
-  const auto close = label.rfind(')');
-  if (open == std::string::npos || close == std::string::npos || close < open) return out;
-  out.push_back(label.substr(open + 1, close - open - 1));
-  out.emplace_back(trim(std::string_view(label).substr(0, open)));
-  return out;
-}
-
 /// By number, by label, by what stands in its parentheses (`pv`), or by its first words.
 Result<std::int8_t> parse_mode(const drive::Profile& profile, std::string_view text) {
   const auto meaning = drive::meaning(drive::target_at(&profile, objects::kModeOfOperation), 0);
+  if (const auto* label = drive::find_label(meaning, text)) return static_cast<std::int8_t>(label->value);
+  if (const auto value = od::parse_value(od::DataType::i8, text))
+    return static_cast<std::int8_t>(od::to_double(*value));
   std::vector<std::string> offered;
-  if (meaning.labels != nullptr) {
+  if (meaning.labels != nullptr)
     for (const auto& label : *meaning.labels)
-      for (auto& word : words_of(label.label)) {
-        if (equals_nocase(word, text)) return static_cast<std::int8_t>(label.value);
-        offered.push_back(std::move(word));
-      }
-  }
-  const auto value = od::parse_value(od::DataType::i8, text);
+      for (const auto word : drive::label_words(label.label)) offered.emplace_back(word);
   const auto near = did_you_mean(text, offered);
-  const auto hint = near.empty() ? std::string("`objects 0x6060` lists them") : near;
-  if (!value) return fail(Errc::usage, fmt::format("'{}' is no mode of this family", text), hint);
-  return static_cast<std::int8_t>(od::to_double(*value));
+  return fail(Errc::usage, fmt::format("'{}' is no mode of this family", text),
+              !near.empty()     ? near
+              : offered.empty() ? std::string("write its number: 1 to 10 are those of CiA 402")
+                                : std::string("`objects 0x6060` lists them"));
 }
 
 struct Wanted {
@@ -53,7 +43,8 @@ struct Wanted {
   std::int8_t mode;
 };
 
-Result<void> change(Context& context, const Wanted& wanted) {
+/// Errc::refused where a new mode is none of the drive's, or could move it.
+Result<void> check_change(Context& context, const Wanted& wanted) {
   auto& session = *context.session;
   const auto& profile = *context.profile;
   if (const auto known = session::check_mode(session, profile, wanted.node, wanted.mode); !known)
@@ -61,12 +52,27 @@ Result<void> change(Context& context, const Wanted& wanted) {
   session::Power power(session, profile, wanted.node);
   const auto state = power.state();
   if (!state) return tl::unexpected<Error>(state.error());
-  if (drive::is_energised(*state))
-    return fail(session::drive_error(
-        Errc::refused, wanted.node,
-        fmt::format("is energised ({}): a new mode could move it at once", drive::name(*state)),
-        "`disable` it first"));
-  return session::set_mode(session, profile, wanted.node, wanted.mode);
+  if (!drive::is_energised(*state)) return {};
+  return fail(session::drive_error(
+      Errc::refused, wanted.node,
+      fmt::format("is energised ({}): a new mode could move it at once", drive::name(*state)),
+      "`disable` it first"));
+}
+
+Result<void> change(Context& context, const Wanted& wanted) {
+  if (const auto possible = check_change(context, wanted); !possible) return possible;
+  return session::set_mode(*context.session, *context.profile, wanted.node, wanted.mode);
+}
+
+Value planned(Context& context, std::int8_t mode) {
+  std::vector<session::PlannedMessage> messages;
+  for (const auto node : context.nodes) {
+    if (const auto possible = check_change(context, {node, mode}); !possible)
+      context.errors.push_back(possible.error());
+    else
+      messages.push_back(session::planned_write(session::mode_write(*context.profile, node, mode)));
+  }
+  return planned_messages(context, messages);
 }
 
 Result<Value> run(Context& context, const Arguments& arguments) {
@@ -76,6 +82,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
     if (!mode) return tl::unexpected<Error>(mode.error());
     wanted = *mode;
   }
+  if (wanted && context.dry_run) return planned(context, *wanted);
   report::Table table;
   table.columns = {{"node"},
                    {"text", "mode", Show::text},
@@ -83,11 +90,6 @@ Result<Value> run(Context& context, const Arguments& arguments) {
                    {"result"},
                    {"error", "", Show::json}};
   for (const auto node : context.nodes) {
-    if (wanted && context.dry_run) {
-      table.rows.push_back({node, session::mode_text(*context.profile, *wanted, context.chinese), *wanted,
-                            "would be set", Value()});
-      continue;
-    }
     const auto done = wanted ? change(context, {node, *wanted}) : Result<void>{};
     const auto mode = session::read_mode(*context.session, node);
     if (!done) context.errors.push_back(done.error());

@@ -6,6 +6,7 @@
 #include "base/number.hpp"
 #include "canopen/cob_id.hpp"
 #include "commands/motion_result.hpp"
+#include "commands/planned_messages.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/operation_mode.hpp"
 
@@ -13,6 +14,7 @@ namespace servoctl::commands {
 namespace {
 
 using report::Record;
+using report::Show;
 using report::Value;
 
 /// A line of text so often; `-o jsonl` has every sample.
@@ -38,25 +40,35 @@ class Display {
   std::optional<TimePoint> last_line_;
 };
 
-/// What would be written, in order.
-Value planned(const Context& context, const session::Motion& motion, const session::MotionPlan& plan,
-              const std::vector<session::PreflightItem>& items) {
+report::List planned_step(const Context& context, const session::Motion& motion,
+                          const session::PlannedMessage& message) {
+  if (!message.write)
+    return {message.step, "", Value(), report::text_or_null(message.when), frame_text(message)};
+  const auto object = message.write->object;
+  const auto& data = *message.write->data;
+  const auto value = motion.units().physical(object, data);
+  std::string text = value ? fmt::format("{} {}", number_text(value->value), value->unit) : to_hex(data);
+  const bool of_communication = object.index >= 0x1000 && object.index < 0x2000;
+  if (object == objects::kControlword || of_communication)
+    text = fmt::format("0x{:0{}X}", load_le(data), 2 * data.size());
+  if (object == objects::kModeOfOperation)
+    text = session::mode_text(*context.profile, static_cast<std::int8_t>(load_le(data)), context.chinese);
+  return {message.step, to_string(object), text, report::text_or_null(message.when), frame_text(message)};
+}
+
+/// What would be sent, in order, if the drive follows.
+Result<Value> planned(const Context& context, session::Motion& motion, const session::MotionPlan& plan,
+                      const std::vector<session::PreflightItem>& items) {
+  const auto messages = motion.rehearse(plan);
+  if (!messages) return tl::unexpected<Error>(messages.error());
   report::Table steps;
-  steps.columns = {{"step"}, {"object"}, {"value"}};
-  const auto add = [&](std::string_view step, ObjectAddress object, const Bytes& data) {
-    const auto value = motion.units().physical(object, data);
-    steps.rows.push_back(
-        {step, to_string(object), value ? fmt::format("{:g} {}", value->value, value->unit) : to_hex(data)});
-  };
-  steps.rows.push_back({"watchdog", "", session::to_string(motion.watchdog())});
-  steps.rows.push_back({"mode", to_string(objects::kModeOfOperation),
-                        session::mode_text(*context.profile, plan.mode, context.chinese)});
-  for (const auto& [object, data] : plan.settings) add("setting", object, data);
-  steps.rows.push_back({"enable", to_string(objects::kControlword), "0x0006, 0x0007, 0x000F"});
-  steps.rows.push_back({"motion", "", plan.summary});
-  steps.rows.push_back(
-      {"end", to_string(objects::kControlword), "stop, disable, put everything back, verify"});
-  return Record{{"node", motion.node()}, {"preflight", preflight_table(items)}, {"steps", std::move(steps)}};
+  steps.columns = {{"step"}, {"object"}, {"value"}, {"when"}, {"frame"}};
+  for (const auto& message : *messages) steps.rows.push_back(planned_step(context, motion, message));
+  return Value(Record{{"node", motion.node()},
+                      {"motion", plan.summary},
+                      {"watchdog", session::to_string(motion.watchdog()), Show::json},
+                      {"preflight", preflight_table(items)},
+                      {"steps", std::move(steps)}});
 }
 
 Result<void> ask(Context& context, std::uint8_t node, const session::MotionPlan& plan,
@@ -141,9 +153,10 @@ Result<Value> run_motion(Context& context, const Arguments& arguments, const Mot
   for (const auto& note : plan->notes) context.notices.push_back(fmt::format("node {}: {}", *node, note));
   auto possible = session::check_preflight(*items, *node);
   if (possible) possible = session::check_mode(*context.session, *context.profile, *node, plan->mode);
+  if (context.dry_run && possible) return planned(context, motion, *plan, *items);
   if (context.dry_run) {
-    if (!possible) context.errors.push_back(possible.error());
-    return planned(context, motion, *plan, *items);
+    context.errors.push_back(possible.error());
+    return Value(Record{{"node", *node}, {"motion", plan->summary}, {"preflight", preflight_table(*items)}});
   }
   if (!possible) return tl::unexpected<Error>(possible.error());
   if (const auto answer = ask(context, *node, *plan, *items); !answer)

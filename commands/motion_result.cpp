@@ -27,11 +27,9 @@ double seconds_since(const MotionSample& sample, TimePoint begin) {
   return std::chrono::duration<double>(sample.time - begin).count();
 }
 
-/// Six digits are more than any sensor has, and fewer than the noise of the conversion.
-std::string short_number(double value) { return fmt::format("{:.6g}", value); }
-
+/// Six digits are more than any sensor has, and fewer than the noise of the conversion; counts stay whole.
 double rounded(double value, int digits = 6) {
-  return parse_real(fmt::format("{:.{}g}", value, digits)).value_or(value);
+  return parse_real(plain_number(value, digits)).value_or(value);
 }
 
 /// First, last, least and greatest value of one quantity.
@@ -168,7 +166,7 @@ std::string sample_line(const MotionSample& sample, TimePoint begin, const sessi
   for (const auto channel : kEvery) {
     const auto value = sample[channel];
     if (!value) continue;
-    const auto text = fmt::format("{}{} {}", kShort[static_cast<std::size_t>(channel)], short_number(*value),
+    const auto text = fmt::format("{}{} {}", kShort[static_cast<std::size_t>(channel)], number_text(*value),
                                   units.unit(session::object_of(channel)));
     out += "  " + pad_left(text, 15);
   }

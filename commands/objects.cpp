@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "base/file.hpp"
+#include "base/number.hpp"
 #include "base/text.hpp"
 #include "commands/command.hpp"
 #include "commands/reading.hpp"
@@ -67,8 +68,8 @@ report::List row(const Context& context, const od::Object& object, const od::Ent
   const auto shown = context.chinese && !name_zh.empty() ? name_zh : entry.name;
   static const std::vector<od::EnumLabel> kNone;
   const auto& labels = meaning.labels != nullptr ? *meaning.labels : kNone;
-  const auto unit =
-      meaning.scale == 1 ? std::string(meaning.unit) : fmt::format("{:g} {}", meaning.scale, meaning.unit);
+  const auto unit = meaning.scale == 1 ? std::string(meaning.unit)
+                                       : fmt::format("{} {}", plain_number(meaning.scale, 6), meaning.unit);
   const auto& doubts = parameter != nullptr ? parameter->doubts : entry.doubts;
   const auto& note_zh = parameter != nullptr ? parameter->note_zh : entry.note_zh;
   const auto encoding = od::name(meaning.encoding);
@@ -102,6 +103,26 @@ report::List row(const Context& context, const od::Object& object, const od::Ent
           marks_record(doubts.assumed),
           !doubts.contradicted.empty(),
           marks_record(doubts.contradicted)};
+}
+
+/// What the values of an object stand for: a line each.
+std::vector<std::string> values_of(const Context& context, const od::Entry& entry) {
+  std::vector<std::string> out;
+  const auto meaning = drive::meaning(drive::target_at(context.profile, entry.address), 0);
+  if (meaning.labels == nullptr) return out;
+  for (const auto& label : *meaning.labels) {
+    const bool chinese = context.chinese && !label.label_zh.empty();
+    out.push_back(fmt::format("{} {}", label.value, chinese ? label.label_zh : label.label));
+  }
+  return out;
+}
+
+/// Of an object that is asked for by its index, what its values stand for.
+void add_values(const Context& context, const od::Entry& entry, report::Table& table) {
+  const auto values = values_of(context, entry);
+  if (values.empty()) return;
+  table.below.push_back(fmt::format("values of {}:", to_string(entry.address)));
+  for (const auto& value : values) table.below.push_back("  " + value);
 }
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
@@ -140,7 +161,10 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   const auto pattern = arguments.text("pattern");
   for (const auto& object : context.profile->dictionary.objects())
     for (const auto& entry : object.entries)
-      if (wanted(pattern, object, entry)) table.rows.push_back(row(context, object, entry, sheet.notes));
+      if (wanted(pattern, object, entry)) {
+        table.rows.push_back(row(context, object, entry, sheet.notes));
+        if (parse_object_address(pattern)) add_values(context, entry, table);
+      }
   if (table.rows.empty())
     return fail(Errc::negative, fmt::format("no object of {} fits '{}'", context.profile->family, pattern),
                 "try a shorter word, or 0x60* for a range of indexes");
@@ -158,7 +182,8 @@ const Command kObjects{
     .summary = "List the object dictionary of a drive family",
     .details =
         "Works without a bus. The pattern is part of a name in English or Chinese, an index, or a form with "
-        "`*`. Of a DCF, value and denotation are what it gives each entry (ParameterValue, Denotation). "
+        "`*`; of an index, what the values stand for is listed as well. Of a DCF, value and denotation are "
+        "what it gives each entry (ParameterValue, Denotation). "
         "`?` marks what the manual does not state, `!` what it states in more than one way; --json names the "
         "lines.",
     .parameters = kParameters,

@@ -42,16 +42,15 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
       changes.push_back(std::move(*change));
     }
   }
-  if (context.dry_run) return planned_frames(changes);
+  WriteOptions options{.keep = arguments.has("--keep"), .unlock = arguments.has("--unlock")};
+  if (context.dry_run) return planned_changes(context, changes, options);
   if (const auto confirmed = confirm_changes(context, changes); !confirmed)
     return tl::unexpected<Error>(confirmed.error());
   // A write-only parameter starts an action and has nothing to read back.
-  const bool readable = std::all_of(changes.begin(), changes.end(), [](const Change& c) {
+  options.read_back = std::all_of(changes.begin(), changes.end(), [](const Change& c) {
     return od::readable(drive::meaning(c.target, c.node).access);
   });
-  return write_changes(
-      context, changes,
-      {.read_back = readable, .keep = arguments.has("--keep"), .unlock = arguments.has("--unlock")});
+  return write_changes(context, changes, options);
 }
 
 }  // namespace

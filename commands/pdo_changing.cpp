@@ -5,12 +5,16 @@
 
 #include "canopen/nmt.hpp"
 #include "commands/change.hpp"
+#include "commands/keeping_nodes.hpp"
 #include "commands/pdo_check.hpp"
 #include "commands/pdo_neighbours.hpp"
 #include "commands/pdo_record.hpp"
 #include "commands/pdo_report.hpp"
+#include "commands/planned_messages.hpp"
+#include "drive/standard_objects.hpp"
 #include "session/pdo_change.hpp"
 #include "session/pdo_setup.hpp"
+#include "session/storage.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -21,8 +25,6 @@ using report::Record;
 using report::Show;
 using report::Value;
 using session::Values;
-
-bool same_pdo(const Pdo& a, const Pdo& b) { return a.direction == b.direction && a.number == b.number; }
 
 /// What is to be done to one node.
 struct Job {
@@ -47,11 +49,12 @@ class Changing {
   Result<Value> run() {
     if (const auto known = take_up_record(); !known) return tl::unexpected<Error>(known.error());
     if (const auto planned = plan_all(); !planned) return tl::unexpected<Error>(planned.error());
-    if (context_->dry_run) return frames();
     const bool any =
         undone_ || std::any_of(jobs_.begin(), jobs_.end(), [](const Job& job) { return !job.plan.empty(); });
-    if (any) {
+    if (any)
       if (const auto quiet = check_quiet(); !quiet) return tl::unexpected<Error>(quiet.error());
+    if (context_->dry_run) return frames();
+    if (any) {
       if (const auto yes = context_->confirm(question()); !yes) return tl::unexpected<Error>(yes.error());
       // It may have taken long to answer.
       if (const auto quiet = check_quiet(); !quiet) return tl::unexpected<Error>(quiet.error());
@@ -157,25 +160,26 @@ class Changing {
                        jobs_.front().wanted.pdos.size() == 1 ? "it" : "them");
   }
 
-  Value frames() const {
-    report::Table table;
-    table.columns = {{"node"}, {"object"}, {"name"}, {"frame"}};
-    const auto nmt = [&](std::uint8_t node, canopen::NmtCommand command, std::string_view when) {
-      table.rows.push_back({node, "NMT", fmt::format("{}{}", canopen::name(command), when),
-                            can::to_string(canopen::nmt_frame(command, node))});
-    };
+  /// What changes it, and what the family's password and memory need around it.
+  Result<Value> frames() const {
+    session::Rehearsal out;
     for (const auto& job : jobs_) {
-      std::vector<Change> changes;
-      for (const auto& step : job.plan)
-        changes.push_back(
-            {job.present.node, drive::target_at(context_->profile, step.object), {}, step.data});
+      if (is_idle(job)) continue;
+      const auto node = job.present.node;
       const bool pause = session::needs_pre_operational(context_->profile, job.plan);
-      if (pause) nmt(job.present.node, canopen::NmtCommand::enter_pre_operational, ", if it is operational");
-      const auto planned = planned_frames(changes);
-      for (const auto& row : std::get<report::Table>(planned.data()).rows) table.rows.push_back(row);
-      if (pause) nmt(job.present.node, canopen::NmtCommand::start, ", if it was operational");
+      const auto nmt = [&](canopen::NmtCommand command, std::string when) {
+        out.add(session::planned_frame(node, canopen::nmt_frame(command, node), std::move(when)));
+      };
+      session::StorageScope storage(*context_->session, context_->profile, node);
+      storage.rehearse(out);
+      if (pause) nmt(canopen::NmtCommand::enter_pre_operational, "if it is operational");
+      if (const auto opened = storage.open(how_.keep, how_.unlock, true); !opened)
+        return tl::unexpected<Error>(opened.error());
+      for (const auto& step : job.plan) out.add(session::planned_write({node, step.object, step.data}));
+      (void)storage.close(true, job.plan.size());
+      if (pause) nmt(canopen::NmtCommand::start, "if it was operational");
     }
-    return table;
+    return planned_messages(*context_, out.messages());
   }
 
   bool is_idle(const Job& job) const { return job.plan.empty() && !how_.keep; }
@@ -236,7 +240,11 @@ class Changing {
 
   /// Whether it survives power-off: where a family has neither 1010h nor stored copies, no manual tells.
   Value kept(const session::RestoreOutcome& outcome) {
-    if (outcome.kept == session::Kept::unknown) return {};
+    // CiA 301, 7.5.2.13: what is not stored by 1010h is lost.
+    const auto& profile = *context_->profile;
+    const bool stores =
+        profile.rules.store.objects && profile.dictionary.find({objects::kStoreIndex, 1}) != nullptr;
+    if (outcome.kept == session::Kept::unknown) return stores && !how_.keep ? Value(false) : Value();
     const bool told = context_->profile->rules.store.objects || copies_;
     if (outcome.kept == session::Kept::yes && !told) {
       context_->notices.emplace_back(
@@ -247,7 +255,10 @@ class Changing {
   }
 
   Record record(const Job& job, std::string_view state, Value kept) const {
-    Record out{{"node", job.present.node}, {"result", state}, {"kept", std::move(kept)}};
+    Record out{{"node", job.present.node},
+               {"result", state},
+               {"kept", kept, Show::json},
+               {"kept", state.starts_with("written") ? kept_text(kept) : Value(), Show::text}};
     List pdos;
     for (const auto& pdo : job.wanted.pdos) {
       const auto lines = pdo_lines(context_->profile, pdo, job.present.node, context_->chinese);
@@ -269,25 +280,6 @@ class Changing {
 };
 
 }  // namespace
-
-const Pdo* PresentPdos::find(const Pdo& like) const {
-  const auto found =
-      std::find_if(pdos.begin(), pdos.end(), [&](const Pdo& pdo) { return same_pdo(pdo, like); });
-  return found == pdos.end() ? nullptr : &*found;
-}
-
-Result<Pdo> find_pdo(const PresentPdos& present, std::string_view name) {
-  const auto like = canopen::parse_pdo_name(name);
-  if (!like)
-    return fail(Errc::usage, fmt::format("'{}' names no PDO", name), "RPDO1, TPDO2: as the drive sees them");
-  if (const auto* found = present.find(*like)) return *found;
-  std::string there;
-  for (const auto& pdo : present.pdos)
-    there += (there.empty() ? "" : ", ") + canopen::name(pdo.direction, pdo.number);
-  return fail(Errc::usage,
-              fmt::format("node {} has no {}", present.node, canopen::name(like->direction, like->number)),
-              there.empty() ? "it has no PDOs that can be read" : "it has " + there);
-}
 
 Result<Value> change_pdos(Context& context, const PdoEdit& edit, const PdoChanging& how) {
   return Changing(context, edit, how).run();

@@ -39,6 +39,9 @@ struct PdoChanging {
   std::filesystem::path file = {};  ///< That says what is wanted, where one does.
 };
 
+/// Whether both are the PDO of one number and direction.
+bool same_pdo(const canopen::Pdo& a, const canopen::Pdo& b);
+
 /// The PDO of this name at this node. Errc::usage, with those it has.
 Result<canopen::Pdo> find_pdo(const PresentPdos& present, std::string_view name);
 

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <algorithm>
 
 #include "base/duration.hpp"
 #include "base/number.hpp"
@@ -21,12 +22,18 @@ constexpr Parameter kParameters[] = {
      .many = true},
     {.name = "--type", .help = "transmission type: 1 at every SYNC, 255 by event", .kind = Kind::number},
     {.name = "--inhibit", .help = "shortest time between two: 10ms", .kind = Kind::duration},
-    {.name = "--event", .help = "longest time between two: 100ms", .kind = Kind::duration},
+    {.name = "--event",
+     .help = "longest time between two, by a type that sends by it: 100ms",
+     .kind = Kind::duration},
     {.name = "--cob-id", .help = "CAN-ID: 0x181, $NODEID+0x180; 29 bits: 0x1ABCDEF", .kind = Kind::text},
     {.name = "--sync-start", .help = "SYNC counter from which it is sent", .kind = Kind::number},
     kKeepOption,
     kUnlockOption,
 };
+
+/// 254 and 255 are driven by events, the types below by SYNC and remote frames.
+constexpr std::uint8_t kFirstEventType = 254;
+constexpr std::uint8_t kEventTimer = 5;  ///< Its sub-index (CiA 301, 7.5.2.37).
 
 /// What the options say; what they do not say stays as it is.
 struct Options {
@@ -86,12 +93,56 @@ Result<Options> parse_options(const drive::Profile& profile, const Arguments& ar
   return out;
 }
 
+/// Whether a TPDO of this type is sent when its event timer ends (CiA 301, 7.5.2.38), also by the family's
+/// word.
+bool counts_event(const drive::Profile& profile, std::uint8_t type) {
+  const auto& rules = profile.rules.pdo;
+  const bool refused =
+      std::find(rules.refused_types.begin(), rules.refused_types.end(), type) != rules.refused_types.end();
+  return type >= kFirstEventType && !refused && rules.sends_by_timer(type);
+}
+
+Error no_timer(const Pdo& pdo, std::optional<std::uint8_t> right) {
+  Error error;
+  error.code = Errc::usage;
+  error.message = fmt::format("{}: at transmission type {} the event timer does not count",
+                              canopen::name(pdo.direction, pdo.number), pdo.type);
+  error.hint = right ? fmt::format("--type {} sends by it; or leave --event away", *right)
+                     : "no type of this drive sends by it; leave --event away";
+  return error;
+}
+
+/// An event timer that nothing looks at would be told as set: it is refused with the type that was asked for,
+/// else the right type is set with it. A timer of 0 is none; an RPDO only watches with it.
+Result<void> settle_event(Context& context, const Options& options, std::uint8_t node, Pdo& pdo) {
+  const auto& profile = *context.profile;
+  const bool asked = options.event && *options.event != 0;
+  const bool has_timer = profile.dictionary.find({pdo.communication_index(), kEventTimer}) != nullptr;
+  if (!asked || !has_timer || pdo.direction != canopen::PdoDirection::transmit ||
+      counts_event(profile, pdo.type))
+    return {};
+  std::optional<std::uint8_t> right;
+  for (const std::uint8_t type : {kFirstEventType, std::uint8_t{255}})
+    if (counts_event(profile, type)) right = type;
+  if (options.type || !right) return fail(no_timer(pdo, right));
+  const auto name = canopen::name(pdo.direction, pdo.number);
+  context.notices.push_back(
+      fmt::format("node {}, {}: at transmission type {} the event timer does not count: {} is set with it",
+                  node, name, pdo.type, *right));
+  pdo.type = *right;
+  return {};
+}
+
 Result<void> check(Context& context, const Arguments& arguments) {
   const auto options = parse_options(*context.profile, arguments);
   if (!options) return tl::unexpected<Error>(options.error());
   auto pdo = canopen::parse_pdo_name(arguments.text("pdo"));
   if (!pdo) return tl::unexpected<Error>(find_pdo({}, arguments.text("pdo")).error());
   pdo->entries = options->entries;
+  if (options->type) {
+    pdo->type = *options->type;
+    if (const auto counts = settle_event(context, *options, 0, *pdo); !counts) return counts;
+  }
   if (!options->cob_id.empty())
     for (const auto node : context.nodes)
       if (const auto can_id = parse_pdo_can_id(options->cob_id, node); !can_id) {
@@ -118,6 +169,8 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
     if (options->type) pdo->type = *options->type;
     if (options->inhibit) pdo->inhibit = options->inhibit;
     if (options->event) pdo->event = options->event;
+    if (const auto counts = settle_event(context, *options, present.node, *pdo); !counts)
+      return tl::unexpected<Error>(counts.error());
     if (options->sync_start) pdo->sync_start = options->sync_start;
     const bool linked = present.values.count({pdo->communication_index(), 1}) > 0;
     if (!linked && !options->cob_id.empty()) return fail(Errc::usage, "this drive's PDOs have no COB-ID");

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "base/number.hpp"
 #include "commands/records.hpp"
 #include "session/measure.hpp"
 
@@ -72,7 +73,9 @@ List reading_row(const Context& context, const Reading& reading) {
   const bool number = std::holds_alternative<std::uint64_t>(decoded.raw.data()) ||
                       std::holds_alternative<std::int64_t>(decoded.raw.data());
   Value hex;
-  if (number) hex = fmt::format("0x{:0{}X}", load_le(bytes), bytes.size() * 2);
+  // Where the value is hexadecimal already, once is enough.
+  const bool told = drive::meaning(reading.target, reading.node).bits;
+  if (number && !told) hex = fmt::format("0x{:0{}X}", load_le(bytes), bytes.size() * 2);
   const auto label = chinese && !decoded.label_zh.is_null() ? decoded.label_zh : decoded.label;
   row.insert(row.end(), {Value(decoded.text), Value(decoded.type), decoded.value, decoded.raw,
                          report::text_or_null(decoded.unit), decoded.encoding, decoded.familiar,
@@ -145,7 +148,7 @@ DecodedValue decode_value(const Reading& reading, ByteSpan bytes) {
 FamiliarValue familiar_value(const drive::Meaning& meaning, const od::Value& value) {
   const auto familiar = drive::familiar(meaning, value);
   if (!familiar) return {};
-  return {fmt::format("{:.7g} {}", familiar->value, familiar->unit),
+  return {fmt::format("{} {}", plain_number(familiar->value, 7), familiar->unit),
           Record{{"value", familiar->value}, {"unit", familiar->unit}}};
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "base/number.hpp"
 #include "base/text.hpp"
 #include "canopen/sdo_abort.hpp"
 
@@ -41,7 +42,7 @@ std::string flags_of(const od::Parameter& p) {
 
 std::string unit_text(std::string_view unit, double scale) {
   if (scale == 1) return std::string(unit);
-  return fmt::format("{:g}{}{}", scale, unit.empty() ? "" : " ", unit);
+  return fmt::format("{}{}{}", plain_number(scale, 6), unit.empty() ? "" : " ", unit);
 }
 
 std::string range_of(const od::Parameter& p) {

@@ -12,6 +12,9 @@ constexpr Parameter kParameters[] = {
      .help = "NAME=VALUE: a variable of the file, over its own `set`; may be repeated",
      .kind = Kind::text,
      .repeats = true},
+    {.name = "--frames",
+     .help = "with --dry-run: the frames of every line, by the state the drives are in now",
+     .kind = Kind::flag},
     {.name = "--check", .help = "check all lines without a bus, run none", .kind = Kind::flag},
 };
 
@@ -32,7 +35,9 @@ const Command kRun{
         "in the form of CiA 309-3 (`4 r 0x1017 0 u16`) are understood. Options given here hold for all "
         "lines. What is wrong in any line is told before the first one is run; --dry-run shows all lines "
         "with "
-        "their variables filled in and sends nothing. `servoctl -` reads standard input.",
+        "their variables filled in and sends nothing; with --frames every line that changes a drive is gone "
+        "through as with its own --dry-run, against the drives as they are before the first line, and shows "
+        "its frames or why it would be refused. `servoctl -` reads standard input.",
     .parameters = kParameters,
     .of_front_end = true,
 };

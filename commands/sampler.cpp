@@ -197,16 +197,22 @@ report::Table sampling_table(std::span<const ChannelRecord> records) {
                    {"by_pdo", "by PDO"},
                    {"failed"},
                    {"min"},
-                   {"mean"},
+                   {"mean", "", report::Show::json},
+                   {"mean_text", "mean", report::Show::text},
                    {"max"},
                    {"unit"}};
   for (const auto& record : records) {
     const auto& channel = record.channel();
     const auto& numbers = record.statistics();
-    const auto number = [&](double value) { return numbers.count() == 0 ? Value() : rounded(value); };
+    const bool bits = drive::meaning(channel.target, channel.node).bits;
+    const auto number = [&](double value) {
+      if (numbers.count() == 0) return Value();
+      return bits ? Value(report::Hex{static_cast<std::uint64_t>(value), 4}) : rounded(value);
+    };
     table.rows.push_back({channel.node, channel.target.address.index, channel.target.address.sub,
                           channel.name, numbers.count(), record.by_pdo(), record.failures(),
-                          number(numbers.least()), number(numbers.mean()), number(numbers.greatest()),
+                          number(numbers.least()), numbers.count() == 0 ? Value() : rounded(numbers.mean()),
+                          bits ? Value() : number(numbers.mean()), number(numbers.greatest()),
                           report::text_or_null(record.series().unit)});
   }
   return table;

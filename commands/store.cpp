@@ -4,6 +4,7 @@
 #include <array>
 
 #include "commands/command.hpp"
+#include "commands/planned_messages.hpp"
 #include "commands/records.hpp"
 
 namespace servoctl::commands {
@@ -28,28 +29,37 @@ Result<ParameterGroup> group_of(const Arguments& arguments) {
 }
 
 struct Words {
-  std::string_view question, done, planned;
+  std::string_view question, done;
 };
 
-using Action = Result<void> (*)(session::Session&, const drive::Profile*, std::uint8_t, ParameterGroup);
+struct Action {
+  Result<void> (*carry_out)(session::Session&, const drive::Profile*, std::uint8_t, ParameterGroup);
+  Result<std::vector<session::SdoRequest>> (*writes)(const drive::Profile*, std::uint8_t, ParameterGroup);
+};
 
-Result<Value> run(Context& context, const Arguments& arguments, Action action, const Words& words) {
+Value planned(Context& context, ParameterGroup group, const Action& action) {
+  std::vector<session::PlannedMessage> messages;
+  for (const auto node : context.nodes) {
+    const auto writes = action.writes(context.profile, node, group);
+    if (!writes) context.errors.push_back(writes.error());
+    if (!writes) continue;
+    for (const auto& write : *writes) messages.push_back(session::planned_write(write));
+  }
+  return planned_messages(context, messages);
+}
+
+Result<Value> run(Context& context, const Arguments& arguments, const Action& action, const Words& words) {
   const auto group = group_of(arguments);
   if (!group) return tl::unexpected<Error>(group.error());
-  if (!context.dry_run) {
-    const auto whom = context.nodes.size() == 1 ? fmt::format("node {}", context.nodes.front())
-                                                : fmt::format("{} nodes", context.nodes.size());
-    const auto answer = context.confirm(fmt::format(fmt::runtime(words.question), whom));
-    if (!answer) return tl::unexpected<Error>(answer.error());
-  }
+  if (context.dry_run) return planned(context, *group, action);
+  const auto whom = context.nodes.size() == 1 ? fmt::format("node {}", context.nodes.front())
+                                              : fmt::format("{} nodes", context.nodes.size());
+  if (const auto answer = context.confirm(fmt::format(fmt::runtime(words.question), whom)); !answer)
+    return tl::unexpected<Error>(answer.error());
   report::Table table;
   table.columns = {{"node"}, {"result"}, {"error", "", Show::json}};
   for (const auto node : context.nodes) {
-    if (context.dry_run) {
-      table.rows.push_back({node, words.planned, Value()});
-      continue;
-    }
-    const auto done = action(*context.session, context.profile, node, *group);
+    const auto done = action.carry_out(*context.session, context.profile, node, *group);
     if (!done) context.errors.push_back(done.error());
     table.rows.push_back({node, done ? words.done : "failed", done ? Value() : error_record(done.error())});
   }
@@ -57,15 +67,14 @@ Result<Value> run(Context& context, const Arguments& arguments, Action action, c
 }
 
 Result<Value> run_store(Context& context, const Arguments& arguments) {
-  return run(
-      context, arguments, session::store_parameters,
-      {"Store the present values of {}? They replace what it starts with.", "stored", "would be stored"});
+  return run(context, arguments, {session::store_parameters, session::store_writes},
+             {"Store the present values of {}? They replace what it starts with.", "stored"});
 }
 
 Result<Value> run_defaults(Context& context, const Arguments& arguments) {
-  return run(context, arguments, session::restore_defaults,
+  return run(context, arguments, {session::restore_defaults, session::restore_writes},
              {"Restore the factory values of {}? What is set now is lost (`backup` keeps it).",
-              "restored; they are in force after a restart of the drive", "would be restored"});
+              "restored; they are in force after a restart of the drive"});
 }
 
 }  // namespace

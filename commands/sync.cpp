@@ -58,8 +58,8 @@ Result<void> check_quiet(session::Session& session) {
 }
 
 Result<Value> run_once(Context& context, const Arguments&) {
-  if (context.dry_run) return planned_frame({});
   if (const auto free = check_none(context); !free) return tl::unexpected<Error>(free.error());
+  if (context.dry_run) return planned_frame({});
   if (const auto sure = context.confirm(fmt::format("Send a SYNC? {}", kWarning)); !sure)
     return tl::unexpected<Error>(sure.error());
   if (const auto sent = context.session->send(canopen::sync_frame()); !sent)
@@ -89,9 +89,11 @@ Result<Value> run_start(Context& context, const Arguments& arguments) {
   if (!options) return tl::unexpected<Error>(options.error());
   const auto length = duration_option(arguments, "--for");
   if (!length) return tl::unexpected<Error>(length.error());
-  if (context.dry_run)
-    return planned_frame(options->last_counter == 0 ? std::nullopt : std::optional<std::uint8_t>(1));
   if (const auto free = check_none(context); !free) return tl::unexpected<Error>(free.error());
+  if (context.dry_run) {
+    if (const auto quiet = check_quiet(*context.session); !quiet) return tl::unexpected<Error>(quiet.error());
+    return planned_frame(options->last_counter == 0 ? std::nullopt : std::optional<std::uint8_t>(1));
+  }
   if (const auto sure =
           context.confirm(fmt::format("Send a SYNC every {}? {}", to_string(options->period), kWarning));
       !sure)

@@ -67,11 +67,11 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
     if (!change) return tl::unexpected<Error>(change.error());
     changes.push_back(std::move(*change));
   }
-  if (context.dry_run) return planned_frames(changes);
-  if (const auto confirmed = confirm_changes(context, changes); !confirmed)
-    return tl::unexpected<Error>(confirmed.error());
   const WriteOptions options{
       .read_back = false, .keep = arguments.has("--keep"), .unlock = arguments.has("--unlock")};
+  if (context.dry_run) return planned_changes(context, changes, options);
+  if (const auto confirmed = confirm_changes(context, changes); !confirmed)
+    return tl::unexpected<Error>(confirmed.error());
   return arguments.has("--from") ? write_from_file(context, changes, arguments.text("--from"), options)
                                  : write_changes(context, changes, options);
 }

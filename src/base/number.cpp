@@ -1,5 +1,7 @@
 #include "base/number.hpp"
 
+#include <fmt/format.h>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -62,6 +64,55 @@ std::optional<double> parse_real(std::string_view text) {
   const auto [stop, error] = std::from_chars(text.data(), end, value);
   if (text.empty() || error != std::errc{} || stop != end || !std::isfinite(value)) return std::nullopt;
   return value;
+}
+
+namespace {
+
+/// Beyond these no digit stands where people look for it.
+constexpr double kGreatest = 1e15;
+constexpr double kLeast = 1e-9;
+
+std::string with_decimals(double value, int decimals) {
+  auto out = fmt::format("{:.{}f}", value, std::max(decimals, 0));
+  if (out.find('.') != std::string::npos) {
+    while (out.back() == '0') out.pop_back();
+    if (out.back() == '.') out.pop_back();
+  }
+  return out == "-0" ? "0" : out;
+}
+
+/// Digits before the point; 0 or less: so many zeros follow it.
+int magnitude_of(double value) { return static_cast<int>(std::floor(std::log10(std::abs(value)))) + 1; }
+
+bool has_plain_form(double value) {
+  return std::isfinite(value) && std::abs(value) < kGreatest && std::abs(value) >= kLeast;
+}
+
+}  // namespace
+
+std::string plain_number(double value, int digits) {
+  if (value == 0) return "0";
+  if (!has_plain_form(value)) return fmt::format("{:.{}g}", value, digits);
+  return with_decimals(value, digits - magnitude_of(value));
+}
+
+std::string number_text(double value) {
+  constexpr int kDecimals = 3;
+  constexpr int kDigits = 4;
+  constexpr int kMostDigits = 7;
+  if (value == 0) return "0";
+  if (!has_plain_form(value)) return fmt::format("{:.{}g}", value, kDigits);
+  const int magnitude = magnitude_of(value);
+  return with_decimals(value,
+                       magnitude > 0 ? std::min(kDecimals, kMostDigits - magnitude) : kDigits - magnitude);
+}
+
+std::pair<std::string, std::string> told_apart(double a, double b) {
+  constexpr int kMostDigits = 17;
+  std::pair out{number_text(a), number_text(b)};
+  for (int digits = 5; a != b && out.first == out.second && digits <= kMostDigits; ++digits)
+    out = {plain_number(a, digits), plain_number(b, digits)};
+  return out;
 }
 
 }  // namespace servoctl

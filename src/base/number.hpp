@@ -2,7 +2,9 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <utility>
 
 namespace servoctl {
 
@@ -30,5 +32,14 @@ std::optional<Integer> parse_integer(std::string_view text);
 /// Reads what parse_integer() reads without base prefix, and `1.5`, `1e3`, `-.25`. Always with a point,
 /// whatever the locale; `inf` and `nan` are refused.
 std::optional<double> parse_real(std::string_view text);
+
+/// A number with at most so many significant digits, but never fewer than its whole part has, and without an
+/// exponent: `1310720`, `0.0001`, `9.99985`.
+std::string plain_number(double value, int digits);
+/// A number for a sentence: the whole part in full and up to three decimals, seven digits in all, or four
+/// significant digits of what is smaller than one: `1310720`, `10` for 9.99985, `28.648`.
+std::string number_text(double value);
+/// The same of two numbers that are set against each other: with as many digits as tell them apart.
+std::pair<std::string, std::string> told_apart(double a, double b);
 
 }  // namespace servoctl

@@ -7,6 +7,7 @@
 
 #include "base/file.hpp"
 #include "cli/batch_check.hpp"
+#include "cli/batch_frames.hpp"
 #include "cli/batch_plan.hpp"
 #include "cli/batch_run.hpp"
 #include "commands/records.hpp"
@@ -98,11 +99,15 @@ int run_file(Shell& shell, const commands::Arguments& arguments, std::istream* i
   auto plan = plan_batch(batch, std::move(*variables), std::filesystem::path(file).parent_path());
   auto errors = std::move(batch.errors);
   const bool only_check = arguments.has("--check");
+  if (arguments.has("--frames") && !settings.dry_run)
+    return report(fail(Errc::usage, "--frames goes with --dry-run", "run FILE --dry-run --frames").value());
   std::move(plan.errors.begin(), plan.errors.end(), std::back_inserter(errors));
   auto more = errors_before_run(shell, plan.steps, only_check || settings.dry_run);
   std::move(more.begin(), more.end(), std::back_inserter(errors));
   if (only_check || !errors.empty())
     return show(shell.console(), checked(name, plan.steps.size(), std::move(errors), settings));
+  if (settings.dry_run && arguments.has("--frames"))
+    return show(shell.console(), planned_frames(shell, plan.steps, name));
   if (settings.dry_run) return show(shell.console(), planned(plan.steps, settings));
   return run_steps(shell, plan.steps, name);
 }

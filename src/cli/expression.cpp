@@ -169,9 +169,16 @@ std::optional<long double> number_of(const Side& side) {
   return number(side.value);
 }
 
-bool holds(long double a, Comparator comparator, long double b) {
-  // A value in its unit is a product with the scale: its last digit is not exact.
-  const bool same = std::abs(a - b) <= 1e-12L * std::max(std::abs(a), std::abs(b));
+bool is_integer(const Side& side) {
+  if (side.word) return parse_integer(std::get<std::string>(side.value.data())).has_value();
+  const auto& data = side.value.data();
+  return std::holds_alternative<std::int64_t>(data) || std::holds_alternative<std::uint64_t>(data) ||
+         std::holds_alternative<report::Hex>(data);
+}
+
+/// A value in its unit is a product with the scale: its last digit is not exact. Integers are.
+bool holds(long double a, Comparator comparator, long double b, bool exact) {
+  const bool same = exact ? a == b : std::abs(a - b) <= 1e-12L * std::max(std::abs(a), std::abs(b));
   switch (comparator) {
     case Comparator::equal: return same;
     case Comparator::unequal: return !same;
@@ -193,7 +200,7 @@ Result<bool> compare(const Side& left, Comparator comparator, const Side& right)
   if (comparator == Comparator::contains) return contains(left, text(right.value));
   const auto a = number_of(left);
   const auto b = number_of(right);
-  if (a && b) return holds(*a, comparator, *b);
+  if (a && b) return holds(*a, comparator, *b, is_integer(left) && is_integer(right));
   if (comparator == Comparator::equal) return text(left.value) == text(right.value);
   if (comparator == Comparator::unequal) return text(left.value) != text(right.value);
   const auto& wrong = a ? right : left;

@@ -13,11 +13,12 @@ namespace {
 
 using session::FamilyVerdict;
 
-std::string forcing_hint(const FamilyVerdict& verdict) {
+std::string forcing_hint(const FamilyVerdict& verdict, std::uint8_t node) {
   const std::string_view force = "--force-family goes on all the same";
   if (verdict.fitting.empty())
-    return fmt::format("no family fits it: look at the nameplate; `info` tells what it says of itself; {}",
-                       force);
+    return fmt::format(
+        "no family fits it: look at the nameplate; `info -n {}` tells what it says of itself; {}", node,
+        force);
   return fmt::format("its identity fits {}: when the nameplate says so, add -d {}; {}",
                      one_of(verdict.fitting), verdict.fitting.front(), force);
 }
@@ -106,7 +107,7 @@ Result<void> FamilyGate::hold_one(const session::Identity& identity, const drive
     error.node = node;
     error.object = verdict.object;
     error.message = fmt::format("node {} is no {}: {}", node, profile.family, verdict.why);
-    error.hint = forcing_hint(verdict);
+    error.hint = forcing_hint(verdict, node);
     return fail(std::move(error));
   }
   const bool unproven_read = !contradicted && !refuses;

@@ -13,14 +13,6 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-struct TypeName {
-  std::string_view theirs;
-  std::string_view ours;
-};
-/// CiA 309-3, table of data types; types whose values have no text of ours are not among them.
-constexpr TypeName kTypes[] = {{"b", "bool"},    {"r32", "f32"},  {"r64", "f64"},
-                               {"vs", "string"}, {"os", "bytes"}, {"d", "domain"}};
-
 bool is_sequence(std::string_view word) {
   return word.size() > 2 && word.front() == '[' && word.back() == ']' &&
          parse_digits(word.substr(1, word.size() - 2), 10).has_value();
@@ -78,13 +70,6 @@ Result<std::string> address(const GatewayLine& line) {
   return to_string(ObjectAddress{static_cast<std::uint16_t>(*index), static_cast<std::uint8_t>(*sub)});
 }
 
-std::string type_of(std::string_view word) {
-  const auto type = lower(word);
-  for (const auto& known : kTypes)
-    if (known.theirs == type) return std::string(known.ours);
-  return type;
-}
-
 Result<Words> transfer(const GatewayLine& line) {
   const auto& words = line.words;
   const bool reads = line.verb() == "r" || line.verb() == "read";
@@ -96,7 +81,7 @@ Result<Words> transfer(const GatewayLine& line) {
   const bool option =
       !reads && words[4].starts_with('-') && !parse_real(words[4]) && !parse_integer(words[4]);
   if (!reads && !option) out.push_back(words[4]);
-  if (words.size() > 3) out.insert(out.end(), {"--type", type_of(words[3])});
+  if (words.size() > 3) out.insert(out.end(), {"--type", lower(words[3])});
   if (option) out.insert(out.end(), {"--", words[4]});
   return out;
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <limits>
 
 #include "base/text.hpp"
 #include "commands/help.hpp"
@@ -55,21 +56,18 @@ class Parser {
       if (!commands::has_own(command, parameter)) bind(parameter);
   }
 
-  /// Behind the first `--` stand values of arguments, whatever they look like: CLI11 does not see them.
+  /// Behind the first `--` stand values of arguments, whatever they look like: CLI11 does not see them. Where
+  /// no argument is left to take one, options may follow: `jog -- -30rpm --for 2s`.
   Result<commands::Arguments> parse(std::vector<std::string> words) {
     const auto mark = std::find(words.begin(), words.end(), "--");
-    const std::vector<std::string> values(mark == words.end() ? mark : mark + 1, words.end());
+    std::vector<std::string> values(mark == words.end() ? mark : mark + 1, words.end());
     words.erase(mark, words.end());
-    std::reverse(words.begin(), words.end());  // CLI11 takes them from the back.
-    try {
-      app_.parse(std::move(words));
-    } catch (const CLI::ArgumentMismatch& e) {
-      return fail(Errc::usage, fmt::format("{}: {}", command_->path, e.what()), help_hint());
-    } catch (const CLI::ParseError& e) {
-      return fail(Errc::usage, fmt::format("{}: {}", command_->path, e.what()), help_hint());
+    const auto room = values.empty() ? 0 : room_behind(words);
+    if (room < values.size() && values[room].starts_with('-')) {
+      words.insert(words.end(), values.begin() + static_cast<std::ptrdiff_t>(room), values.end());
+      values.resize(room);
     }
-    if (const auto rest = app_.remaining(); !rest.empty()) return superfluous(rest.front());
-    take_results();
+    if (const auto taken = take_words(std::move(words)); !taken) return tl::unexpected<Error>(taken.error());
     for (const auto& value : values)
       if (!take_argument(value)) return one_too_many(value);
     return collect();
@@ -97,6 +95,33 @@ class Parser {
                                                                         : CLI::MultiOptionPolicy::TakeLast)
               ->allow_extra_args(parameter.many);
     bound_.push_back({&parameter, option, {}});
+  }
+
+  Result<void> take_words(std::vector<std::string> words) {
+    std::reverse(words.begin(), words.end());  // CLI11 takes them from the back.
+    try {
+      app_.parse(std::move(words));
+    } catch (const CLI::ArgumentMismatch& e) {
+      return fail(Errc::usage, fmt::format("{}: {}", command_->path, e.what()), help_hint());
+    } catch (const CLI::ParseError& e) {
+      return fail(Errc::usage, fmt::format("{}: {}", command_->path, e.what()), help_hint());
+    }
+    if (const auto rest = app_.remaining(); !rest.empty()) return superfluous(rest.front());
+    take_results();
+    return {};
+  }
+
+  /// How many words the arguments still take after these words.
+  std::size_t room_behind(const std::vector<std::string>& words) const {
+    Parser before(*command_);
+    if (!before.take_words(words)) return 0;
+    std::size_t room = 0;
+    for (const auto& entry : before.bound_) {
+      if (entry.parameter->name.starts_with("-")) continue;
+      if (entry.parameter->many) return std::numeric_limits<std::size_t>::max();
+      room += entry.values.empty() ? 1U : 0U;
+    }
+    return room;
   }
 
   /// The words as they were given: what CLI11 makes of them reads `{}` as nothing.

@@ -29,7 +29,7 @@ using report::Value;
 bool wants_json(const std::vector<std::string>& words) {
   for (std::size_t i = 0; i < words.size() && words[i] != "--"; ++i) {
     if (words[i] == "--json" || words[i] == "--output=json" || words[i] == "--output=jsonl" ||
-        words[i] == "-ojson")
+        words[i] == "-ojson" || words[i] == "-ojsonl")
       return true;
     if ((words[i] == "-o" || words[i] == "--output") && i + 1 < words.size() &&
         (words[i + 1] == "json" || words[i + 1] == "jsonl"))

@@ -7,6 +7,7 @@
 
 #include "base/number.hpp"
 #include "base/text.hpp"
+#include "drive/standard_objects.hpp"
 #include "drive/unit.hpp"
 
 namespace servoctl::drive {
@@ -89,36 +90,15 @@ Result<Quantity> from_physical(const Meaning& meaning, const NumberWithUnit& giv
   const double step = meaning.scale / *factor;
   if (steps == Steps::exact && std::abs(raw - whole) > kWhole)
     return fail(Errc::usage,
-                fmt::format("'{}' is {:g} steps of {:g} {}: not a whole number", text, raw, meaning.scale,
-                            meaning.unit),
-                fmt::format("the nearest value is {:g} {}", tidy(whole * step), given.unit));
+                fmt::format("'{}' is {} steps of {} {}: not a whole number", text, plain_number(raw, 9),
+                            plain_number(meaning.scale, 6), meaning.unit),
+                fmt::format("the nearest value is {} {}", plain_number(tidy(whole * step), 9), given.unit));
   const auto rounding =
       judge_rounding({given.number, tidy(whole * step), std::abs(step), std::string(given.unit)});
   if (!rounding) return tl::unexpected<Error>(rounding.error());
   const auto value = od::parse_value(meaning.type, fmt::format("{:.0f}", whole));
   if (!value) return tl::unexpected<Error>(value.error());
   return Quantity{*value, *rounding};
-}
-
-/// Whether the text is the short form of a label: `LSP` of "LSP (positive end of travel)".
-bool is_short_form(std::string_view label, std::string_view text) {
-  const auto bracket = label.find(" (");
-  return bracket != std::string_view::npos && equals_nocase(label.substr(0, bracket), text);
-}
-
-/// By the whole label, or by a short form that only one label has.
-const od::EnumLabel* find_label(const Meaning& meaning, std::string_view text) {
-  if (meaning.labels == nullptr) return nullptr;
-  const od::EnumLabel* brief = nullptr;
-  std::size_t briefs = 0;
-  for (const auto& label : *meaning.labels) {
-    if (equals_nocase(label.label, text) || (!label.label_zh.empty() && label.label_zh == text))
-      return &label;
-    if (!is_short_form(label.label, text) && !is_short_form(label.label_zh, text)) continue;
-    brief = &label;
-    ++briefs;
-  }
-  return briefs == 1 ? brief : nullptr;
 }
 
 /// Bit patterns of numbers do not stand in the order of the numbers.
@@ -147,12 +127,15 @@ bool ends_in_own_unit(const Meaning& meaning, std::string_view text) {
 }  // namespace
 
 std::string plain_text(const Meaning& meaning, const od::Value& value) {
+  if (const auto* word = std::get_if<std::uint64_t>(&value); word != nullptr && meaning.bits)
+    return fmt::format("0x{:04X}", *word);
   return meaning.encoding == od::Encoding::plain ? od::to_string(value)
                                                  : fmt::format("{:.12g}", scaled(meaning, value));
 }
 
 Meaning meaning(const Target& target, std::uint8_t node) {
   Meaning out;
+  out.bits = target.address == objects::kControlword || target.address == objects::kStatusword;
   if (target.parameter != nullptr) {
     const auto& parameter = *target.parameter;
     out.type = parameter.type;
@@ -208,7 +191,7 @@ Result<void> check_limits(const Meaning& meaning, const od::Value& value) {
   if (meaning.labels != nullptr)
     hint = "values: " + labels_text(meaning);
   else if (meaning.scale != 1)
-    hint = fmt::format("one step is {:g} {}", meaning.scale, meaning.unit);
+    hint = fmt::format("one step is {} {}", plain_number(meaning.scale, 6), meaning.unit);
   return fail(Errc::usage,
               fmt::format("{} is out of range: {}", plain_text(meaning, value), range_text(meaning)),
               std::move(hint));
@@ -277,15 +260,6 @@ std::optional<Familiar> familiar(const Meaning& meaning, const od::Value& value)
   const auto unit = familiar_unit(meaning.unit);
   if (unit.empty()) return std::nullopt;
   return Familiar{tidy(own * conversion(meaning.unit, unit).value_or(1)), unit};
-}
-
-const od::EnumLabel* label_of(const Meaning& meaning, const od::Value& value) {
-  if (meaning.labels == nullptr) return nullptr;
-  for (const auto& label : *meaning.labels)
-    if (od::compare_numbers(value, od::Value(label.value)) == 0 &&
-        !std::holds_alternative<std::string>(value) && !std::holds_alternative<Bytes>(value))
-      return &label;
-  return nullptr;
 }
 
 std::string range_text(const Meaning& meaning) {

@@ -26,6 +26,7 @@ struct Meaning {
   const std::vector<od::EnumLabel>* labels = nullptr;
   od::Effect effect = od::Effect::unstated;
   od::Encoding encoding = od::Encoding::plain;
+  bool bits = false;  ///< Its bits are what it says: the controlword, the statusword. Told in hexadecimal.
   bool size_known = true;          ///< False: the manual does not tell the length; the drive must be asked.
   std::optional<Measure> measure;  ///< What must be read from the drive to convert the unit.
   std::optional<Bridge> bridge;    ///< What came of it; filled in by whoever read it.
@@ -89,9 +90,14 @@ struct Familiar {
 };
 std::optional<Familiar> familiar(const Meaning& meaning, const od::Value& value);
 
-/// The raw number as people read it: `400`, `-5`, `1.5` for an encoded number.
+/// The raw number as people read it: `400`, `-5`, `1.5` for an encoded number, `0x0270` for bits.
 std::string plain_text(const Meaning& meaning, const od::Value& value);
 
+/// What a label is called by: the whole of it, what stands before its bracket, and what stands in the bracket
+/// unless that is a number: `Profile velocity (pv)`, `Profile velocity`, `pv`.
+std::vector<std::string_view> label_words(std::string_view label);
+/// The label that the text names, in any case, in English or Chinese; null where none does, or two.
+const od::EnumLabel* find_label(const Meaning& meaning, std::string_view text);
 /// The label of the value, or null.
 const od::EnumLabel* label_of(const Meaning& meaning, const od::Value& value);
 

@@ -2,13 +2,14 @@
 #include <fmt/format.h>
 #include <cmath>
 
+#include "base/number.hpp"
 #include "drive/quantity.hpp"
 
 namespace servoctl::drive {
 namespace {
 
 std::string with_unit(double number, const std::string& unit) {
-  return fmt::format("{:.6g}{}{}", number, unit.empty() ? "" : " ", unit);
+  return fmt::format("{}{}{}", plain_number(number, 6), unit.empty() ? "" : " ", unit);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "od/data_type.hpp"
 
 #include <array>
+#include <utility>
 
 #include "od/complex_type.hpp"
 
@@ -29,6 +30,13 @@ constexpr std::array kRows{
     Row{DataType::time, "time", 0x0C, 6},
 };
 
+/// CiA 309-3, table of data types, where it has other names; TIME_DIFFERENCE is taken as the six bytes of a
+/// time.
+constexpr std::pair<std::string_view, DataType> kGatewayNames[] = {
+    {"b", DataType::boolean}, {"r32", DataType::f32},  {"r64", DataType::f64},
+    {"vs", DataType::string}, {"os", DataType::bytes}, {"us", DataType::string},
+    {"d", DataType::domain},  {"t", DataType::time},   {"td", DataType::time}};
+
 const Row& row(DataType type) { return kRows[static_cast<std::size_t>(type)]; }
 
 constexpr bool in_enum_order() {
@@ -45,6 +53,8 @@ std::string_view name(DataType type) { return row(type).name; }
 std::optional<DataType> parse_data_type(std::string_view name) {
   for (const auto& r : kRows)
     if (r.name == name) return r.type;
+  for (const auto& [theirs, type] : kGatewayNames)
+    if (theirs == name) return type;
   return std::nullopt;
 }
 

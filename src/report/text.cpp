@@ -115,13 +115,20 @@ class TableText {
     });
   }
 
+  /// Numbers stand to the right, and what is hexadecimal among them too.
   static Column measure(const Table& table, std::size_t index) {
     const auto& column = table.columns[index];
-    Column out{index, display_width(title_of(column)), !table.rows.empty()};
+    Column out{index, display_width(title_of(column)), true};
+    bool any_number = false;
     for (const auto& row : table.rows) {
       out.width = std::max(out.width, display_width(cell_text(row[index])));
-      out.right = out.right && (is_number(row[index]) || row[index].is_null());
+      any_number = any_number || is_number(row[index]);
+      out.right = out.right && (is_number(row[index]) || row[index].is_null() ||
+                                std::holds_alternative<Hex>(row[index].data()));
     }
+    const bool all_empty = std::all_of(table.rows.begin(), table.rows.end(),
+                                       [&](const List& row) { return row[index].is_null(); });
+    out.right = out.right && !table.rows.empty() && (any_number || all_empty);
     return out;
   }
 
@@ -173,12 +180,21 @@ std::string record_text(const Record& record, std::size_t width) {
   return out + blocks;
 }
 
+std::string lines_below(const Table& table, std::size_t width) {
+  std::string out;
+  for (const auto& line : table.below) {
+    const auto indent = std::min(line.find_first_not_of(' '), line.size());
+    out += std::string(indent, ' ') + wrapped(printable(line.substr(indent)), indent + kGap, width) + '\n';
+  }
+  return out.empty() ? out : '\n' + out;
+}
+
 }  // namespace
 
 std::string to_text(const Value& value, std::size_t width) {
   if (value.is_null()) return {};
   if (const auto* table = std::get_if<Table>(&value.data()))
-    return table->json_only ? std::string() : TableText(*table, width).take();
+    return table->json_only ? std::string() : TableText(*table, width).take() + lines_below(*table, width);
   if (const auto* plot = std::get_if<Plot>(&value.data()))
     return braille_plot(plot->series, width == 0 ? kPlotWidth : std::min(width, kPlotWidth));
   if (const auto* record = std::get_if<Record>(&value.data())) return record_text(*record, width);

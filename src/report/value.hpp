@@ -43,7 +43,8 @@ struct Table {
   };
   std::vector<Column> columns;
   std::vector<List> rows;
-  bool json_only = false;  ///< Nothing in it is worth reading: the errors say it all.
+  bool json_only = false;               ///< Nothing in it is worth reading: the errors say it all.
+  std::vector<std::string> below = {};  ///< Lines that stand under it, in text only.
 };
 
 /// Quantities over time: a plot in text and on a page, `[{"name","unit","seconds","values"}]` in JSON.

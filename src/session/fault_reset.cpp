@@ -54,13 +54,19 @@ Result<bool> by_controlword(Session& session, std::uint8_t node) {
   return fail(std::move(error));
 }
 
+Result<SdoRequest> write_of(const drive::Profile& profile, std::uint8_t node, const drive::Setting& setting) {
+  const auto target = drive::resolve(&profile, setting.name);
+  if (!target) return tl::unexpected<Error>(target.error());
+  const auto data = od::encode(drive::meaning(*target, node).type, od::Value(setting.value));
+  if (!data) return tl::unexpected<Error>(data.error());
+  return SdoRequest{node, target->address, *data};
+}
+
 Result<bool> by_settings(Session& session, const drive::Profile& profile, std::uint8_t node) {
   for (const auto& setting : profile.rules.fault.reset) {
-    const auto target = drive::resolve(&profile, setting.name);
-    if (!target) return tl::unexpected<Error>(target.error());
-    const auto data = od::encode(drive::meaning(*target, node).type, od::Value(setting.value));
-    if (!data) return tl::unexpected<Error>(data.error());
-    if (const auto written = session.download(node, target->address, *data); !written)
+    const auto write = write_of(profile, node, setting);
+    if (!write) return tl::unexpected<Error>(write.error());
+    if (const auto written = session.download(node, write->object, *write->data); !written)
       return tl::unexpected<Error>(written.error());
     const auto left = left_fault(session, node);
     if (!left || *left) return left;
@@ -82,25 +88,51 @@ Result<FaultReset> check_power(Session& session, std::uint8_t node) {
   return fail(std::move(error));
 }
 
-}  // namespace
-
-Result<FaultReset> reset_fault(Session& session, const drive::Profile* profile, std::uint8_t node) {
+/// Errc::refused for a drive that has its power and no fault.
+Result<bool> needs_reset(Session& session, std::uint8_t node) {
   const auto state = read_state(session, node);
   if (!state) return tl::unexpected<Error>(state.error());
-  if (*state != DriveState::fault && *state != DriveState::fault_reaction_active) {
-    if (drive::is_energised(*state)) {
-      Error error;
-      error.code = Errc::refused;
-      error.node = node;
-      error.message = fmt::format("node {} is in no fault but {}: a reset would take its power away", node,
-                                  drive::name(*state));
-      error.hint = "stop and disable it first";
-      return fail(std::move(error));
-    }
-    return FaultReset::no_fault;
+  if (*state == DriveState::fault || *state == DriveState::fault_reaction_active) return true;
+  if (!drive::is_energised(*state)) return false;
+  Error error;
+  error.code = Errc::refused;
+  error.node = node;
+  error.message = fmt::format("node {} is in no fault but {}: a reset would take its power away", node,
+                              drive::name(*state));
+  error.hint = "stop and disable it first";
+  return fail(std::move(error));
+}
+
+bool resets_by_controlword(const drive::Profile* profile) {
+  return profile == nullptr || profile->rules.fault.by_controlword;
+}
+
+}  // namespace
+
+Result<std::vector<PlannedMessage>> plan_fault_reset(Session& session, const drive::Profile* profile,
+                                                     std::uint8_t node) {
+  const auto needed = needs_reset(session, node);
+  if (!needed) return tl::unexpected<Error>(needed.error());
+  std::vector<PlannedMessage> out;
+  if (!*needed) return out;
+  if (resets_by_controlword(profile))
+    for (const std::uint16_t word : {std::uint16_t{0}, kResetEdge, std::uint16_t{0}})
+      out.push_back(planned_write({node, objects::kControlword, store_le(word, 2)}));
+  if (profile == nullptr) return out;
+  for (const auto& setting : profile->rules.fault.reset) {
+    const auto write = write_of(*profile, node, setting);
+    if (!write) return tl::unexpected<Error>(write.error());
+    out.push_back(planned_write(*write, out.empty() ? "" : "if the fault stays"));
   }
+  return out;
+}
+
+Result<FaultReset> reset_fault(Session& session, const drive::Profile* profile, std::uint8_t node) {
+  const auto needed = needs_reset(session, node);
+  if (!needed) return tl::unexpected<Error>(needed.error());
+  if (!*needed) return FaultReset::no_fault;
   Result<bool> left = false;
-  if (profile == nullptr || profile->rules.fault.by_controlword) left = by_controlword(session, node);
+  if (resets_by_controlword(profile)) left = by_controlword(session, node);
   if (left && !*left && profile != nullptr) left = by_settings(session, *profile, node);
   if (!left) return tl::unexpected<Error>(left.error());
   if (*left) return check_power(session, node);

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "drive/profile.hpp"
+#include "session/rehearsal.hpp"
 #include "session/session.hpp"
 
 namespace servoctl::session {
@@ -16,5 +18,10 @@ enum class FaultReset : std::uint8_t { no_fault, done };
 /// it. `profile` may be null. Errc::negative when the fault stays, or when the drive is energised after it;
 /// Errc::refused while the drive is energised before.
 Result<FaultReset> reset_fault(Session& session, const drive::Profile* profile, std::uint8_t node);
+
+/// What reset_fault() would write, by the state the drive is in now; empty where there is no fault.
+/// Errc::refused as there.
+Result<std::vector<PlannedMessage>> plan_fault_reset(Session& session, const drive::Profile* profile,
+                                                     std::uint8_t node);
 
 }  // namespace servoctl::session

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <new>
 
+#include "base/number.hpp"
 #include "drive/soft_ramp.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/motion_kinds.hpp"
@@ -76,8 +77,8 @@ bool Motion::add_setting(ObjectAddress object, double value, MotionPlan& plan) c
   plan.settings.emplace_back(object, *data);
   const auto held = units_->physical(object, *data);
   if (held && std::abs(held->value - value) > std::abs(value) * kChosenLoss)
-    plan.notes.push_back(fmt::format("{} is set to {:g} {}: the nearest it can hold to {:g}",
-                                     to_string(object), held->value, held->unit, value));
+    plan.notes.push_back(fmt::format("{} is set to {} {}: the nearest it can hold to {}", to_string(object),
+                                     number_text(held->value), held->unit, number_text(value)));
   return true;
 }
 
@@ -130,17 +131,51 @@ Result<void> Motion::begin(std::int8_t mode, const std::vector<MotionSetting>& s
   guard_.reset();  // The next one hears through what this one put back.
   guard_ = std::make_unique<MotionGuard>(*session_, *units_, node_);
   guard_->set_standstill(standstill_);
-  if (const auto done = guard_->spare_flash(); !done) return done;
-  if (const auto done = guard_->arm(watchdog_); !done) return done;
-  if (const auto done = guard_->change_mode(mode); !done) return done;
-  if (const auto done = guard_->neutral_targets(kept_target); !done) return done;
-  for (const auto& [object, data] : settings)
-    if (const auto done = guard_->change(object, data); !done) return done;
-  if (const auto started = guard_->start_node(); !started) return started;
+  Rehearsal unused;
+  if (const auto ready = make_ready(*guard_, mode, settings, kept_target, unused); !ready) return ready;
   (void)session_->take_events();  // What was told before is no news of this motion.
   auto enabled = guard_->enable();
   monitor_->on_written();
   return enabled;
+}
+
+/// All that is done before it is enabled.
+Result<void> Motion::make_ready(MotionGuard& guard, std::int8_t mode,
+                                const std::vector<MotionSetting>& settings,
+                                std::optional<ObjectAddress> kept_target, Rehearsal& rehearsal) {
+  rehearsal.begin_step("memory");
+  if (const auto done = guard.spare_flash(); !done) return done;
+  rehearsal.begin_step("watchdog");
+  if (const auto done = guard.arm(watchdog_); !done) return done;
+  rehearsal.begin_step("mode");
+  if (const auto done = guard.change_mode(mode); !done) return done;
+  rehearsal.begin_step("target");
+  if (const auto done = guard.neutral_targets(kept_target); !done) return done;
+  rehearsal.begin_step("setting");
+  for (const auto& [object, data] : settings)
+    if (const auto done = guard.change(object, data); !done) return done;
+  rehearsal.begin_step("start");
+  return guard.start_node();
+}
+
+Result<std::vector<PlannedMessage>> Motion::rehearse(const MotionPlan& plan) {
+  if (const auto ready = look_again(); !ready) return tl::unexpected<Error>(ready.error());
+  Rehearsal out;
+  MotionGuard guard(*session_, *units_, node_);
+  guard.rehearse(out);
+  if (const auto ready = make_ready(guard, plan.mode, plan.settings, plan.kept_target, out); !ready)
+    return tl::unexpected<Error>(ready.error());
+  out.begin_step("enable");
+  if (const auto enabled = guard.enable(); !enabled) return tl::unexpected<Error>(enabled.error());
+  out.begin_step("motion");
+  for (const auto& [object, data] : plan.moving) {
+    if (object == objects::kControlword)
+      out.add(planned_write({node_, object, data}));
+    else if (const auto done = guard.change(object, data); !done)
+      return tl::unexpected<Error>(done.error());
+  }
+  (void)guard.end();
+  return out.messages();
 }
 
 Result<void> Motion::write(ObjectAddress object, const Bytes& data) {

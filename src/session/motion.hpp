@@ -69,6 +69,8 @@ class Motion {
   /// the settings, and enables.
   Result<void> begin(std::int8_t mode, const std::vector<MotionSetting>& settings,
                      std::optional<ObjectAddress> kept_target = {});
+  /// What begin() with this plan, its motion and its end would send; nothing is. Errors as there.
+  Result<std::vector<PlannedMessage>> rehearse(const MotionPlan& plan);
   /// Writes an object that is put back in the end.
   Result<void> write(ObjectAddress object, const Bytes& data);
   Result<void> command(std::uint16_t controlword);
@@ -108,6 +110,9 @@ class Motion {
   /// Whether the ramps are those of the user, whose length is not known.
   bool has_own_ramps() const { return !options_.acceleration.empty(); }
 
+  /// Whether the user has said how many counts a turn has.
+  bool is_told_turn() const { return options_.turn.has_value(); }
+
   const MotionUnits& units() const { return *units_; }
   MotionMonitor& monitor() { return *monitor_; }
   const MotionMonitor& monitor() const { return *monitor_; }
@@ -123,6 +128,8 @@ class Motion {
  private:
   Result<bool> supervise(const std::function<Result<bool>(const MotionSample&)>& done, Duration longest);
   Result<void> look_again();
+  Result<void> make_ready(MotionGuard& guard, std::int8_t mode, const std::vector<MotionSetting>& settings,
+                          std::optional<ObjectAddress> kept_target, Rehearsal& rehearsal);
   Result<void> read_limits();
   Result<double> find_speed_cap();
   /// A limit that the user gave: more than 0, because it holds either way.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "base/duration.hpp"
 #include "canopen/cob_id.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/operation_mode.hpp"
@@ -74,12 +75,19 @@ void MotionGuard::hear(const can::Frame& frame) {
 Result<void> MotionGuard::change(ObjectAddress object, const Bytes& data) {
   const auto before = session_->upload(node_, object);
   if (!before) return tl::unexpected<Error>(before.error());
-  if (*before == data) return {};
+  const auto* rehearsed = rehearsal_ != nullptr ? rehearsal_->held(object) : nullptr;
+  if ((rehearsed != nullptr ? *rehearsed : *before) == data) return {};
   // Noted first: an answer that is lost may belong to a write that was done.
   const bool known =
       std::any_of(changed_.begin(), changed_.end(), [&](const Changed& c) { return c.object == object; });
   if (!known) changed_.push_back({object, *before});
-  return session_->download(node_, object, data);
+  return write(object, data);
+}
+
+Result<void> MotionGuard::write(ObjectAddress object, const Bytes& data) {
+  if (rehearsal_ == nullptr) return session_->download(node_, object, data);
+  rehearsal_->add(planned_write({node_, object, data}));
+  return {};
 }
 
 Result<void> MotionGuard::change_mode(std::int8_t mode) {
@@ -87,6 +95,10 @@ Result<void> MotionGuard::change_mode(std::int8_t mode) {
   const auto before = session_->upload(node_, objects::kModeOfOperation);
   if (!before) return tl::unexpected<Error>(before.error());
   changed_.push_back({objects::kModeOfOperation, *before});
+  if (rehearsal_ != nullptr) {
+    const auto planned = mode_write(units_->profile(), node_, mode);
+    return write(planned.object, *planned.data);
+  }
   return set_mode(*session_, units_->profile(), node_, mode);
 }
 
@@ -116,14 +128,29 @@ Result<void> MotionGuard::arm(const WatchdogPlan& plan) {
                                  store_le(std::uint32_t{plan.producer} << 16U | ms, 4));
         !done)
       return done;
-    session_->produce_heartbeat(plan.producer, plan.time / kLife);
+    if (rehearsal_ == nullptr) {
+      session_->produce_heartbeat(plan.producer, plan.time / kLife);
+    } else {
+      const auto frame = canopen::heartbeat_frame(plan.producer, canopen::NmtState::operational);
+      rehearsal_->add(
+          planned_frame(node_, frame, fmt::format("every {}", servoctl::to_string(plan.time / kLife))));
+    }
   }
   if (plan.kind == WatchdogPlan::Kind::guarding) {
     for (const auto& [object, value, size] :
          {std::tuple{objects::kGuardTime, ms / kLife, 2U}, std::tuple{objects::kLifeTimeFactor, kLife, 1U}})
       if (const auto done = change(object, store_le(value, size)); !done) return done;
-    session_->guard(node_, {plan.time / kLife, kLife});
+    if (rehearsal_ == nullptr) {
+      session_->guard(node_, {plan.time / kLife, kLife});
+    } else {
+      can::Frame frame;
+      frame.id = static_cast<std::uint32_t>(canopen::kErrorControl) + node_;
+      frame.remote = true;
+      rehearsal_->add(
+          planned_frame(node_, frame, fmt::format("every {}", servoctl::to_string(plan.time / kLife))));
+    }
   }
+  if (rehearsal_ != nullptr) return {};
   // The drive watches from the first message on.
   return pause(*session_, Duration::zero());
 }
@@ -143,8 +170,12 @@ Result<void> MotionGuard::start_node() {
       nmt_before_ == canopen::NmtState::operational)
     return {};
   started_ = true;
-  if (const auto sent = session_->send(canopen::nmt_frame(canopen::NmtCommand::start, node_)); !sent)
-    return sent;
+  const auto frame = canopen::nmt_frame(canopen::NmtCommand::start, node_);
+  if (rehearsal_ != nullptr) {
+    rehearsal_->add(planned_frame(node_, frame));
+    return {};
+  }
+  if (const auto sent = session_->send(frame); !sent) return sent;
   return pause(*session_, kNmtPause);
 }
 
@@ -156,7 +187,11 @@ Result<void> MotionGuard::enable() {
     return fail(enabled_by_others(node_, *state));
   }
   energised_ = true;
-  return power_.reach(DriveState::operation_enabled);
+  if (rehearsal_ == nullptr) return power_.reach(DriveState::operation_enabled);
+  const auto path = power_.path_to(*state, DriveState::operation_enabled);
+  if (!path) return tl::unexpected<Error>(path.error());
+  rehearse_up(*path);
+  return {};
 }
 
 }  // namespace servoctl::session

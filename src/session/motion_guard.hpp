@@ -8,6 +8,7 @@
 #include "session/hearing.hpp"
 #include "session/motion_units.hpp"
 #include "session/power.hpp"
+#include "session/rehearsal.hpp"
 #include "session/watchdog.hpp"
 
 namespace servoctl::session {
@@ -32,6 +33,9 @@ class MotionGuard {
   MotionGuard(const MotionGuard&) = delete;
   MotionGuard& operator=(const MotionGuard&) = delete;
   ~MotionGuard();
+
+  /// From now on nothing is sent: what would be goes there, which outlives this. To be called first.
+  void rehearse(Rehearsal& rehearsal) { rehearsal_ = &rehearsal; }
 
   /// Writes an object, after its value was kept; end() puts it back. One that holds the bytes already is not
   /// written.
@@ -66,6 +70,10 @@ class MotionGuard {
     Bytes before;
   };
 
+  Result<void> write(ObjectAddress object, const Bytes& data);
+  void rehearse_up(const std::vector<drive::PowerStep>& path);
+  void rehearse_end();
+  bool stays_new(const Changed& changed) const;
   PowerDownPlan way_down();
   void bring_down();
   void put_back();
@@ -96,6 +104,7 @@ class MotionGuard {
   MotionEnd result_;
   std::set<ObjectAddress> foreign_;  ///< Of those that it changes, what another master wrote since.
   Hearing hearing_;
+  Rehearsal* rehearsal_ = nullptr;
 };
 
 }  // namespace servoctl::session

@@ -83,6 +83,13 @@ void MotionGuard::note(const std::string& what, const Error& error) {
   result_.left.push_back(fmt::format("{}: {}", what, error.message));
 }
 
+/// Some drives take a refused write for a fault.
+bool MotionGuard::stays_new(const Changed& changed) const {
+  const auto meaning = units_->meaning(changed.object);
+  const auto value = od::decode(meaning.type, changed.before);
+  return meaning.type_known && value && !drive::check_limits(meaning, *value);
+}
+
 void MotionGuard::put_back() {
   for (auto changed = changed_.rbegin(); changed != changed_.rend(); ++changed) {
     // Its old targets and an old watchdog are nothing for a drive that still has its power.
@@ -91,10 +98,7 @@ void MotionGuard::put_back() {
                                          to_hex(changed->before)));
       continue;
     }
-    const auto meaning = units_->meaning(changed->object);
-    const auto value = od::decode(meaning.type, changed->before);
-    if (meaning.type_known && value && !drive::check_limits(meaning, *value)) {
-      // Some drives take a refused write for a fault.
+    if (stays_new(*changed)) {
       result_.notes.push_back(
           fmt::format("object {} keeps its new value: the one before, {}, is out of its range",
                       to_string(changed->object), to_hex(changed->before)));
@@ -159,6 +163,12 @@ void MotionGuard::verify() {
 
 MotionEnd MotionGuard::end() {
   if (end_) return *end_;
+  if (rehearsal_ != nullptr) {
+    rehearse_end();
+    end_ = result_;
+    hold_.release();
+    return *end_;
+  }
   const Deaf deaf(*session_);
   if (energised_) bring_down();
   put_back();
@@ -173,6 +183,11 @@ MotionEnd MotionGuard::end() {
 }
 
 Result<void> MotionGuard::release() {
+  if (rehearsal_ != nullptr) {
+    end_ = result_;
+    hold_.release();
+    return {};
+  }
   const Deaf deaf(*session_);
   Result<void> done;
   for (const auto& changed : changed_) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/number.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/motion_kinds.hpp"
 #include "session/operation_mode.hpp"
@@ -125,9 +126,8 @@ Result<void> check_method(Motion& motion, MotionPlan& plan) {
   if (number == kNoMethod || std::find(nothing.begin(), nothing.end(), number) != nothing.end())
     return fail(motion.error(
         Errc::refused, fmt::format("homing method {} (6098h) does nothing: no home would be found", number),
-        fmt::format(
-            "say which: `home METHOD -n {}`; `objects 0x6098` lists them, `write 0x6098 METHOD` sets one",
-            motion.node())));
+        fmt::format("say which: `home METHOD -n {}`; {}, `write 0x6098 METHOD` sets one", motion.node(),
+                    meaning.labels != nullptr ? "`objects 0x6098` lists them" : "the manual lists them")));
   const auto* label = drive::label_of(meaning, *value);
   if (meaning.labels != nullptr && label == nullptr)
     return fail(motion.error(Errc::refused, fmt::format("this family has no homing method {}", number),
@@ -146,14 +146,14 @@ Result<Physical> speed_of(Motion& motion, ObjectAddress object, const MotionPlan
     return fail(motion.error(
         Errc::refused,
         fmt::format("its homing speed ({}) cannot be compared with its speed limit", to_string(object)),
-        "add --turn COUNTS, if the drive does not tell its encoder"));
+        motion.is_told_turn() ? "" : "add --turn COUNTS, if the drive does not tell its encoder"));
   if (const auto allowed = motion.check_speed(speed->value); !allowed)
     return tl::unexpected<Error>(allowed.error());
   if (speed->value > 0 || takes_present_position(plan)) return *speed;
   const bool fast = object == objects::kHomingSpeedSwitch;
   return fail(motion.error(Errc::refused,
-                           fmt::format("its homing speed ({}) is {:g} {}: it would never get there",
-                                       to_string(object), speed->value, speed->unit),
+                           fmt::format("its homing speed ({}) is {} {}: it would never get there",
+                                       to_string(object), number_text(speed->value), speed->unit),
                            fmt::format("add {}; `write {} …` sets it",
                                        fast ? "--speed 30rpm" : "--search 6rpm", to_string(object))));
 }
@@ -193,7 +193,10 @@ Result<MotionPlan> plan_home(Motion& motion, const Home& home) {
   plan.speed = std::max(fast->value, slow.value);
   plan.unit = fast->unit;
   plan.longest = home.longest.value_or(longest_homing(motion, fast->value, slow.value));
-  plan.summary += fmt::format(" at {:g} and {:g} {}", fast->value, slow.value, fast->unit);
+  plan.summary +=
+      fmt::format(" at {} and {} {}", number_text(fast->value), number_text(slow.value), fast->unit);
+  for (const auto word : motion.rules().start_homing)
+    plan.moving.emplace_back(objects::kControlword, store_le(word, 2));
   motion.set_standstill(plan.speed);
   motion.supervise_overspeed(plan.speed);
   if (const auto rate = motion.rate()) motion.monitor().expect_new_zero(*rate);

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "base/duration.hpp"
+#include "base/number.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/motion_judgement.hpp"
 #include "session/motion_kinds.hpp"
@@ -108,10 +109,10 @@ class Jogging {
     wrong_looks_ = wrong && (settled || !turned_before_) ? wrong_looks_ + 1 : 0;
     turned_before_ = turned_before_ || (!wrong && std::abs(*speed) > std::abs(wanted) * kTurns);
     if (wrong_looks_ >= kWrongLooks)
-      return fail(motion_->error(
-          Errc::negative,
-          fmt::format("turns the wrong way: {:g} {} instead of {:g}", *speed, plan_->unit, wanted),
-          "encoder direction, polarity (607Eh) or motor wiring"));
+      return fail(motion_->error(Errc::negative,
+                                 fmt::format("turns the wrong way: {} {} instead of {}", number_text(*speed),
+                                             plan_->unit, number_text(wanted)),
+                                 "encoder direction, polarity (607Eh) or motor wiring"));
     if (settled && std::abs(*speed) < std::abs(wanted) * kTurns)
       return fail(motion_->error(Errc::negative, "does not turn although it was told to",
                                  "is it blocked, is the brake on, or does a limit hold it back?"));
@@ -154,7 +155,7 @@ Result<double> way_of(const Motion& motion, double turns) {
 
 std::string until_text(const Jog& jog) {
   if (jog.length) return "for " + servoctl::to_string(*jog.length);
-  if (jog.turns) return fmt::format("for {:g} turns", *jog.turns);
+  if (jog.turns) return fmt::format("for {} turns", number_text(*jog.turns));
   return "while an arrow key is held";
 }
 
@@ -184,7 +185,9 @@ Result<MotionPlan> plan_jog(Motion& motion, const Jog& jog) {
     if (!way) return tl::unexpected<Error>(way.error());
     plan.way = *way;
   }
-  plan.summary = fmt::format("turn at {:g} {} {}", speed.value, speed.unit, until_text(jog));
+  plan.summary = fmt::format("turn at {} {} {}", number_text(speed.value), speed.unit, until_text(jog));
+  plan.moving = {{objects::kTargetVelocity, plan.command},
+                 {objects::kTargetVelocity, Bytes(plan.command.size(), 0)}};
   motion.set_standstill(speed.value);
   motion.supervise_overspeed(speed.value);
   return plan;

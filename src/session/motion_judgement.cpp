@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/number.hpp"
+
 namespace servoctl::session {
 namespace {
 
@@ -68,8 +70,8 @@ void MotionJudgement::judge_speed(const Motion& motion, const MotionPlan& plan, 
   }
   const double speed = mean(values);
   if (std::abs(speed - plan.value) <= std::abs(plan.value) * kSpeedTolerance + motion.standstill()) return;
-  differences.push_back(
-      fmt::format("the speed was {:.4g} {}; {:g} {} was asked for", speed, plan.unit, plan.value, plan.unit));
+  differences.push_back(fmt::format("the speed was {} {}; {} {} was asked for", number_text(speed), plan.unit,
+                                    number_text(plan.value), plan.unit));
 }
 
 void MotionJudgement::judge_way(const Motion& motion, const MotionPlan& plan) {
@@ -84,7 +86,8 @@ void MotionJudgement::judge_way(const Motion& motion, const MotionPlan& plan) {
   const double asked = std::copysign(plan.way, plan.value);
   if (std::abs(way - asked) <= plan.way * kWayTolerance + 2 * step) return;
   const auto unit = motion.units().unit(objects::kPositionActual);
-  differences.push_back(fmt::format("it went {:.5g} {}; {:.5g} {} was asked for", way, unit, asked, unit));
+  differences.push_back(
+      fmt::format("it went {} {}; {} {} was asked for", number_text(way), unit, number_text(asked), unit));
 }
 
 void MotionJudgement::judge_target(const Motion& motion, const MotionPlan& plan, double near) {
@@ -95,10 +98,11 @@ void MotionJudgement::judge_target(const Motion& motion, const MotionPlan& plan,
     return;
   }
   if (std::abs(*place - plan.value) <= near) return;
+  const auto numbers = told_apart(*place, plan.value);
   differences.push_back(
-      fmt::format("it is at {:.6g} {}; {:.6g} {} was asked for (the position window, 6067h, "
+      fmt::format("it is at {} {}; {} {} was asked for (the position window, 6067h, "
                   "is wider than that)",
-                  *place, plan.unit, plan.value, plan.unit));
+                  numbers.first, plan.unit, numbers.second, plan.unit));
 }
 
 void MotionJudgement::judge_torque(const Motion& motion, const MotionPlan& plan, TimePoint told_at,
@@ -118,8 +122,8 @@ void MotionJudgement::judge_torque(const Motion& motion, const MotionPlan& plan,
   const double torque = mean(values);
   const double noise = plan.unit == "Nm" ? kTorqueNoiseNm : kTorqueNoise;
   if (std::abs(torque - plan.value) <= std::abs(plan.value) * kTorqueTolerance + noise) return;
-  const auto text = fmt::format("the torque was {:.4g} {}; {:g} {} was asked for", torque, plan.unit,
-                                plan.value, plan.unit);
+  const auto text = fmt::format("the torque was {} {}; {} {} was asked for", number_text(torque), plan.unit,
+                                number_text(plan.value), plan.unit);
   if (!speeds.empty() && std::abs(mean(speeds)) >= plan.speed * kAtLimit)
     unchecked.push_back(text + ": the speed limit held it back");
   else

@@ -52,9 +52,11 @@ struct MotionPlan {
   std::int8_t mode = 0;
   std::vector<MotionSetting> settings;
   std::optional<ObjectAddress> kept_target;  ///< Limits the speed here, so it is not set to zero.
-  Bytes command;                             ///< Speed, position or torque as it is written.
-  double value = 0;                          ///< The same as a number; the method in homing.
-  std::optional<double> from;                ///< Where a move begins, in the unit of 6064h.
+  std::vector<MotionSetting>
+      moving;                  ///< What it is told once it is enabled, in order, for those who ask before.
+  Bytes command;               ///< Speed, position or torque as it is written.
+  double value = 0;            ///< The same as a number; the method in homing.
+  std::optional<double> from;  ///< Where a move begins, in the unit of 6064h.
   std::string unit;
   double speed = 0;     ///< In the unit of 60FFh; 0 where it is not known.
   double way = 0;       ///< In the unit of 6064h.

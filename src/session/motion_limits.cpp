@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/number.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/motion.hpp"
 
@@ -76,11 +77,13 @@ Result<double> Motion::find_speed_cap() {
       most = std::min(*speed, most.value_or(*speed));
   if (!options_.speed_limit.empty()) {
     const auto asked = parse_limit(objects::kTargetVelocity, "--limit", options_.speed_limit);
-    if (asked && most && *asked > *most)
+    if (asked && most && *asked > *most) {
+      const auto numbers = told_apart(*asked, *most);
       return fail(error(Errc::refused,
-                        fmt::format("the limit of {:g} {} is above what the drive allows, {:g} {}", *asked,
-                                    unit, *most, unit),
+                        fmt::format("the limit of {} {} is above what the drive allows, {} {}", numbers.first,
+                                    unit, numbers.second, unit),
                         "607Fh and 6080h hold it"));
+    }
     return asked;
   }
   const auto rated = units_->object(rules().rated_speed);
@@ -100,10 +103,11 @@ Result<void> Motion::check_speed(double speed) const {
   if (!speed_cap_) return tl::unexpected<Error>(speed_cap_.error());
   if (std::abs(speed) <= *speed_cap_ * kRounding) return {};
   const auto unit = units_->unit(objects::kTargetVelocity);
+  const auto numbers = told_apart(std::abs(speed), *speed_cap_);
   return fail(error(
       Errc::refused,
-      fmt::format("{:g} {} is above the limit of {:g} {}", std::abs(speed), unit, *speed_cap_, unit),
-      fmt::format("`--limit {:g}{}` raises it, when the machine may move that fast", std::abs(speed), unit)));
+      fmt::format("{} {} is above the limit of {} {}", numbers.first, unit, numbers.second, unit),
+      fmt::format("`--limit {}{}` raises it, when the machine may move that fast", numbers.first, unit)));
 }
 
 Result<double> Motion::torque_cap() const {
@@ -111,11 +115,13 @@ Result<double> Motion::torque_cap() const {
   const auto most = read_as(objects::kTargetTorque, objects::kMaxTorque);
   if (!options_.max_torque.empty()) {
     const auto asked = parse_limit(objects::kTargetTorque, "--max-torque", options_.max_torque);
-    if (asked && most && *asked > *most * kRounding)
+    if (asked && most && *asked > *most * kRounding) {
+      const auto numbers = told_apart(*asked, *most);
       return fail(error(Errc::refused,
-                        fmt::format("--max-torque of {:g} {} is above what the drive allows, {:g} {}", *asked,
-                                    unit, *most, unit),
+                        fmt::format("--max-torque of {} {} is above what the drive allows, {} {}",
+                                    numbers.first, unit, numbers.second, unit),
                         "6072h holds it"));
+    }
     return asked;
   }
   std::optional<double> rated;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/number.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/hurry.hpp"
 #include "session/identify.hpp"
@@ -158,9 +159,10 @@ Result<void> MotionMonitor::check_limits(const MotionSample& sample) const {
   const auto beyond = [&](Channel channel, std::optional<double> limit, double from, std::string_view what) {
     const auto value = sample[channel];
     if (!limit || !value || std::abs(*value - from) <= *limit) return Result<void>{};
+    const auto numbers = told_apart(*value - from, *limit);
     return Result<void>(stopped_by(node_,
-                                   fmt::format("{} of {:g} {} is beyond its limit of {:g}", what,
-                                               *value - from, units_->unit(object_of(channel)), *limit),
+                                   fmt::format("{} of {} {} is beyond its limit of {}", what, numbers.first,
+                                               units_->unit(object_of(channel)), numbers.second),
                                    "the motion was stopped; raise the limit when it is meant"));
   };
   for (const auto& done :

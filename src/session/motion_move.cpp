@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/number.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/motion_judgement.hpp"
 #include "session/motion_kinds.hpp"
@@ -48,8 +49,8 @@ class Moving {
     }
     return fail(
         motion_->error(Errc::negative,
-                       fmt::format("did not arrive at {:g} {} in the time it needs; it is at {:g}",
-                                   plan_->value, plan_->unit, last_),
+                       fmt::format("did not arrive at {} {} in the time it needs; it is at {}",
+                                   number_text(plan_->value), plan_->unit, number_text(last_)),
                        "is it blocked, is its speed limited, or is the position window (6067h) too narrow?"));
   }
   const MotionJudgement& judgement() const { return judgement_; }
@@ -138,8 +139,8 @@ Result<void> find_target(Motion& motion, const Move& move, MotionPlan& plan) {
   const double step = step_of(units, plan.value);
   // Kept within limits silently it would go elsewhere.
   if (!said || std::abs(said->value - plan.value) > std::max(step, std::abs(plan.value) * 1e-6))
-    return fail(motion.error(Errc::usage,
-                             fmt::format("{:g} {} is beyond what 607Ah can hold", plan.value, plan.unit)));
+    return fail(motion.error(
+        Errc::usage, fmt::format("{} {} is beyond what 607Ah can hold", number_text(plan.value), plan.unit)));
   const double from = move.relative ? here.value : 0;
   // What was told must not be lost in a step; the zero it is counted from is one.
   const auto rounding = drive::judge_rounding({asked->value, said->value - from, step, plan.unit});
@@ -159,8 +160,8 @@ Result<void> check_start(Motion& motion, const MotionPlan& plan) {
   const auto here = motion.units().physical(objects::kPositionActual, *answer).value_or(Physical{});
   if (!plan.from || std::abs(here.value - *plan.from) <= near(plan)) return {};
   return fail(motion.error(Errc::refused,
-                           fmt::format("has moved since the way was told: it was at {:g} {} and is at {:g}",
-                                       *plan.from, plan.unit, here.value),
+                           fmt::format("has moved since the way was told: it was at {} {} and is at {}",
+                                       number_text(*plan.from), plan.unit, number_text(here.value)),
                            "nothing was moved; say it again"));
 }
 
@@ -199,8 +200,12 @@ Result<MotionPlan> plan_move(Motion& motion, const Move& move) {
     return tl::unexpected<Error>(ramps.error());
   plan.settings.emplace_back(*speed_object, *speed);
   if (speed_object == objects::kTargetVelocity) plan.kept_target = *speed_object;
-  plan.summary = fmt::format("go {:g} {} to {:g} {} at {:g} {}", plan.way, plan.unit, plan.value, plan.unit,
-                             plan.speed, fast->unit);
+  plan.moving = {{objects::kTargetPosition, plan.command}};
+  if (motion.rules().handshake)
+    for (const auto word : {kEnabled, kNewSetpoint, kEnabled})
+      plan.moving.emplace_back(objects::kControlword, store_le(word, 2));
+  plan.summary = fmt::format("go {} {} to {} {} at {} {}", number_text(plan.way), plan.unit,
+                             number_text(plan.value), plan.unit, number_text(plan.speed), fast->unit);
   motion.set_standstill(plan.speed);
   motion.supervise_overspeed(plan.speed);
   return plan;

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "base/duration.hpp"
+#include "base/number.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/motion_judgement.hpp"
 #include "session/motion_kinds.hpp"
@@ -24,26 +25,28 @@ Result<void> limit_speed(const Motion& motion, double cap, MotionPlan& plan) {
     const auto data = units.bytes(*object, cap);
     const auto held = data ? units.physical(*object, *data) : std::nullopt;
     if (!held) continue;
-    if (held->value > cap * (1 + drive::kMostLoss))
+    if (held->value > cap * (1 + drive::kMostLoss)) {
+      const auto numbers = told_apart(cap, held->value);
       return fail(Errc::usage,
-                  fmt::format("--limit: {:g} {} is less than the drive can be limited to ({}): {:g} {}", cap,
-                              unit, to_string(*object), held->value, held->unit),
+                  fmt::format("--limit: {} {} is less than the drive can be limited to ({}): {} {}",
+                              numbers.first, unit, to_string(*object), numbers.second, held->unit),
                   "raise the limit");
+    }
     plan.settings.emplace_back(*object, *data);
     if (*object == objects::kTargetVelocity) plan.kept_target = *object;
     if (units.meaning(*object).effect == od::Effect::restart)
-      plan.tell(
-          fmt::format("the drive's speed limit in torque mode ({}) is set to {:g} {}, but may act after its "
-                      "next start only: "
-                      "servoctl looks at the speed and stops above {:g} {}",
-                      to_string(*object), held->value, held->unit, cap * kOvershoot, unit));
+      plan.tell(fmt::format(
+          "the drive's speed limit in torque mode ({}) is set to {} {}, but may act after its "
+          "next start only: "
+          "servoctl looks at the speed and stops above {} {}",
+          to_string(*object), number_text(held->value), held->unit, number_text(cap * kOvershoot), unit));
   }
   if (!plan.settings.empty()) return {};
   plan.tell(fmt::format(
       "the drive has no speed limit of its own in torque mode that the manual tells: servoctl looks at the "
-      "speed every {} ms and stops above {:g} {}",
-      std::chrono::duration_cast<std::chrono::milliseconds>(MotionMonitor::kPeriod).count(), cap * kOvershoot,
-      unit));
+      "speed every {} ms and stops above {} {}",
+      std::chrono::duration_cast<std::chrono::milliseconds>(MotionMonitor::kPeriod).count(),
+      number_text(cap * kOvershoot), unit));
   return {};
 }
 
@@ -58,12 +61,13 @@ Result<void> check_torque(const Motion& motion, const Physical& torque) {
   const auto cap = motion.torque_cap();
   if (!cap) return tl::unexpected<Error>(cap.error());
   if (std::abs(torque.value) <= *cap * kRounding) return {};
+  const auto numbers = told_apart(std::abs(torque.value), *cap);
   return fail(motion.error(
       Errc::refused,
-      fmt::format("{:g} {} is above the limit of {:g} {}", std::abs(torque.value), torque.unit, *cap,
+      fmt::format("{} {} is above the limit of {} {}", numbers.first, torque.unit, numbers.second,
                   torque.unit),
-      fmt::format("`--max-torque {:g}{}` raises it, when machine and motor may take it; 6072h bounds it",
-                  std::abs(torque.value), torque.unit)));
+      fmt::format("`--max-torque {}{}` raises it, when machine and motor may take it; 6072h bounds it",
+                  numbers.first, torque.unit)));
 }
 
 }  // namespace
@@ -83,6 +87,7 @@ Result<MotionPlan> plan_torque(Motion& motion, const Torque& torque) {
   plan.mode = *mode;
   plan.command = data->data;
   plan.tell(data->rounding);
+  plan.moving = {{objects::kTargetTorque, plan.command}};
   plan.value = value.value;
   plan.unit = value.unit;
   plan.speed = *cap;
@@ -90,13 +95,13 @@ Result<MotionPlan> plan_torque(Motion& motion, const Torque& torque) {
     return tl::unexpected<Error>(limited.error());
   soften(motion, value.value, plan);
   if (!motion.supervise_speed(*cap * kOvershoot))
-    return fail(motion.error(Errc::refused,
-                             "tells its speed in another unit than its limit: nobody would watch it",
-                             "add --turn COUNTS, if the drive does not tell its encoder"));
+    return fail(motion.error(
+        Errc::refused, "tells its speed in another unit than its limit: nobody would watch it",
+        motion.is_told_turn() ? "" : "add --turn COUNTS, if the drive does not tell its encoder"));
   motion.set_standstill(*cap);
-  plan.summary =
-      fmt::format("push with {:g} {} for {}, no faster than {:g} {}", value.value, value.unit,
-                  servoctl::to_string(torque.length), *cap, motion.units().unit(objects::kTargetVelocity));
+  plan.summary = fmt::format("push with {} {} for {}, no faster than {} {}", number_text(value.value),
+                             value.unit, servoctl::to_string(torque.length), number_text(*cap),
+                             motion.units().unit(objects::kTargetVelocity));
   return plan;
 }
 

@@ -52,12 +52,16 @@ Result<void> check_mode(Session& session, const drive::Profile& profile, std::ui
       "6502h tells the modes it has: bit 0 is mode 1"));
 }
 
-Result<void> set_mode(Session& session, const drive::Profile& profile, std::uint8_t node, std::int8_t mode) {
+SdoRequest mode_write(const drive::Profile& profile, std::uint8_t node, std::int8_t mode) {
   const auto meaning = drive::meaning(drive::target_at(&profile, objects::kModeOfOperation), node);
   const auto size = meaning.type_known ? od::size_of(meaning.type).value_or(1) : 1;
   const auto raw = static_cast<std::uint64_t>(static_cast<std::int64_t>(mode));
-  if (const auto written = session.download(node, objects::kModeOfOperation, store_le(raw, size)); !written)
-    return written;
+  return {node, objects::kModeOfOperation, store_le(raw, size)};
+}
+
+Result<void> set_mode(Session& session, const drive::Profile& profile, std::uint8_t node, std::int8_t mode) {
+  const auto write = mode_write(profile, node, mode);
+  if (const auto written = session.download(node, write.object, *write.data); !written) return written;
   const auto end = session.now() + kPatience;
   for (;;) {
     const auto now_in = read_mode(session, node);

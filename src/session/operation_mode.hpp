@@ -15,6 +15,9 @@ Result<std::int8_t> read_mode(Session& session, std::uint8_t node);
 /// not have the mode. Reads one object at most.
 Result<void> check_mode(Session& session, const drive::Profile& profile, std::uint8_t node, std::int8_t mode);
 
+/// What set_mode() writes: 6060h in the length that the family has it.
+SdoRequest mode_write(const drive::Profile& profile, std::uint8_t node, std::int8_t mode);
+
 /// Writes 6060h and waits until 6061h follows. Errc::negative when it does not in a second.
 Result<void> set_mode(Session& session, const drive::Profile& profile, std::uint8_t node, std::int8_t mode);
 

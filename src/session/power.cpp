@@ -125,21 +125,24 @@ Result<void> Power::step(DriveState from, const drive::PowerStep& next) {
   }
 }
 
+Result<std::vector<drive::PowerStep>> Power::path_to(DriveState from, DriveState goal) {
+  const bool resuming = from == DriveState::quick_stop_active && resumes();
+  if (auto path = drive::power_path(from, goal, resuming)) return std::move(*path);
+  const bool fault = from == DriveState::fault || from == DriveState::fault_reaction_active;
+  return fail(drive_error(Errc::refused, node_,
+                          fmt::format("is in {}: no command leads from there to {} (statusword 0x{:04X})",
+                                      drive::name(from), drive::name(goal), statusword_),
+                          fault ? "`fault show` tells the fault; when its cause is gone, `fault reset`"
+                                : "power the drive off and on again"));
+}
+
 Result<void> Power::reach(DriveState goal) {
   for (int i = 0; i < kMostSteps; ++i) {
     const auto from = state();
     if (!from) return tl::unexpected<Error>(from.error());
     if (*from == goal) return {};
-    const bool resuming = *from == DriveState::quick_stop_active && resumes();
-    const auto path = drive::power_path(*from, goal, resuming);
-    if (!path) {
-      const bool fault = *from == DriveState::fault || *from == DriveState::fault_reaction_active;
-      return fail(drive_error(Errc::refused, node_,
-                              fmt::format("is in {}: no command leads from there to {} (statusword 0x{:04X})",
-                                          drive::name(*from), drive::name(goal), statusword_),
-                              fault ? "`fault show` tells the fault; when its cause is gone, `fault reset`"
-                                    : "power the drive off and on again"));
-    }
+    const auto path = path_to(*from, goal);
+    if (!path) return tl::unexpected<Error>(path.error());
     if (const auto done = step(*from, path->front()); !done) return done;
   }
   return fail(drive_error(Errc::negative, node_,

@@ -37,6 +37,8 @@ class Power {
   /// it. Errc::refused where there is no way: out of a fault (`fault reset` is asked for separately);
   /// Errc::negative when the drive does not follow, with what its statusword says of the reason.
   Result<void> reach(drive::DriveState goal);
+  /// The steps that reach() makes from there when the drive follows; Errc::refused as there.
+  Result<std::vector<drive::PowerStep>> path_to(drive::DriveState from, drive::DriveState goal);
   /// Takes the power away (PowerAim::disable). Errc::negative when it was not seen to go, or when 0000h could
   /// not be written. Neither this nor quick_stop() hears Ctrl-C, and both wait for a bus that is lost
   /// (LinkWait).

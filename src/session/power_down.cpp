@@ -16,11 +16,6 @@ namespace {
 using canopen::NmtCommand;
 using drive::DriveState;
 
-constexpr std::uint16_t kHalted = 0x010F;
-constexpr std::uint16_t kQuickStop = 0x0002;
-constexpr std::uint16_t kSwitchOff = 0x0007;
-constexpr std::uint16_t kDisableVoltage = 0x0000;
-
 constexpr Duration kPause = std::chrono::milliseconds(5);
 /// An NMT command is not answered; CiA 301 names no time.
 constexpr Duration kNmtPause = std::chrono::milliseconds(20);
@@ -59,7 +54,7 @@ void PowerDown::begin() {
 void PowerDown::on_bus_back() { begin(); }
 
 std::optional<SdoRequest> PowerDown::last_word() const {
-  return command(plan_.aim == PowerAim::stop ? kQuickStop : kDisableVoltage);
+  return command(plan_.aim == PowerAim::stop ? kQuickStopWord : kDisableVoltageWord);
 }
 
 void PowerDown::on_end(const Error& error) {
@@ -98,9 +93,9 @@ DialogueStep PowerDown::next(TimePoint now) {
     }
     case State::slowing_speed:
     case State::stopping_speed: return {.request = read(objects::kVelocityActual)};
-    case State::quick_stop: result_.quick_stop = true; return {.request = command(kQuickStop)};
-    case State::switch_off: return {.request = command(kSwitchOff)};
-    case State::cut: return {.request = command(kDisableVoltage)};
+    case State::quick_stop: result_.quick_stop = true; return {.request = command(kQuickStopWord)};
+    case State::switch_off: return {.request = command(kSwitchOffWord)};
+    case State::cut: return {.request = command(kDisableVoltageWord)};
     case State::silence_by_nmt:
       state_ = State::wake_again;
       return {.nmt = NmtCommand::stop, .pause = now + kNmtPause};
@@ -188,6 +183,22 @@ DriveState PowerDown::take_state(const Result<Bytes>& answer) {
     unread_ = answer.error();
   seen_ = result_.state();
   return seen_;
+}
+
+std::vector<PlannedMessage> planned_power_down(std::uint8_t node, PowerAim aim) {
+  std::vector<PlannedMessage> out;
+  const auto say = [&](std::uint16_t word) {
+    out.push_back(planned_write({node, objects::kControlword, store_le(word, 2)}));
+  };
+  if (aim != PowerAim::disable) say(kQuickStopWord);
+  if (aim != PowerAim::stop) {
+    say(kSwitchOffWord);
+    say(kDisableVoltageWord);
+  }
+  out.push_back(
+      planned_frame(node, canopen::nmt_frame(NmtCommand::enter_pre_operational, node),
+                    aim == PowerAim::stop ? "if it does not answer" : "if it does not obey or answer"));
+  return out;
 }
 
 std::vector<PowerDownResult> take_down(Session& session, std::vector<PowerDownPlan> plans) {

@@ -8,8 +8,15 @@
 
 #include "drive/cia402.hpp"
 #include "session/dialogue.hpp"
+#include "session/rehearsal.hpp"
 
 namespace servoctl::session {
+
+/// Controlwords of a way down (CiA 402-2, 8.4.1).
+inline constexpr std::uint16_t kHalted = 0x010F;
+inline constexpr std::uint16_t kQuickStopWord = 0x0002;
+inline constexpr std::uint16_t kSwitchOffWord = 0x0007;
+inline constexpr std::uint16_t kDisableVoltageWord = 0x0000;
 
 /// What a way down is to reach.
 enum class PowerAim : std::uint8_t {
@@ -145,6 +152,10 @@ class PowerDown final : public Dialogue {
   std::optional<Error> refused_;  ///< The last command that was not acknowledged.
   std::optional<Error> unread_;   ///< Why the statusword was not read last.
 };
+
+/// What is written to a drive that follows and of which nothing more is known, in order; NMT where it does
+/// not.
+std::vector<PlannedMessage> planned_power_down(std::uint8_t node, PowerAim aim);
 
 /// Takes all these drives down at the same time: the first word goes to all of them before any answer is
 /// waited for, and a drive that is slow or dead delays none. A bus that is lost meanwhile is waited for

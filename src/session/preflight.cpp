@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <array>
 
+#include "base/number.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/operation_mode.hpp"
 #include "session/power.hpp"
@@ -90,7 +91,7 @@ class Preflight {
       } else if (const auto value = units_->physical(requests[i].object, *answers[i])) {
         if (value->value != 0 || requests[i].object == objects::kFollowingErrorWindow ||
             requests[i].object == objects::kSupplyVoltage)
-          add(Weight::note, names[i], fmt::format("{:.9g} {}", value->value, value->unit));
+          add(Weight::note, names[i], fmt::format("{} {}", number_text(value->value), value->unit));
       }
     }
     return {};

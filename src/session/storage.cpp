@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "drive/quantity.hpp"
@@ -35,19 +36,25 @@ Error about(std::uint8_t node, Errc code, std::string what, std::string hint) {
   return error;
 }
 
-Result<void> write_setting(Session& session, const drive::Profile& profile, std::uint8_t node,
-                           const drive::Setting& setting) {
-  const auto target = drive::resolve(&profile, setting.name);
-  if (!target) return tl::unexpected<Error>(target.error());
-  const auto data = od::encode(drive::meaning(*target, node).type, od::Value(setting.value));
-  if (!data) return tl::unexpected<Error>(data.error());
-  return session.download(node, target->address, *data);
+Result<std::vector<SdoRequest>> writes_of(const drive::Profile& profile, std::uint8_t node,
+                                          std::span<const drive::Setting> settings) {
+  std::vector<SdoRequest> out;
+  for (const auto& setting : settings) {
+    const auto target = drive::resolve(&profile, setting.name);
+    if (!target) return tl::unexpected<Error>(target.error());
+    const auto data = od::encode(drive::meaning(*target, node).type, od::Value(setting.value));
+    if (!data) return tl::unexpected<Error>(data.error());
+    out.push_back({node, target->address, *data});
+  }
+  return out;
 }
 
-Result<void> write_settings(Session& session, const drive::Profile& profile, std::uint8_t node,
-                            const std::vector<drive::Setting>& settings) {
-  for (const auto& setting : settings)
-    if (const auto written = write_setting(session, profile, node, setting); !written) return written;
+/// One after the other, each when the one before is done.
+Result<void> carry_out(Session& session, const Result<std::vector<SdoRequest>>& writes) {
+  if (!writes) return tl::unexpected<Error>(writes.error());
+  const Patience patience(session, kStorePatience);
+  for (const auto& write : *writes)
+    if (const auto done = session.download(write.node, write.object, *write.data); !done) return done;
   return {};
 }
 
@@ -61,14 +68,14 @@ bool by_objects(const drive::Profile* profile) { return profile == nullptr || pr
 
 }  // namespace
 
-Result<void> store_parameters(Session& session, const drive::Profile* profile, std::uint8_t node,
-                              ParameterGroup group) {
-  const Patience patience(session, kStorePatience);
+Result<std::vector<SdoRequest>> store_writes(const drive::Profile* profile, std::uint8_t node,
+                                             ParameterGroup group) {
   if (by_objects(profile))
-    return session.download(node, {objects::kStoreIndex, static_cast<std::uint8_t>(group)},
-                            store_le(objects::kSaveSignature, 4));
+    return std::vector<SdoRequest>{{node,
+                                    {objects::kStoreIndex, static_cast<std::uint8_t>(group)},
+                                    store_le(objects::kSaveSignature, 4)}};
   const auto& rules = profile->rules.store;
-  if (!rules.store.empty()) return write_settings(session, *profile, node, rules.store);
+  if (!rules.store.empty()) return writes_of(*profile, node, rules.store);
   auto hint = rules.flash_switch.empty()
                   ? std::string("its manual describes no way; look whether values survive a power cycle")
                   : fmt::format("values are kept while they are written: `param set … --keep` switches {}",
@@ -76,18 +83,28 @@ Result<void> store_parameters(Session& session, const drive::Profile* profile, s
   return fail(about(node, Errc::negative, "this family cannot store all values at once", std::move(hint)));
 }
 
-Result<void> restore_defaults(Session& session, const drive::Profile* profile, std::uint8_t node,
+Result<void> store_parameters(Session& session, const drive::Profile* profile, std::uint8_t node,
                               ParameterGroup group) {
-  const Patience patience(session, kStorePatience);
+  return carry_out(session, store_writes(profile, node, group));
+}
+
+Result<std::vector<SdoRequest>> restore_writes(const drive::Profile* profile, std::uint8_t node,
+                                               ParameterGroup group) {
   if (by_objects(profile))
-    return session.download(node, {objects::kRestoreIndex, static_cast<std::uint8_t>(group)},
-                            store_le(objects::kLoadSignature, 4));
+    return std::vector<SdoRequest>{{node,
+                                    {objects::kRestoreIndex, static_cast<std::uint8_t>(group)},
+                                    store_le(objects::kLoadSignature, 4)}};
   const auto& rules = profile->rules.store;
-  if (!rules.restore.empty()) return write_settings(session, *profile, node, rules.restore);
-  if (!rules.restore_at_start.empty())
-    return write_setting(session, *profile, node, {rules.restore_at_start, 1});
+  if (!rules.restore.empty()) return writes_of(*profile, node, rules.restore);
+  const drive::Setting at_start[] = {{rules.restore_at_start, 1}};
+  if (!rules.restore_at_start.empty()) return writes_of(*profile, node, at_start);
   return fail(about(node, Errc::negative, "this family has no way to go back to factory values over the bus",
                     "use its panel or the vendor's software"));
+}
+
+Result<void> restore_defaults(Session& session, const drive::Profile* profile, std::uint8_t node,
+                              ParameterGroup group) {
+  return carry_out(session, restore_writes(profile, node, group));
 }
 
 Result<void> StorageScope::set(const std::string& name, std::int64_t value, std::optional<Changed>& out) {
@@ -100,13 +117,28 @@ Result<void> StorageScope::set(const std::string& name, std::int64_t value, std:
   if (*before == *data) return {};
   // Noted first: an answer that is lost may belong to a write that was done.
   out = Changed{target->address, *before, *data};
-  return session_->download(node_, target->address, *data);
+  return write(target->address, *data);
+}
+
+Result<void> StorageScope::write(ObjectAddress object, const Bytes& data) {
+  if (rehearsal_ == nullptr) return session_->download(node_, object, data);
+  rehearsal_->add(planned_write({node_, object, data}));
+  return {};
+}
+
+/// All values in the drive: as store_parameters().
+Result<void> StorageScope::store_all() {
+  if (rehearsal_ == nullptr) return store_parameters(*session_, profile_, node_, ParameterGroup::all);
+  const auto writes = store_writes(profile_, node_, ParameterGroup::all);
+  if (!writes) return tl::unexpected<Error>(writes.error());
+  for (const auto& each : *writes) rehearsal_->add(planned_write(each));
+  return {};
 }
 
 Result<void> StorageScope::put_back(std::optional<Changed>& changed) {
   if (!changed) return {};
   const auto object = std::exchange(changed, std::nullopt);
-  return session_->download(node_, object->object, object->before);
+  return write(object->object, object->before);
 }
 
 /// A trial goes to the RAM where the family has a choice: its flash wears.
@@ -115,7 +147,7 @@ Result<void> StorageScope::choose_memory() {
   const auto& value = keep_ ? rules.to_flash : rules.to_ram;
   if (rules.flash_switch.empty() || !value) return {};
   if (const auto done = set(rules.flash_switch, *value, memory_); !done) return done;
-  if (memory_ && !keep_)
+  if (memory_ && !keep_ && rehearsal_ == nullptr)
     notices_.push_back(
         fmt::format("node {}: {} is {} now, so that trials go to the RAM and are lost at power-off; --keep "
                     "makes values stay",
@@ -136,13 +168,14 @@ Result<void> StorageScope::open(bool keep, bool unlock, bool choose) {
 Result<void> StorageScope::prepare(bool unlock, bool choose) {
   if (profile_ == nullptr) return {};
   const auto& rules = profile_->rules.store;
+  const auto* password = profile_->parameter(rules.unlock);
+  const bool has_password = password != nullptr && password->object && rules.unlock_open;
+  // Refused before anything is written.
+  if (unlock && !has_password)
+    return fail(about(node_, Errc::usage, "this family has no password that the bus can give", {}));
   if (choose)
     if (const auto chosen = choose_memory(); !chosen) return chosen;
-  if (!unlock) return {};
-  const auto* password = profile_->parameter(rules.unlock);
-  if (password == nullptr || !password->object || !rules.unlock_open)
-    return fail(about(node_, Errc::usage, "this family has no password that the bus can give", {}));
-  return set(rules.unlock, *rules.unlock_open, password_);
+  return unlock ? set(rules.unlock, *rules.unlock_open, password_) : Result<void>();
 }
 
 void StorageScope::tell_wear(std::size_t writes) {
@@ -170,10 +203,9 @@ Result<Kept> StorageScope::close(bool all_written, std::size_t writes) {
     else
       wrong = std::move(error);
   };
-  if (keep_ && has_switch) tell_wear(writes);
+  if (keep_ && has_switch && rehearsal_ == nullptr) tell_wear(writes);
   if (keep_ && all_written && !has_switch)
-    note(store_parameters(*session_, profile_, node_, ParameterGroup::all),
-         "the values are written, but keeping them failed",
+    note(store_all(), "the values are written, but keeping them failed",
          "whether the drive keeps them by itself is seen after a power cycle; `store` tries again");
   note(put_back(password_), "the password could not be taken back, the drive may still be unlocked", {});
   // A switch that chose the RAM stays there: the next trial wants it, and writing it back wears the flash.

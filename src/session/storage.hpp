@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "drive/profile.hpp"
+#include "session/rehearsal.hpp"
 #include "session/session.hpp"
 
 namespace servoctl::session {
@@ -18,6 +19,13 @@ enum class Kept : std::uint8_t { no, yes, unknown };
 
 /// Longest wait for a drive that writes its flash or EEPROM; manuals name no time.
 inline constexpr Duration kStorePatience = std::chrono::seconds(10);
+
+/// What store_parameters() writes, in order; errors as there, but for what the drive says.
+Result<std::vector<SdoRequest>> store_writes(const drive::Profile* profile, std::uint8_t node,
+                                             ParameterGroup group);
+/// The same for restore_defaults().
+Result<std::vector<SdoRequest>> restore_writes(const drive::Profile* profile, std::uint8_t node,
+                                               ParameterGroup group);
 
 /// Makes the drive keep its present values: 1010h with "save", else the settings of the family's rules.
 /// `profile` may be null. Errc::negative, with what can be done instead, where the family has no such way;
@@ -40,6 +48,9 @@ class StorageScope {
   StorageScope(const StorageScope&) = delete;
   StorageScope& operator=(const StorageScope&) = delete;
   ~StorageScope() { (void)close(false, 0); }
+
+  /// From now on nothing is written: what would be goes there, which outlives this.
+  void rehearse(Rehearsal& rehearsal) { rehearsal_ = &rehearsal; }
 
   /// Before the writes. `choose` is false for writes that no memory is chosen for: the controlword, the
   /// communication objects, the switch itself. Errc::usage when `unlock` is wanted and the family has no
@@ -68,6 +79,8 @@ class StorageScope {
   Result<void> set(const std::string& name, std::int64_t value, std::optional<Changed>& out);
   Result<void> put_back(std::optional<Changed>& changed);
   Result<void> choose_memory();
+  Result<void> write(ObjectAddress object, const Bytes& data);
+  Result<void> store_all();
   void tell_wear(std::size_t writes);
 
   Session* session_;
@@ -78,6 +91,7 @@ class StorageScope {
   std::optional<Changed> memory_;
   std::optional<Changed> password_;
   std::vector<std::string> notices_;
+  Rehearsal* rehearsal_ = nullptr;
 };
 
 }  // namespace servoctl::session

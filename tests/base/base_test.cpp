@@ -200,6 +200,32 @@ TEST(Csv, ThatIsBrokenIsRefusedWithItsLine) {
   }
 }
 
+TEST(NumberText, IsWhatPeopleWrite) {
+  EXPECT_EQ(number_text(1'310'720), "1310720");
+  EXPECT_EQ(number_text(-2'147'483'648.), "-2147483648");
+  EXPECT_EQ(number_text(9.99985), "10");
+  EXPECT_EQ(number_text(28.6478898), "28.648");
+  EXPECT_EQ(number_text(5'898'239.997), "5898240");
+  EXPECT_EQ(number_text(0.0001234567), "0.0001235");
+  EXPECT_EQ(number_text(-0.), "0");
+  EXPECT_EQ(number_text(-0.5), "-0.5");
+  EXPECT_EQ(number_text(1e18), "1e+18");
+}
+
+TEST(PlainNumber, HasNoExponentAndItsWholePartInFull) {
+  EXPECT_EQ(plain_number(1'310'720, 6), "1310720");
+  EXPECT_EQ(plain_number(9.99985, 6), "9.99985");
+  EXPECT_EQ(plain_number(0.00001, 6), "0.00001");
+  EXPECT_EQ(plain_number(1'310'727.4, 6), "1310727");
+  EXPECT_EQ(plain_number(-0., 6), "0");
+}
+
+TEST(NumberText, TellsTwoNumbersApartThatAreNotTheSame) {
+  EXPECT_EQ(told_apart(300.0001, 300), std::pair(std::string("300.0001"), std::string("300")));
+  EXPECT_EQ(told_apart(60, 60), std::pair(std::string("60"), std::string("60")));
+  EXPECT_EQ(told_apart(10, 9.5), std::pair(std::string("10"), std::string("9.5")));
+}
+
 class FileTest : public testing::Test {
  protected:
   void SetUp() override { std::filesystem::create_directories(folder); }

@@ -56,6 +56,20 @@ TEST(Expectation, ComparesNumbersAsNumbersAndTextAsText) {
     EXPECT_NE(refusal(text), "") << text;
 }
 
+TEST(Expectation, ComparesIntegersExactly) {
+  const Record result{{"serial", std::uint64_t{18'446'744'073'709'551'615U}},
+                      {"least", std::int64_t{-9'223'372'036'854'775'807}},
+                      {"hex", report::Hex{0xFFFF'FFFF'FFFF, 12}},
+                      {"scaled", 0.1 * 3}};
+  for (const auto* text :
+       {".serial == 18446744073709551615", ".serial > 18446744073709551614", ".hex == 0xFFFFFFFFFFFF",
+        ".hex < 0x1000000000000", ".least != -9223372036854775806", ".scaled == 0.3"})
+    EXPECT_EQ(refusal(text, result), "") << text;
+  for (const auto* text : {".serial == 18446744073709551614", ".serial <= 18446744073709551614",
+                           ".hex >= 0x1000000000000", ".least == -9223372036854775806", ".scaled == 0.31"})
+    EXPECT_NE(refusal(text, result), "") << text;
+}
+
 TEST(Expectation, ShowsBothSidesWhenItDoesNotHold) {
   EXPECT_EQ(refusal("[0].value == 500"), "[0].value is 400, expected == 500");
   EXPECT_EQ(refusal("[0].state == \"switched on\""),

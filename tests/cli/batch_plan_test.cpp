@@ -169,13 +169,13 @@ TEST(BatchStatement, WaitPauseAndOnErrorAreTakenApart) {
 }
 
 TEST(BatchStatement, ErrorsNameTheirLinesAllAtOnce) {
-  EXPECT_EQ(
-      said("wait\nwait soon\non-error\non-error go\nset A\nset\nread \"open\nexpect\nexpect .a = 5\n"
-           "4 r 0x1000\nscan"),
-      (Words{"11 scan", "1! 'wait' takes a time", "2! wait: 'soon' is no time", "3! 'on-error' takes one word",
-             "4! 'on-error' takes one word", "5! 'A' is no NAME=VALUE", "6! 'set' needs NAME=VALUE",
-             "7! the quote \" is not closed", "8! a value is missing in the expression",
-             "9! '=' compares nothing", "10! CiA 309-3: a read takes INDEX SUB [TYPE]"}));
+  EXPECT_EQ(said("wait\nwait soon\non-error\non-error go\nset A\nset\nread \"open\nexpect\nexpect .a = 5\n"
+                 "4 r 0x1000\nscan"),
+            (Words{"11 scan", "1! 'wait' takes a time", "2! wait: 'soon' is no time",
+                   "3! 'on-error' takes one word", "4! 'on-error' takes one word", "5! 'A' is no NAME=VALUE",
+                   "6! 'set' needs NAME=VALUE", "7! the quote \" is not closed",
+                   "8! a value is missing in the expression", "9! '=' compares nothing",
+                   "10! CiA 309-3: a read takes INDEX SUB [TYPE]"}));
 }
 
 TEST(BatchStatement, ThatALoopRepeatsIsRefusedOnceWithItsRound) {
@@ -203,8 +203,8 @@ TEST(GatewayLine, BecomesALineOfOurs) {
   EXPECT_EQ(gateway("1 4 read 4120 10 U32"), "read 0x1018:A --type u32 -n 4");
   EXPECT_EQ(gateway("[12] 1 4 w 0x1017 0 u16 500"), "write 0x1017:0 500 --type u16 -n 4");
   EXPECT_EQ(gateway("4 w 0x6065 0 i32 -5"), "write 0x6065:0 -5 --type i32 -n 4");
-  EXPECT_EQ(gateway("4 write 0x2000 0 vs \"two words\""), "write 0x2000:0 \"two words\" --type string -n 4");
-  EXPECT_EQ(gateway("4 r 0x2000 0 r32"), "read 0x2000:0 --type f32 -n 4");
+  EXPECT_EQ(gateway("4 write 0x2000 0 vs \"two words\""), "write 0x2000:0 \"two words\" --type vs -n 4");
+  EXPECT_EQ(gateway("4 r 0x2000 0 r32"), "read 0x2000:0 --type r32 -n 4");
   EXPECT_EQ(gateway("start"), "nmt start");
   EXPECT_EQ(gateway("0 start"), "nmt start -n all");
   EXPECT_EQ(gateway("4 stop"), "nmt stop -n 4");

@@ -69,6 +69,21 @@ TEST(ParseLine, TakesEveryWordBehindTwoDashesAsAValue) {
   EXPECT_EQ(parse_line({"write", "a", "{}"})->arguments.text("value"), "{}");
 }
 
+TEST(ParseLine, TakesOptionsBehindTwoDashesWhenEveryArgumentHasItsValue) {
+  const auto line = parse_line({"jog", "--", "-30rpm", "--for", "2s", "-n", "1"});
+  ASSERT_TRUE(line) << line.error().message;
+  EXPECT_EQ(line->arguments.text("speed"), "-30rpm");
+  EXPECT_EQ(line->arguments.text("--for"), "2s");
+  EXPECT_EQ(line->arguments.text("--node"), "1");
+  const auto write = parse_line({"write", "0x2000", "-n", "1", "--", "--yes", "--keep"});
+  ASSERT_TRUE(write) << write.error().message;
+  EXPECT_EQ(write->arguments.text("value"), "--yes");
+  EXPECT_TRUE(write->arguments.has("--keep"));
+  EXPECT_FALSE(write->arguments.has("--yes"));
+  EXPECT_EQ(parse_line({"jog", "--", "-30rpm", "--bogus"}).error().message,
+            "jog: there is no option '--bogus'");
+}
+
 TEST(ParseLine, GivesManyWordsToTheParameterThatTakesThem) {
   const auto line = parse_line({"read", "a", "b", "--type", "u8", "c"});
   ASSERT_TRUE(line) << line.error().message;

@@ -96,6 +96,24 @@ TEST(Quantity, MayBeALabelInEitherLanguage) {
   EXPECT_EQ(label_of(mode, od::Value(std::uint64_t{1})), nullptr);
 }
 
+TEST(Quantity, MayBeWhatStandsInTheBracketOfALabel) {
+  const std::vector<od::EnumLabel> labels{{3, "Profile velocity (pv)", "轮廓速度模式 (pv)"},
+                                          {4, "Torque (tq)", ""},
+                                          {5, "Torque (held)", ""},
+                                          {6, "Step (3)", ""}};
+  auto mode = hertz();
+  mode.unit = "";
+  mode.scale = 1;
+  mode.min.reset();
+  mode.labels = &labels;
+  EXPECT_EQ(unsigned_of(parse_quantity(mode, "PV")), 3U);
+  EXPECT_EQ(unsigned_of(parse_quantity(mode, "profile velocity")), 3U);
+  EXPECT_EQ(unsigned_of(parse_quantity(mode, "tq")), 4U);
+  EXPECT_EQ(unsigned_of(parse_quantity(mode, "held")), 5U);
+  EXPECT_EQ(unsigned_of(parse_quantity(mode, "3")), 3U) << "a number is the value";
+  EXPECT_FALSE(parse_quantity(mode, "torque")) << "two are called so";
+}
+
 TEST(Scaled, HasNoNoiseOfBinaryFractions) {
   auto m = hertz();
   for (std::uint64_t raw = 0; raw < 20000; raw += 7) {

@@ -65,5 +65,21 @@ TEST(DataTypeTable, HasNoOtherCodes) {
   EXPECT_EQ(cia_name(0x80), "type of the device profile");
 }
 
+TEST(DataTypes, HaveTheNamesOfCia309AsWell) {
+  for (const auto& [theirs, ours] : std::map<const char*, DataType>{{"b", DataType::boolean},
+                                                                    {"r32", DataType::f32},
+                                                                    {"r64", DataType::f64},
+                                                                    {"vs", DataType::string},
+                                                                    {"os", DataType::bytes},
+                                                                    {"us", DataType::string},
+                                                                    {"d", DataType::domain},
+                                                                    {"t", DataType::time},
+                                                                    {"td", DataType::time},
+                                                                    {"i16", DataType::i16},
+                                                                    {"u32", DataType::u32}})
+    EXPECT_EQ(parse_data_type(theirs), ours) << theirs;
+  EXPECT_FALSE(parse_data_type("r16"));
+}
+
 }  // namespace
 }  // namespace servoctl::od

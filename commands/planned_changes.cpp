@@ -1,0 +1,42 @@
+// What --dry-run shows of values that would be written.
+#include "commands/change.hpp"
+#include "commands/keeping_nodes.hpp"
+#include "commands/planned_messages.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using report::Value;
+
+void add_writes(std::span<const Change> changes, session::Rehearsal& rehearsal) {
+  for (const auto& change : changes)
+    rehearsal.add(session::planned_write({change.node, change.target.address, change.data, change.transfer}));
+}
+
+}  // namespace
+
+Value planned_frames(std::span<const Change> changes) {
+  session::Rehearsal rehearsal;
+  add_writes(changes, rehearsal);
+  report::Table table;
+  table.columns = {{"node"}, {"object"}, {"name"}, {"frame"}};
+  for (std::size_t i = 0; i < changes.size(); ++i)
+    table.rows.push_back({changes[i].node, to_string(changes[i].target.address),
+                          report::text_or_null(changes[i].target.label()),
+                          frame_text(rehearsal.messages()[i])});
+  return table;
+}
+
+Result<Value> planned_changes(Context& context, std::span<const Change> changes,
+                              const WriteOptions& options) {
+  session::Rehearsal rehearsal;
+  KeepingNodes keeping(context, changes);
+  keeping.rehearse(rehearsal);
+  if (const auto opened = keeping.open(options); !opened) return tl::unexpected<Error>(opened.error());
+  add_writes(changes, rehearsal);
+  const std::vector<Result<session::Written>> written(changes.size(), session::Written{});
+  keeping.close(written);
+  return planned_messages(context, rehearsal.messages());
+}
+
+}  // namespace servoctl::commands

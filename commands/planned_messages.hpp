@@ -1,0 +1,16 @@
+#pragma once
+
+#include <span>
+
+#include "commands/command.hpp"
+#include "session/rehearsal.hpp"
+
+namespace servoctl::commands {
+
+/// The frame that begins to send a message: `601#2B40600006000000`.
+std::string frame_text(const session::PlannedMessage& message);
+
+/// What --dry-run shows of commands that change a drive: `node object name when frame`, one row a message.
+report::Value planned_messages(const Context& context, std::span<const session::PlannedMessage> messages);
+
+}  // namespace servoctl::commands

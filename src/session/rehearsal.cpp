@@ -1,0 +1,28 @@
+#include "session/rehearsal.hpp"
+
+#include <algorithm>
+
+namespace servoctl::session {
+
+PlannedMessage planned_write(SdoRequest request, std::string when) {
+  const auto node = request.node;
+  return {.node = node, .write = std::move(request), .when = std::move(when)};
+}
+
+PlannedMessage planned_frame(std::uint8_t node, const can::Frame& frame, std::string when) {
+  return {.node = node, .frame = frame, .when = std::move(when)};
+}
+
+void Rehearsal::add(PlannedMessage message) {
+  message.step = step_;
+  messages_.push_back(std::move(message));
+}
+
+const Bytes* Rehearsal::held(ObjectAddress object) const {
+  const auto last = std::find_if(messages_.rbegin(), messages_.rend(), [&](const PlannedMessage& message) {
+    return message.write && message.write->object == object;
+  });
+  return last == messages_.rend() ? nullptr : &*last->write->data;
+}
+
+}  // namespace servoctl::session

@@ -1,0 +1,155 @@
+// Every hint of the golden cases that names a command is followed: it is understood, and asks for nothing
+// that was given.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+
+#include "cli/batch_command.hpp"
+#include "cli/line_runner.hpp"
+#include "cli/parse.hpp"
+#include "cli/words.hpp"
+#include "recording_console.hpp"
+#include "tests/source_dir.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using Words = std::vector<std::string>;
+
+/// A hint, and the line that was given it.
+struct Hint {
+  std::string file;
+  std::string line;
+  std::string text;
+};
+
+std::vector<Hint> all_hints() {
+  std::vector<Hint> out;
+  for (const auto& entry : fs::directory_iterator(fs::path(source_dir()) / "tests/cli/golden")) {
+    std::ifstream file(entry.path());
+    std::string line;
+    for (std::string text; std::getline(file, text);) {
+      if (text.starts_with("$ ")) line = text.substr(2);
+      if (text.starts_with("  hint: ") && !line.ends_with(" --json"))
+        out.push_back({entry.path().filename().string(), line, text.substr(8)});
+    }
+  }
+  return out;
+}
+
+/// What stands in backquotes.
+std::vector<std::string> quoted(const std::string& text) {
+  std::vector<std::string> out;
+  const std::regex mark("`([^`]+)`");
+  for (std::sregex_iterator it(text.begin(), text.end(), mark); it != std::sregex_iterator(); ++it)
+    out.push_back((*it)[1]);
+  return out;
+}
+
+/// Words that stand for others.
+std::string filled_in(std::string text) {
+  const std::pair<std::string_view, std::string_view> kWords[] = {{"test …", "test comm"},
+                                                                  {"param set …", "param set Fn_33=2"},
+                                                                  {" METHOD", " 35"},
+                                                                  {" PATTERN", " speed"},
+                                                                  {" WORD", " speed"},
+                                                                  {" OBJECT…", " controlword"},
+                                                                  {" >FILE", ""},
+                                                                  {" FILE", " /tmp/x"},
+                                                                  {" …", " "}};
+  for (const auto& [from, to] : kWords)
+    if (const auto at = text.find(from); at != std::string::npos) text.replace(at, from.size(), to);
+  return text;
+}
+
+/// Commands of others, words of batch files and values.
+const std::set<std::string> kNoCommands{"candump -L", "all", "end", "--trace FILE"};
+
+bool lacks_words(const Words& words) {
+  const auto parsed = parse_line(words);
+  return !parsed && parsed.error().message.ends_with(" is missing");
+}
+
+/// The line with those options of the refused line that it does not have itself.
+Words in_the_same_place(Words words, const Words& refused) {
+  const std::set<std::string> kPlace{"-n", "-d", "-b", "--bus", "--node", "--drive"};
+  const bool has_node = std::find(words.begin(), words.end(), "-n") != words.end();
+  for (std::size_t i = 0; i + 1 < refused.size(); ++i)
+    if (kPlace.count(refused[i]) > 0 && !(has_node && refused[i] == "-n") &&
+        std::find(words.begin(), words.end(), refused[i]) == words.end())
+      words.insert(words.end(), {refused[i], refused[i + 1]});
+  return words;
+}
+
+/// What the line answers on a simulated drive.
+Outcome followed(const Words& words) {
+  RecordingConsole console;
+  Shell::Options options;
+  options.drive_folders = {fs::path(source_dir()) / "eds", fs::path(source_dir()) / "tests/cli/data/drives"};
+  options.clock = sim::SimBus::Clock::virtual_time;
+  options.defaults.bus = "sim:gsd600@1";
+  options.defaults.yes = true;
+  options.cancelled = [] { return true; };
+  Shell shell(console, std::move(options));
+  return shell.perform(words);
+}
+
+TEST(Hints, NameCommandsThatAreUnderstood) {
+  fs::current_path(source_dir());
+  int commands = 0;
+  for (const auto& hint : all_hints())
+    for (const auto& text : quoted(hint.text)) {
+      SCOPED_TRACE(hint.file + ": " + hint.line + "\n" + hint.text);
+      const auto refused = split_words(hint.line).value();
+      auto words = split_words(filled_in(text));
+      ASSERT_TRUE(words) << text;
+      if (text.starts_with("--") && kNoCommands.count(text) == 0) {
+        words->insert(words->begin(), refused.begin(), refused.end());
+      } else if (match_command(*words).command == nullptr) {
+        EXPECT_TRUE(kNoCommands.count(text) > 0) << "`" << text << "` is no command";
+        continue;
+      } else if (lacks_words(*words)) {
+        // A command that is only named.
+        EXPECT_NE(commands::find_command(text), nullptr) << text;
+        continue;
+      }
+      ++commands;
+      auto line = in_the_same_place(*words, refused);
+      // Lines of a file choose drive and node themselves.
+      if (refused.front() == "run") line.insert(line.end(), {"-d", "gsd600", "-n", "1"});
+      const auto outcome = followed(line);
+      EXPECT_NE(outcome.code(), exit_code(Errc::usage))
+          << text << ": " << (outcome.errors.empty() ? "" : outcome.errors.front().message);
+    }
+  EXPECT_GT(commands, 50);
+}
+
+TEST(Hints, AskForNothingThatWasGiven) {
+  const std::regex mark("add (-{1,2}[a-z-]+)( [^ ,;:]+)?");
+  int asked = 0;
+  for (const auto& hint : all_hints()) {
+    const auto words = split_words(hint.line);
+    if (!words) continue;
+    for (std::sregex_iterator it(hint.text.begin(), hint.text.end(), mark); it != std::sregex_iterator();
+         ++it) {
+      ++asked;
+      const auto given = std::find(words->begin(), words->end(), (*it)[1].str());
+      if (given == words->end()) continue;
+      // Another value is another thing: `add -d da200` where gsd600 was named.
+      const auto value = (*it)[2].str();
+      const bool other = !value.empty() && std::islower(static_cast<unsigned char>(value[1])) != 0 &&
+                         given + 1 != words->end() && value.substr(1) != *(given + 1);
+      EXPECT_TRUE(other) << hint.file << ": " << hint.line << "\n" << hint.text;
+    }
+  }
+  EXPECT_GT(asked, 15);
+}
+
+}  // namespace
+}  // namespace servoctl::cli

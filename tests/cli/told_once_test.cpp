@@ -1,0 +1,103 @@
+// What answers say of a value that was written, and what a report counts.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "cli/line_runner.hpp"
+#include "recording_console.hpp"
+#include "tests/source_dir.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Told : public testing::Test {
+ protected:
+  Told() { fs::create_directories(dir_); }
+  ~Told() override { fs::remove_all(dir_); }
+
+  int run(const std::string& family, const std::string& line) {
+    console.out_text.clear();
+    console.err_text.clear();
+    Shell::Options options;
+    options.drive_folders = {fs::path(source_dir()) / "eds"};
+    options.clock = sim::SimBus::Clock::virtual_time;
+    options.defaults.bus = "sim:" + family + "@1," + family + "@2," + family + "@3";
+    options.defaults.drive = family;
+    options.defaults.yes = true;
+    Shell shell(console, std::move(options));
+    return LineRunner(shell).run(line);
+  }
+
+  /// The word under a heading of the first row.
+  std::string cell(const std::string& heading) const {
+    std::istringstream lines(console.out_text);
+    std::string head;
+    std::string row;
+    std::getline(lines, head);
+    std::getline(lines, row);
+    const auto at = head.find(heading);
+    if (at == std::string::npos || at >= row.size()) return {};
+    return row.substr(at, row.find("  ", at) - at);
+  }
+
+  report::Value report_of(const std::string& tests) {
+    const auto file = dir_ / "report.json";
+    EXPECT_EQ(run("gsd600", "report " + file.string() + tests + " -n 1"), 0) << console.err_text;
+    std::ostringstream text;
+    text << std::ifstream(file).rdbuf();
+    return report::parse_json(text.str(), "report").value();
+  }
+
+  static std::size_t tests_in(const report::Value& report) {
+    const auto& nodes = std::get<report::List>(report::find(report, "nodes")->data());
+    return std::get<report::List>(report::find(nodes.front(), "tests")->data()).size();
+  }
+
+  fs::path dir_ = fs::temp_directory_path() / ("servoctl-told-" + std::to_string(::getpid()));
+  RecordingConsole console;
+};
+
+TEST_F(Told, OfAValueWhetherItIsKeptOnEveryFamily) {
+  const std::map<std::string, std::string> without_order{
+      {"gsd600", "no"}, {"dm", "no"}, {"da200", "not stated"}, {"ts", "no"}, {"sv2", "no"}, {"cia402", "no"}};
+  for (const auto& [family, said] : without_order) {
+    EXPECT_EQ(run(family, "write 0x6083 2000 -n 1"), 0) << console.err_text;
+    EXPECT_EQ(cell("kept"), said) << family << "\n" << console.out_text;
+    if (family == "da200") continue;  // Has no 1010h, and says so.
+    EXPECT_EQ(run(family, "write 0x6083 2001 --keep -n 1"), 0) << console.err_text;
+    EXPECT_EQ(cell("kept"), "yes") << family << "\n" << console.out_text;
+  }
+  EXPECT_EQ(run("ts", "write 0x1017 1000 --keep -n 1"), 0) << console.err_text;
+  EXPECT_EQ(cell("kept"), "not stated") << "the switch of the memory is for panel parameters";
+}
+
+TEST_F(Told, OneTestOfTheCommunicationInAReport) {
+  EXPECT_EQ(tests_in(report_of("")), 1U);
+  EXPECT_EQ(run("gsd600", "test comm -n 1 --json"), 0) << console.err_text;
+  std::ofstream(dir_ / "comm.json") << console.out_text;
+  const auto tests = " --tests " + (dir_ / "comm.json").string();
+  const auto once = report_of(tests);
+  EXPECT_EQ(tests_in(once), 1U);
+  EXPECT_NE(console.out_text.find("1 passed"), std::string::npos) << console.out_text;
+  EXPECT_EQ(tests_in(report_of(tests + tests)), 1U) << "the last one counts";
+}
+
+TEST_F(Told, CloneTakesRangesOfNodes) {
+  EXPECT_EQ(run("dm", "clone --from 1 --to 2-3 --dry-run"), 0) << console.err_text;
+  EXPECT_NE(console.out_text.find("node         3"), std::string::npos) << console.out_text;
+  EXPECT_EQ(run("dm", "clone --from 1 --to 3-2 --dry-run"), 2);
+  EXPECT_EQ(run("dm", "clone --from 2 --to 1-3 --dry-run"), 2) << "it cannot be cloned into itself";
+}
+
+TEST_F(Told, ErrorsOfJsonLinesInOneWordAreJson) {
+  EXPECT_EQ(run("dm", "read 0x1008 -ojsonl --bogus"), 2);
+  EXPECT_TRUE(console.out_text.starts_with("{\"servoctl\":1")) << console.out_text;
+}
+
+}  // namespace
+}  // namespace servoctl::cli
