@@ -168,7 +168,7 @@ _servoctl_scan() {
     'monitor') options+=' --for --service --object --ask --bitrate --raw' ;;
     'decode') options+=' --raw --service --object' ;;
     'replay') options+=' --speed --only --master' ;;
-    'run') options+=' --var --check' ;;
+    'run') options+=' --var --frames --check' ;;
   esac
 }
 

@@ -216,9 +216,10 @@ TEST_F(SessionTest, GuessesTheFamilyAndSaysThatItIsAGuess) {
   const auto found = scan(*session, std::vector<std::uint8_t>{1});
   ASSERT_TRUE(found);
   const auto guesses = guess_families(found->front(), drive::find_families(kFolders));
-  ASSERT_EQ(guesses.size(), 1U);
+  ASSERT_EQ(guesses.size(), 2U);
   EXPECT_EQ(guesses[0].family, "gsd600");
   EXPECT_FALSE(guesses[0].certain);
+  EXPECT_TRUE(guesses[1].generic) << "the family of the profile goes last";
   auto other = found->front();
   other.device_type = 0x0003'0000;
   EXPECT_TRUE(guess_families(other, drive::find_families(kFolders)).empty());
