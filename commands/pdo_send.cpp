@@ -115,9 +115,9 @@ Result<Value> run(Context& context, const Arguments& arguments) {
                         {"frame", can::to_string(message->frame)},
                         {"values", message->text, report::Show::text},
                         {"values", written_values(view, message->frame), report::Show::json}};
+  if (context.dry_run) return Value(std::move(answer));
   if (const auto ready = check_operational(context, view); !ready)
     return tl::unexpected<Error>(ready.error());
-  if (context.dry_run) return Value(std::move(answer));
   if (const auto sure = context.confirm(
           fmt::format("Send {} to node {}: {}? The motor may move.", view.name, view.node, message->text));
       !sure)
