@@ -90,7 +90,8 @@ class Log {
       : context_(&context), begin_(context.session->now()) {
     const auto& watch = context.session->watch();
     for (const auto node : nodes)
-      rows_.push_back({.node = node, .boots = watch.boots(node), .heartbeats = watch.heartbeats(node)});
+      rows_.push_back(
+          {.node = node, .boots = watch.boots(node), .heartbeats = watch.heartbeats(node), .told = {}});
   }
 
   /// What the nodes said when they were asked for their heartbeat, in their order.
