@@ -166,7 +166,8 @@ class OwnFile : public testing::Test {
                      .device_name = "0",
                      .hardware_version = {},
                      .software_version = {},
-                     .nmt = {}};
+                     .nmt = {},
+                     .looked = {}};
 };
 
 TEST_F(OwnFile, IsHeldAgainstItsOwnIdentity) {
