@@ -1,5 +1,6 @@
 #include "commands/identity.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -18,6 +19,13 @@ Value guess_records(std::span<const session::Guess> guesses) {
   for (const auto& guess : guesses)
     out.emplace_back(report::Record{{"family", guess.family}, {"certain", guess.certain}});
   return out;
+}
+
+/// A line of 80 columns has room for what tells the drive apart: its profile fits beside that.
+std::span<const session::Guess> without_generic(std::span<const session::Guess> guesses) {
+  const auto first = std::find_if(guesses.begin(), guesses.end(), [](const auto& g) { return g.generic; });
+  const auto own = static_cast<std::size_t>(first - guesses.begin());
+  return own == 0 ? guesses : guesses.first(own);
 }
 
 Value number_or_null(const std::optional<std::uint32_t>& number) { return number ? Value(*number) : Value(); }
@@ -56,12 +64,12 @@ report::Table identity_table(std::span<const session::Identity> nodes,
   table.json_only = nodes.empty();
   for (const auto& node : nodes) {
     const auto guesses = session::guess_families(node, families);
-    table.rows.push_back({node.node, hex(node.device_type), hex(node.vendor_id), hex(node.product_code),
-                          hex(node.revision), hex(node.serial), report::text_or_null(node.device_name),
-                          report::text_or_null(node.hardware_version),
-                          report::text_or_null(node.software_version),
-                          node.nmt ? Value(canopen::name(*node.nmt)) : Value(),
-                          report::text_or_null(guess_text(guesses)), guess_records(guesses)});
+    table.rows.push_back(
+        {node.node, hex(node.device_type), hex(node.vendor_id), hex(node.product_code), hex(node.revision),
+         hex(node.serial), report::text_or_null(node.device_name),
+         report::text_or_null(node.hardware_version), report::text_or_null(node.software_version),
+         node.nmt ? Value(canopen::name(*node.nmt)) : Value(),
+         report::text_or_null(guess_text(without_generic(guesses))), guess_records(guesses)});
   }
   return table;
 }

@@ -46,7 +46,7 @@ const Command kScan{
         "however many there are. Families are guessed from the identity and, where it leaves them open, by "
         "reading "
         "two or three objects that only they have; `?` marks a guess that proves nothing. cia402 fits every "
-        "drive of that profile.",
+        "drive of that profile: it is named where nothing else fits, and always by `info` and in JSON.",
     .parameters = {},
     .needs = Needs::bus,
     .effect = Effect::reads,
