@@ -16,7 +16,8 @@ unsigned signals_noted();
 
 /// ppoll() by which no signal slips: one that was noted since a wait last ended by a signal, before this call
 /// or in it, ends it with -1 and EINTR. So who tests what a handler sets, and then waits here, never waits in
-/// vain. Other signals do not end it. `longest`: empty for ever, else not negative. The answer is that of ppoll().
+/// vain. Other signals do not end it. `longest`: empty for ever, else not negative. The answer is that of
+/// ppoll().
 int wait_or_signal(std::span<pollfd> descriptors, std::optional<Duration> longest);
 
 }  // namespace servoctl

@@ -39,8 +39,8 @@ enum class Wake {
 /// ever.
 Wake wait_for(int fd, short events, TimePoint deadline);
 
-/// The same by wait_or_signal(): only signals that are noted end it. For waits whose end by a signal goes back to whoever asks what the signal
-/// means.
+/// The same by wait_or_signal(): only signals that are noted end it. For waits whose end by a signal goes
+/// back to whoever asks what the signal means.
 Wake wait_or_signal(int fd, short events, TimePoint deadline);
 
 /// Waits for `time`, or for a signal.

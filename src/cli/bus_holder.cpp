@@ -81,7 +81,8 @@ std::optional<Error> BusHolder::take_trace_failure() {
 /// Closes the bus; what is still energised stays known.
 void BusHolder::drop() {
   if (session_ && !session_->energised().empty())
-    left_energised_.insert_or_assign(session::canonical_url(session_->url()), std::move(session_->energised()));
+    left_energised_.insert_or_assign(session::canonical_url(session_->url()),
+                                     std::move(session_->energised()));
   flushing_ = true;  // What the trace could not take to the last is told by who takes its failure.
   session_.reset();
   flushing_ = false;

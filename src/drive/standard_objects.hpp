@@ -21,7 +21,7 @@ inline constexpr ObjectAddress kSyncPeriod{0x1006, 0};  ///< Communication cycle
 inline constexpr ObjectAddress kTimeCobId{0x1012, 0};
 inline constexpr ObjectAddress kEmergencyCobId{0x1014, 0};
 inline constexpr ObjectAddress kSyncOverflow{0x1019, 0};  ///< Synchronous counter overflow value.
-inline constexpr ObjectAddress kGuardTime{0x100C, 0};  ///< ms.
+inline constexpr ObjectAddress kGuardTime{0x100C, 0};     ///< ms.
 inline constexpr ObjectAddress kLifeTimeFactor{0x100D, 0};
 inline constexpr std::uint16_t kStoreIndex = 0x1010;
 inline constexpr std::uint16_t kRestoreIndex = 0x1011;

@@ -13,6 +13,7 @@ checks=0
 fail() { failures=$((failures + 1)); printf 'FAILED %s\n' "$*"; }
 state() { "$servoctl" status -n 1 --bus can1 -d "$1" --json | jq -r '.result[0] | "\(.energised) \(.state)"'; }
 until_state() {  # until_state FAMILY PATTERN
+  # shellcheck disable=SC2254  # A pattern is meant.
   for _ in $(seq 200); do case $(state "$1" 2>/dev/null) in $2) return 0 ;; esac; sleep 0.05; done
   return 1
 }
