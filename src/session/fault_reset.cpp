@@ -6,6 +6,8 @@
 #include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/deaf.hpp"
+#include "session/power.hpp"
+#include "session/setting_write.hpp"
 
 namespace servoctl::session {
 namespace {
@@ -54,17 +56,9 @@ Result<bool> by_controlword(Session& session, std::uint8_t node) {
   return fail(std::move(error));
 }
 
-Result<SdoRequest> write_of(const drive::Profile& profile, std::uint8_t node, const drive::Setting& setting) {
-  const auto target = drive::resolve(&profile, setting.name);
-  if (!target) return tl::unexpected<Error>(target.error());
-  const auto data = od::encode(drive::meaning(*target, node).type, od::Value(setting.value));
-  if (!data) return tl::unexpected<Error>(data.error());
-  return SdoRequest{node, target->address, *data};
-}
-
 Result<bool> by_settings(Session& session, const drive::Profile& profile, std::uint8_t node) {
   for (const auto& setting : profile.rules.fault.reset) {
-    const auto write = write_of(profile, node, setting);
+    const auto write = setting_write(profile, node, setting);
     if (!write) return tl::unexpected<Error>(write.error());
     if (const auto written = session.download(node, write->object, *write->data); !written)
       return tl::unexpected<Error>(written.error());
@@ -79,13 +73,10 @@ Result<FaultReset> check_power(Session& session, std::uint8_t node) {
   const auto state = read_state(session, node);
   if (!state) return tl::unexpected<Error>(state.error());
   if (!drive::is_energised(*state)) return FaultReset::done;
-  Error error;
-  error.code = Errc::negative;
-  error.node = node;
-  error.message = fmt::format("node {}: the fault is reset, and the drive is in {}: it is energised", node,
-                              drive::name(*state));
-  error.hint = "another master commands it; stop and disable it, or take its power away";
-  return fail(std::move(error));
+  return fail(
+      drive_error(Errc::negative, node,
+                  fmt::format("its fault is reset, and it is energised: it is in {}", drive::name(*state)),
+                  "another master commands it; stop and disable it, or take its power away"));
 }
 
 /// Errc::refused for a drive that has its power and no fault.
@@ -94,13 +85,10 @@ Result<bool> needs_reset(Session& session, std::uint8_t node) {
   if (!state) return tl::unexpected<Error>(state.error());
   if (*state == DriveState::fault || *state == DriveState::fault_reaction_active) return true;
   if (!drive::is_energised(*state)) return false;
-  Error error;
-  error.code = Errc::refused;
-  error.node = node;
-  error.message = fmt::format("node {} is in no fault but {}: a reset would take its power away", node,
-                              drive::name(*state));
-  error.hint = "stop and disable it first";
-  return fail(std::move(error));
+  return fail(drive_error(
+      Errc::refused, node,
+      fmt::format("it is in {}, not in a fault: a reset would take its power away", drive::name(*state)),
+      "stop and disable it first"));
 }
 
 bool resets_by_controlword(const drive::Profile* profile) {
@@ -120,7 +108,7 @@ Result<std::vector<PlannedMessage>> plan_fault_reset(Session& session, const dri
       out.push_back(planned_write({node, objects::kControlword, store_le(word, 2)}));
   if (profile == nullptr) return out;
   for (const auto& setting : profile->rules.fault.reset) {
-    const auto write = write_of(*profile, node, setting);
+    const auto write = setting_write(*profile, node, setting);
     if (!write) return tl::unexpected<Error>(write.error());
     out.push_back(planned_write(*write, out.empty() ? "" : "if the fault stays"));
   }

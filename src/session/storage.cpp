@@ -5,9 +5,10 @@
 #include <span>
 #include <utility>
 
-#include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/deaf.hpp"
+#include "session/power.hpp"
+#include "session/setting_write.hpp"
 
 namespace servoctl::session {
 namespace {
@@ -27,24 +28,13 @@ class Patience {
   Options before_;
 };
 
-Error about(std::uint8_t node, Errc code, std::string what, std::string hint) {
-  Error error;
-  error.code = code;
-  error.message = fmt::format("node {}: {}", node, what);
-  error.hint = std::move(hint);
-  error.node = node;
-  return error;
-}
-
 Result<std::vector<SdoRequest>> writes_of(const drive::Profile& profile, std::uint8_t node,
                                           std::span<const drive::Setting> settings) {
   std::vector<SdoRequest> out;
   for (const auto& setting : settings) {
-    const auto target = drive::resolve(&profile, setting.name);
-    if (!target) return tl::unexpected<Error>(target.error());
-    const auto data = od::encode(drive::meaning(*target, node).type, od::Value(setting.value));
-    if (!data) return tl::unexpected<Error>(data.error());
-    out.push_back({node, target->address, *data});
+    auto write = setting_write(profile, node, setting);
+    if (!write) return tl::unexpected<Error>(write.error());
+    out.push_back(*std::move(write));
   }
   return out;
 }
@@ -80,7 +70,8 @@ Result<std::vector<SdoRequest>> store_writes(const drive::Profile* profile, std:
                   ? std::string("its manual describes no way; look whether values survive a power cycle")
                   : fmt::format("values are kept while they are written: `param set … --keep` switches {}",
                                 rules.flash_switch);
-  return fail(about(node, Errc::negative, "this family cannot store all values at once", std::move(hint)));
+  return fail(
+      drive_error(Errc::negative, node, "this family cannot store all values at once", std::move(hint)));
 }
 
 Result<void> store_parameters(Session& session, const drive::Profile* profile, std::uint8_t node,
@@ -98,8 +89,9 @@ Result<std::vector<SdoRequest>> restore_writes(const drive::Profile* profile, st
   if (!rules.restore.empty()) return writes_of(*profile, node, rules.restore);
   const drive::Setting at_start[] = {{rules.restore_at_start, 1}};
   if (!rules.restore_at_start.empty()) return writes_of(*profile, node, at_start);
-  return fail(about(node, Errc::negative, "this family has no way to go back to factory values over the bus",
-                    "use its panel or the vendor's software"));
+  return fail(drive_error(Errc::negative, node,
+                          "this family has no way to go back to factory values over the bus",
+                          "use its panel or the vendor's software"));
 }
 
 Result<void> restore_defaults(Session& session, const drive::Profile* profile, std::uint8_t node,
@@ -108,16 +100,14 @@ Result<void> restore_defaults(Session& session, const drive::Profile* profile, s
 }
 
 Result<void> StorageScope::set(const std::string& name, std::int64_t value, std::optional<Changed>& out) {
-  const auto target = drive::resolve(profile_, name);
-  if (!target) return tl::unexpected<Error>(target.error());
-  const auto before = session_->upload(node_, target->address);
+  const auto request = setting_write(*profile_, node_, {name, value});
+  if (!request) return tl::unexpected<Error>(request.error());
+  const auto before = session_->upload(node_, request->object);
   if (!before) return tl::unexpected<Error>(before.error());
-  const auto data = od::encode(drive::meaning(*target, node_).type, od::Value(value));
-  if (!data) return tl::unexpected<Error>(data.error());
-  if (*before == *data) return {};
+  if (*before == *request->data) return {};
   // Noted first: an answer that is lost may belong to a write that was done.
-  out = Changed{target->address, *before, *data};
-  return write(target->address, *data);
+  out = Changed{request->object, *before, *request->data};
+  return write(request->object, *request->data);
 }
 
 Result<void> StorageScope::write(ObjectAddress object, const Bytes& data) {
@@ -172,7 +162,7 @@ Result<void> StorageScope::prepare(bool unlock, bool choose) {
   const bool has_password = password != nullptr && password->object && rules.unlock_open;
   // Refused before anything is written.
   if (unlock && !has_password)
-    return fail(about(node_, Errc::usage, "this family has no password that the bus can give", {}));
+    return fail(drive_error(Errc::usage, node_, "this family has no password that the bus can give", {}));
   if (choose)
     if (const auto chosen = choose_memory(); !chosen) return chosen;
   return unlock ? set(rules.unlock, *rules.unlock_open, password_) : Result<void>();
