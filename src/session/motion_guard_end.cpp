@@ -75,7 +75,9 @@ void MotionGuard::bring_down() {
         "it did not obey 0000h, which was written {} times: whatever state it is in now was not commanded",
         done.ignored));
   else if (!done.outcome)
-    result_.left.push_back("its power could not be taken away: " + done.outcome.error().message);
+    result_.left.push_back(
+        (powered_ ? "its power could not be taken away: " : "its last word was not taken: ") +
+        done.outcome.error().message);
   if (lost_) disarm();
 }
 

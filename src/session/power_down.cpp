@@ -44,10 +44,10 @@ void PowerDown::begin() {
   pause_ = TimePoint::min();
   has_seen_ = gently_ = woken_ = false;
   silences_ = 0;
-  tries_ = means_ = 0;
+  tries_ = means_ = held_ = 0;
   first_speed_.reset();
   standing_since_.reset();
-  refused_.reset();
+  untaken_ = "no answer";
   unread_.reset();
 }
 

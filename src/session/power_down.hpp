@@ -149,8 +149,9 @@ class PowerDown final : public Dialogue {
   std::optional<double> first_speed_;
   std::optional<double> fastest_;
   std::optional<TimePoint> standing_since_;
-  std::optional<Error> refused_;  ///< The last command that was not acknowledged.
-  std::optional<Error> unread_;   ///< Why the statusword was not read last.
+  int held_ = 0;                 ///< How often 6040h was seen to keep what enables.
+  std::string untaken_;          ///< Why the last command is not in 6040h.
+  std::optional<Error> unread_;  ///< Why the statusword was not read last.
 };
 
 /// What is written to a drive that follows and of which nothing more is known, in order; NMT where it does

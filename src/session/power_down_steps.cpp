@@ -72,7 +72,7 @@ void PowerDown::on_slowing_speed(const Result<Bytes>& answer, TimePoint now) {
 
 void PowerDown::on_quick_stop(const Result<Bytes>& answer, TimePoint now) {
   result_.written = answer.has_value();
-  if (!answer) refused_ = answer.error();
+  if (!answer) untaken_ = answer.error().message;
   enter(State::stopping, now);
 }
 
@@ -113,7 +113,10 @@ void PowerDown::on_stopping_speed(const Result<Bytes>& answer, TimePoint now) {
 }
 
 void PowerDown::after_stop(TimePoint now) {
-  if (plan_.aim == PowerAim::stop) return end_stop();
+  if (plan_.aim == PowerAim::stop) {
+    const bool fell_out = has_seen_ && !drive::is_energised(seen_);
+    return fell_out && result_.written ? enter(State::holding, now) : end_stop();
+  }
   // What turns is not let go gently.
   const bool gently =
       has_seen_ && seen_ == DriveState::operation_enabled && (result_.stopped || !plan_.gentle);
@@ -135,7 +138,7 @@ void PowerDown::on_switching_off(const Result<Bytes>& answer, TimePoint now) {
 void PowerDown::on_cut(const Result<Bytes>& answer, TimePoint now) {
   ++tries_;
   result_.written = answer.has_value();
-  refused_ = answer ? std::nullopt : std::optional(answer.error());
+  if (!answer) untaken_ = answer.error().message;
   enter(State::cutting, now);
 }
 
@@ -150,16 +153,20 @@ void PowerDown::on_cutting(const Result<Bytes>& answer, TimePoint now) {
   cut_again(now);
 }
 
-/// A drive that acknowledges 0000h and does not take it (another master commands it, or its panel) keeps what
-/// starts it again. One that does not tell has acknowledged it, and that is all that is known.
+/// A drive without power that acknowledges a word and does not take it (another master commands it, or its
+/// panel) keeps what starts it again. One that does not tell has acknowledged it, and that is all that is
+/// known.
 void PowerDown::on_holding(const Result<Bytes>& answer, TimePoint now) {
+  const bool stops = plan_.aim == PowerAim::stop;
   const auto word = answer && answer->size() <= 2 ? load_le(*answer) : 0;
-  if ((word & kEnables) != kEnables) return end_cut();
-  result_.written = false;
-  refused_ = drive_error(Errc::negative, plan_.node,
-                         fmt::format("it was acknowledged, and 6040h still reads 0x{:04X}", word), {});
-  if (tries_ >= kTries) return end_cut();
-  enter(State::cut, now);
+  const bool enables = (word & kEnables) == kEnables;
+  if (enables) {
+    result_.written = false;
+    untaken_ = fmt::format("the write was acknowledged, and it still reads 0x{:04X}", word);
+    if (++held_ < kTries) return enter(stops ? State::quick_stop : State::cut, now);
+  }
+  if (stops) return end_stop();
+  end_cut();
 }
 
 /// In the end by NMT: some families are disabled outside of Operational, others react to "stop" by 6007h.
@@ -184,11 +191,11 @@ void PowerDown::end_stop() {
   if (unread_) return finish(tl::unexpected<Error>(*unread_));
   const auto state = seen_;
   if (!drive::is_energised(state) && !result_.written) {
-    return finish(fail(
-        drive_error(Errc::negative, plan_.node,
-                    fmt::format("is in {}, and 6040h could not be written ({}): it may start again by itself",
-                                drive::name(state), refused_ ? refused_->message : "no answer"),
-                    "`disable` it, or take the power away")));
+    return finish(fail(drive_error(
+        Errc::negative, plan_.node,
+        fmt::format("is in {}, and 6040h has not taken {:04X}h ({}): it may start again by itself",
+                    drive::name(state), kQuickStopWord, untaken_),
+        "`disable` it, or take the power away")));
   }
   if (!drive::is_energised(state) || result_.stopped) return finish({});
   const bool followed = state == DriveState::quick_stop_active;
@@ -207,8 +214,8 @@ void PowerDown::end_cut() {
   if (is_without_power(state))
     return finish(fail(drive_error(
         Errc::negative, plan_.node,
-        fmt::format("is in {}, and 0000h could not be written to 6040h ({}): it may start again by itself",
-                    drive::name(state), refused_ ? refused_->message : "no answer"),
+        fmt::format("is in {}, and 6040h has not taken {:04X}h ({}): it may start again by itself",
+                    drive::name(state), kDisableVoltageWord, untaken_),
         "take the power away before anybody goes near the machine")));
   if (brakes(state))
     return finish(

@@ -29,6 +29,7 @@ struct Misbehaviour {
   std::uint32_t duplicate_answers = 0;           ///< So many SDO answers arrive twice.
   Duration answer_delay{};                       ///< Every SDO answer comes this late.
   std::set<std::uint16_t> missing;               ///< Objects that its EDS tells of and it does not have.
+  std::set<std::uint16_t> unreadable;            ///< Objects whose reads it refuses.
   std::set<std::uint16_t> feigned;               ///< Objects whose writes it acknowledges and does not do.
   std::set<std::uint16_t> refused;               ///< Objects whose writes it refuses.
   bool ignores_disable = false;                  ///< Takes 00h, 02h and 07h, and stays energised.

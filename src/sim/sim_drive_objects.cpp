@@ -14,6 +14,7 @@ using canopen::NmtState;
 
 std::uint32_t SimDrive::read(ObjectAddress object, Bytes& out) {
   if (misbehaviour_.missing.contains(object.index)) return abort::kNoObject;
+  if (misbehaviour_.unreadable.contains(object.index)) return abort::kWriteOnly;
   if (const auto code = values_.check_read(object); code != 0) return code;
   move_axis();
   if (object == objects::kStatusword && misbehaviour_.statusword) {

@@ -93,6 +93,47 @@ TEST_P(WayOutInTrouble, ADriveThatIgnoresTheWordsIsToldAlsoWhenItTripsLater) {
   EXPECT_EQ(done.end.verified, !bench.energised());
 }
 
+/// Without power by itself (STO), and 6040h keeps what starts it again although the writes were acknowledged.
+TEST_P(WayOutInTrouble, AWordThatIsAcknowledgedAndNotTakenIsNoEnd) {
+  MotionBench bench(family(), GetParam().turn);
+  int samples = 0;
+  bench.options.on_sample = [&](const MotionSample&) {
+    if (++samples != 10) return;
+    bench.drive().set_torque_off(true);
+    bench.drive().misbehaviour().feigned = {0x6040};
+  };
+  const auto done = bench.jog(jog_for("60rpm", 3s));
+  ASSERT_FALSE(done.end.left.empty());
+  EXPECT_NE(done.end.left.front().find(
+                "6040h has not taken 0000h (the write was acknowledged, and it still reads 0x"),
+            std::string::npos)
+      << done.end.left.front();
+}
+
+TEST_P(WayOutInTrouble, AQuickStopThatIsAcknowledgedAndNotTakenIsNoEnd) {
+  for (const bool feigns : {true, false}) {
+    Several one(family(), 1);
+    one.drive(1).set_torque_off(true);
+    if (feigns) one.drive(1).misbehaviour().feigned = {0x6040};
+    const auto done = one.take_down(PowerAim::stop).front();
+    EXPECT_EQ(done.outcome.has_value(), !feigns);
+    if (feigns) {
+      EXPECT_NE(done.outcome.error().message.find("6040h has not taken 0002h (the write was acknowledged"),
+                std::string::npos)
+          << done.outcome.error().message;
+    }
+  }
+}
+
+/// What 6040h holds cannot be known then: the acknowledge is all there is.
+TEST_P(WayOutInTrouble, AControlwordThatCannotBeReadIsTakenForWhatWasAcknowledged) {
+  Several one(family(), 1);
+  one.drive(1).misbehaviour().unreadable = {0x6040};
+  const auto done = one.take_down(PowerAim::disable).front();
+  EXPECT_TRUE(done.outcome);
+  EXPECT_TRUE(done.is_without_power());
+}
+
 TEST_P(WayOutInTrouble, SwitchedOnIsNotWithoutPower) {
   MotionBench bench(family(), GetParam().turn);
   bench.drive().misbehaviour().stays_switched_on = true;
