@@ -13,14 +13,14 @@ namespace {
 
 using session::FamilyVerdict;
 
-std::string forcing_hint(const FamilyVerdict& verdict, std::uint8_t node) {
+std::string forcing_hint(std::span<const std::string> fitting, std::uint8_t node) {
   const std::string_view force = "--force-family goes on all the same";
-  if (verdict.fitting.empty())
+  if (fitting.empty())
     return fmt::format(
         "no family fits it: look at the nameplate; `info -n {}` tells what it says of itself; {}", node,
         force);
-  return fmt::format("its identity fits {}: when the nameplate says so, add -d {}; {}",
-                     one_of(verdict.fitting), verdict.fitting.front(), force);
+  return fmt::format("its identity fits {}: when the nameplate says so, add -d {}; {}", one_of(fitting),
+                     fitting.front(), force);
 }
 
 }  // namespace
@@ -96,18 +96,17 @@ void FamilyGate::tell_known(std::span<const std::uint8_t> nodes, const drive::Pr
 Result<void> FamilyGate::hold_one(const session::Identity& identity, const drive::Profile& profile,
                                   bool refuses) {
   const auto families = drive::find_families(options_.folders);
-  auto verdict = session::judge_family(identity, profile, families);
+  const auto verdict = session::judge_family(identity, profile, families);
   const auto node = identity.node;
   if (verdict.kind == FamilyVerdict::Kind::proven) return {};
   const bool contradicted = verdict.kind == FamilyVerdict::Kind::contradicted;
-  if (contradicted && refuses) verdict.fitting = others(identity, families);
   if (contradicted && refuses && !options_.force) {
     Error error;
     error.code = Errc::refused;
     error.node = node;
     error.object = verdict.object;
     error.message = fmt::format("node {} is no {}: {}", node, profile.family, verdict.why);
-    error.hint = forcing_hint(verdict, node);
+    error.hint = forcing_hint(others(identity, families), node);
     return fail(std::move(error));
   }
   const bool unproven_read = !contradicted && !refuses;

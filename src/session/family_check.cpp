@@ -82,16 +82,16 @@ std::string held(const Identity& identity, const drive::Rules& rules) {
 /// The other family that the drive tells it is, where the one that was named says nothing against it.
 void judge_by_others(const Identity& identity, const drive::Profile& profile,
                      std::span<const drive::Family> families, FamilyVerdict& verdict) {
+  if (profile.of_file) return;
   for (const auto& family : families) {
-    if (equals_nocase(family.name, profile.family)) continue;
+    if (equals_nocase(family.name, profile.family) || equals_nocase(family.name, profile.rules.parent))
+      continue;
     const auto rules = drive::load_rules(family);
-    if (!rules || !may_be(identity, *rules)) continue;
-    verdict.fitting.push_back(family.name);
-    const bool related = profile.of_file || equals_nocase(family.name, profile.rules.parent);
-    if (verdict.kind == FamilyVerdict::Kind::contradicted || !is_telling(*rules) || related) continue;
+    if (!rules || !is_telling(*rules) || !may_be(identity, *rules)) continue;
     verdict.kind = FamilyVerdict::Kind::contradicted;
     verdict.object = rules->identity.front().object;
     verdict.why = fmt::format("its identity is that of {} ({})", family.name, held(identity, *rules));
+    return;
   }
 }
 
@@ -126,14 +126,13 @@ FamilyVerdict judge_family(const Identity& identity, const drive::Profile& profi
     out.object = mark->object;
     out.why = fmt::format("its {} is {}, that of {} is {}", to_string(mark->object),
                           drive_says(identity, *mark), profile.family, family_says(*mark));
-    judge_by_others(identity, profile, families, out);
     return out;
   }
   if (own_objects(identity, rules) == Says::no) {
     out.kind = FamilyVerdict::Kind::contradicted;
     out.object = rules.identity_looks.front();
-    out.why = fmt::format("it has no {}, which every {} has", names(rules.identity_looks), profile.family);
-    judge_by_others(identity, profile, families, out);
+    out.why =
+        fmt::format("it refuses to read {}, which every {} has", names(rules.identity_looks), profile.family);
     return out;
   }
   const auto* soft = violated(identity, rules, true);

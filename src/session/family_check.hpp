@@ -17,7 +17,6 @@ struct FamilyVerdict {
   Kind kind = Kind::unproven;
   std::string why;                      ///< Which object says what, and what the family says.
   std::optional<ObjectAddress> object;  ///< That contradicts.
-  std::vector<std::string> fitting;     ///< Families that fit instead.
 };
 
 /// Holds an identity against a family (or a file of the user's own) and the other families there are.
