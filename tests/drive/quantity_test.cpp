@@ -82,13 +82,18 @@ TEST(Quantity, OutOfRangeIsRefusedBeforeTheBus) {
   EXPECT_EQ(unsigned_of(parse_quantity(hertz(), "20000")), 20000U);
 }
 
-TEST(Quantity, MayBeALabelInEitherLanguage) {
-  const std::vector<od::EnumLabel> labels{{0, "Position mode", "位置模式"}, {8, "CANopen", ""}};
+Meaning labelled(const std::vector<od::EnumLabel>& labels) {
   auto mode = hertz();
   mode.unit = "";
   mode.scale = 1;
   mode.min.reset();
   mode.labels = &labels;
+  return mode;
+}
+
+TEST(Quantity, MayBeALabelInEitherLanguage) {
+  const std::vector<od::EnumLabel> labels{{0, "Position mode", "位置模式"}, {8, "CANopen", ""}};
+  const auto mode = labelled(labels);
   EXPECT_EQ(unsigned_of(parse_quantity(mode, "canopen")), 8U);
   EXPECT_EQ(unsigned_of(parse_quantity(mode, "位置模式")), 0U);
   expect_refused(mode, "speed", "'speed' is no value of this object", "values: 0 Position mode, 8 CANopen");
@@ -101,11 +106,7 @@ TEST(Quantity, MayBeWhatStandsInTheBracketOfALabel) {
                                           {4, "Torque (tq)", ""},
                                           {5, "Torque (held)", ""},
                                           {6, "Step (3)", ""}};
-  auto mode = hertz();
-  mode.unit = "";
-  mode.scale = 1;
-  mode.min.reset();
-  mode.labels = &labels;
+  const auto mode = labelled(labels);
   EXPECT_EQ(unsigned_of(parse_quantity(mode, "PV")), 3U);
   EXPECT_EQ(unsigned_of(parse_quantity(mode, "profile velocity")), 3U);
   EXPECT_EQ(unsigned_of(parse_quantity(mode, "tq")), 4U);
