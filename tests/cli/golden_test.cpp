@@ -74,8 +74,13 @@ std::vector<Case> read_cases() {
   return out;
 }
 
+struct Played {
+  std::string said;
+  int exit = 0;  ///< Of the last line.
+};
+
 /// Runs the lines of a case and tells all that came of them.
-std::string play(const Case& c, bool json) {
+Played play(const Case& c, bool json) {
   RecordingConsole console;
   Shell::Options options;
   options.drive_folders = {kSource / "eds", kSource / "tests/cli/data/drives"};
@@ -83,15 +88,15 @@ std::string play(const Case& c, bool json) {
   options.defaults.bus = "sim:gsd600@1";
   Shell shell(console, std::move(options));
   LineRunner runner(shell);
-  std::string out;
+  Played out;
   for (const auto& line : c.lines) {
     console.out_text.clear();
     console.err_text.clear();
     const auto typed = json ? line + " --json" : line;
-    const int code = runner.run(typed);
-    out += fmt::format("$ {}\n", printable(typed)) + console.out_text;
-    if (!console.err_text.empty()) out += "[stderr]\n" + console.err_text;
-    out += fmt::format("[exit {}]\n\n", code);
+    out.exit = runner.run(typed);
+    out.said += fmt::format("$ {}\n", printable(typed)) + console.out_text;
+    if (!console.err_text.empty()) out.said += "[stderr]\n" + console.err_text;
+    out.said += fmt::format("[exit {}]\n\n", out.exit);
   }
   return out;
 }
@@ -110,7 +115,13 @@ TEST_P(Golden, SaysWhatItSaidBefore) {
   ::setenv("SOURCE_DATE_EPOCH", "1795000000", 1);
   // Whole tables are long enough once.
   const bool table = GetParam().name.starts_with("table-") || GetParam().name.starts_with("commission-");
-  const auto said = play(GetParam(), false) + (table ? std::string() : play(GetParam(), true));
+  const auto text = play(GetParam(), false);
+  const auto json = table ? Played{} : play(GetParam(), true);
+  if (GetParam().name.starts_with("bad-")) {
+    EXPECT_NE(text.exit, 0) << "a case that goes well is not called bad";
+    EXPECT_NE(json.exit, 0) << "with --json";
+  }
+  const auto said = text.said + json.said;
   const auto path = kFolder / (GetParam().name + ".txt");
   if (std::getenv("SERVOCTL_REWRITE_GOLDEN") != nullptr) {
     std::ofstream(path) << said;
