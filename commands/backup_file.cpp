@@ -109,8 +109,7 @@ void tell(Context& context, const BackupSource& source, const Backup& backup) {
   std::string names;
   for (const auto& entry : backup.entries) {
     if (entry.bytes || ++left_out > kMostNamed) continue;
-    names += fmt::format("{}{} {} ({})", names.empty() ? "" : ", ", to_string(entry.object), entry.name,
-                         entry.left_out);
+    append(names, fmt::format("{} {} ({})", to_string(entry.object), entry.name, entry.left_out));
   }
   if (left_out > kMostNamed) names += fmt::format(" and {} more", left_out - kMostNamed);
   if (left_out > 0)

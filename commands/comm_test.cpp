@@ -8,6 +8,7 @@
 #include "commands/verdict.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/open_bus.hpp"
+#include "session/option_scope.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -25,22 +26,6 @@ constexpr double kHeartbeatTolerance = 0.2;
 /// From 96 on a controller warns (ISO 11898-1, 12.1.4).
 constexpr int kMostErrors = 95;
 constexpr Duration kLeastTolerance = std::chrono::milliseconds(10);
-
-/// Takes away the retries as long as it lives: a lost answer is to be seen.
-class WithoutRetries {
- public:
-  explicit WithoutRetries(session::Session& session)
-      : session_(&session), before_(session.options().retries) {
-    session.options().retries = 0;
-  }
-  WithoutRetries(const WithoutRetries&) = delete;
-  WithoutRetries& operator=(const WithoutRetries&) = delete;
-  ~WithoutRetries() { session_->options().retries = before_; }
-
- private:
-  session::Session* session_;
-  std::uint32_t before_;
-};
 
 class Communication {
  public:
@@ -68,7 +53,8 @@ class Communication {
   }
 
   Result<void> read_often() {
-    const WithoutRetries without(*session_);
+    const session::OptionScope once(*session_, &session::Options::retries,
+                                    0U);  // A lost answer is to be seen.
     std::uint32_t silent = 0;
     for (sent_ = 0; sent_ < test_.count && silent < kGone; ++sent_) {
       const auto begin = session_->now();

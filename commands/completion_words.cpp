@@ -23,7 +23,7 @@ std::string options_of(std::span<const Parameter> parameters, bool with_value_on
   std::string out;
   for (const auto& p : parameters) {
     if (!p.name.starts_with("-") || (with_value_only && p.kind == Kind::flag)) continue;
-    out += (out.empty() ? "" : " ") + std::string(p.name);
+    append(out, std::string(p.name), " ");
     if (with_value_only && !p.short_name.empty()) out += " " + std::string(p.short_name);
   }
   return out;
@@ -34,7 +34,7 @@ std::string first_words() {
   std::string last;
   for (const auto* command : registry()) {
     const auto word = std::string(split(command->path, ' ').front());
-    if (word != last) out += (out.empty() ? "" : " ") + word;
+    if (word != last) append(out, word, " ");
     last = word;
   }
   return out;
@@ -44,7 +44,7 @@ std::string second_words(std::string_view first) {
   std::string out;
   for (const auto* command : registry()) {
     const auto parts = split(command->path, ' ');
-    if (parts.size() > 1 && parts.front() == first) out += (out.empty() ? "" : " ") + std::string(parts[1]);
+    if (parts.size() > 1 && parts.front() == first) append(out, std::string(parts[1]), " ");
   }
   return out;
 }
@@ -61,9 +61,7 @@ std::string all_value_options() {
 
 std::string source_of(const Parameter& p) {
   if (!p.choices.empty()) {
-    std::string out = "=";
-    for (const auto choice : p.choices) out += (out.size() == 1 ? "" : " ") + std::string(choice);
-    return out;
+    return fmt::format("={}", fmt::join(p.choices, " "));
   }
   switch (p.kind) {
     case Kind::object: return "objects";

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/number.hpp"
+#include "base/text.hpp"
 #include "commands/records.hpp"
 #include "drive/standard_objects.hpp"
 
@@ -70,7 +71,7 @@ std::string quotient_text(const Quotient& quotient) {
 
 std::string ways_text(const drive::Quotients& ways) {
   std::string out;
-  for (const auto& way : ways) out += (out.empty() ? "" : "; ") + quotient_text(way);
+  for (const auto& way : ways) append(out, quotient_text(way), "; ");
   return out;
 }
 
@@ -211,7 +212,7 @@ Value cautions(const Rules& rules, bool chinese) {
 /// As a paragraph: sentences in a row, a list would put commas between them.
 Value caution_text(const Rules& rules, bool chinese) {
   std::string out;
-  for (const auto& caution : rules.cautions) out += (out.empty() ? "" : " ") + text_of(caution, chinese);
+  for (const auto& caution : rules.cautions) append(out, text_of(caution, chinese), " ");
   return report::text_or_null(out);
 }
 

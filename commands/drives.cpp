@@ -1,3 +1,4 @@
+#include "base/text.hpp"
 #include "commands/command.hpp"
 #include "commands/drive_rules.hpp"
 
@@ -32,8 +33,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   }
   if (table.rows.empty()) {
     std::string folders;
-    for (const auto& folder : context.drive_folders)
-      folders += (folders.empty() ? "" : ", ") + folder.string();
+    for (const auto& folder : context.drive_folders) append(folders, folder.string());
     return fail(Errc::file, "no drive data was found in " + folders,
                 "set SERVOCTL_DRIVES to the folder that holds it");
   }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/text.hpp"
 #include "canopen/emergency.hpp"
 #include "commands/records.hpp"
 
@@ -89,7 +90,7 @@ std::string fault_words(const drive::Profile* profile, bool chinese, std::uint16
   }
   std::string panels;
   for (const auto* fault : found)
-    panels += (panels.empty() ? "" : ", ") + (fault->panel.empty() ? name_of(*fault, chinese) : fault->panel);
+    append(panels, (fault->panel.empty() ? name_of(*fault, chinese) : fault->panel));
   return fmt::format("one of {} alarms: {}", found.size(), panels);
 }
 

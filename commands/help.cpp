@@ -102,7 +102,7 @@ std::string program_help(std::size_t width) {
 
 Result<report::Value> run(Context&, const Arguments& arguments) {
   std::string path;
-  for (const auto& word : arguments.all("command")) path += (path.empty() ? "" : " ") + word;
+  for (const auto& word : arguments.all("command")) append(path, word, " ");
   auto text = help_text(path, 0);
   if (!text) return tl::unexpected<Error>(text.error());
   if (!text->empty() && text->back() == '\n') text->pop_back();

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "base/text.hpp"
 #include "commands/command.hpp"
 #include "commands/records.hpp"
 
@@ -27,7 +28,7 @@ int rank(const od::Parameter& p, std::string_view word) {
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   std::vector<std::pair<int, const od::Parameter*>> found;
   std::string said;
-  for (const auto& word : arguments.all("word")) said += (said.empty() ? "" : " ") + word;
+  for (const auto& word : arguments.all("word")) append(said, word, " ");
   for (const auto& parameter : context.profile->parameters) {
     int worst = 0;
     for (const auto& word : arguments.all("word")) worst = std::max(worst, rank(parameter, word));

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "base/text.hpp"
 #include "canopen/nmt.hpp"
 #include "commands/change.hpp"
 #include "commands/keeping_nodes.hpp"
@@ -153,9 +154,8 @@ class Changing {
   std::string question() const {
     std::string pdos;
     std::string nodes;
-    for (const auto& job : jobs_) nodes += fmt::format("{}{}", nodes.empty() ? "" : ", ", job.present.node);
-    for (const auto& pdo : jobs_.front().wanted.pdos)
-      pdos += (pdos.empty() ? "" : ", ") + canopen::name(pdo.direction, pdo.number);
+    for (const auto& job : jobs_) append(nodes, fmt::format("{}", job.present.node));
+    for (const auto& pdo : jobs_.front().wanted.pdos) append(pdos, canopen::name(pdo.direction, pdo.number));
     return fmt::format("Change {} of node {}? Whoever sends or receives {} has to know.", pdos, nodes,
                        jobs_.front().wanted.pdos.size() == 1 ? "it" : "them");
   }

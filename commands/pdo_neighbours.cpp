@@ -6,7 +6,7 @@
 
 #include "canopen/cob_id.hpp"
 #include "commands/pdo_report.hpp"
-#include "session/hurry.hpp"
+#include "session/option_scope.hpp"
 #include "session/power.hpp"
 
 namespace servoctl::commands {

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "base/text.hpp"
 #include "commands/pdo_changing.hpp"
 
 namespace servoctl::commands {
@@ -22,8 +23,7 @@ Result<Pdo> find_pdo(const PresentPdos& present, std::string_view name) {
     return fail(Errc::usage, fmt::format("'{}' names no PDO", name), "RPDO1, TPDO2: as the drive sees them");
   if (const auto* found = present.find(*like)) return *found;
   std::string there;
-  for (const auto& pdo : present.pdos)
-    there += (there.empty() ? "" : ", ") + canopen::name(pdo.direction, pdo.number);
+  for (const auto& pdo : present.pdos) append(there, canopen::name(pdo.direction, pdo.number));
   return fail(Errc::usage,
               fmt::format("node {} has no {}", present.node, canopen::name(like->direction, like->number)),
               there.empty() ? "it has no PDOs that can be read" : "it has " + there);

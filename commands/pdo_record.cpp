@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/bytes.hpp"
+#include "base/text.hpp"
 #include "commands/backup_file.hpp"
 #include "session/open_bus.hpp"
 
@@ -68,7 +69,7 @@ bool is_other_drive(const Identity& one, const Identity& other) {
 /// Such as `vendor 0x2E, product 0x26, serial 7`.
 std::string text_of(const Identity& drive) {
   std::string out;
-  const auto add = [&](const std::string& part) { out += (out.empty() ? "" : ", ") + part; };
+  const auto add = [&](const std::string& part) { append(out, part); };
   if (drive.vendor_id) add(fmt::format("vendor 0x{:X}", *drive.vendor_id));
   if (drive.product_code) add(fmt::format("product 0x{:X}", *drive.product_code));
   if (drive.serial) add(fmt::format("serial {}", *drive.serial));

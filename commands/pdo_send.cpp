@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "base/text.hpp"
 #include "commands/change.hpp"
 #include "commands/command.hpp"
 #include "commands/pdo_use.hpp"
@@ -44,7 +45,7 @@ Result<void> check_count(const PdoView& view, std::size_t given) {
   std::vector<std::string> names;
   for (const auto& field : view.fields) names.push_back(field.name);
   std::string order;
-  for (const auto& name : names) order += (order.empty() ? "" : ", ") + name;
+  for (const auto& name : names) append(order, name);
   return fail(Errc::usage,
               fmt::format("{} carries {} value{}, {} given", view.name, names.size(),
                           names.size() == 1 ? "" : "s", given),

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "base/text.hpp"
 #include "commands/command.hpp"
 #include "commands/pdo_record.hpp"
 #include "commands/pdo_report.hpp"
@@ -48,8 +49,7 @@ bool mapping_differs(const Values& present, const Values& factory, const Pdo& pd
 
 std::string factory_mapping(const Context& context, const Pdo& factory) {
   std::string out;
-  for (const auto& entry : factory.entries)
-    out += (out.empty() ? "" : ", ") + mapped_name(context.profile, entry, context.chinese);
+  for (const auto& entry : factory.entries) append(out, mapped_name(context.profile, entry, context.chinese));
   return out.empty() ? "nothing mapped" : out;
 }
 

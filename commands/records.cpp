@@ -33,7 +33,7 @@ Value words(std::string_view text) {
 
 std::string flags_of(const od::Parameter& p) {
   std::string out;
-  const auto add = [&](std::string_view word) { out += (out.empty() ? "" : " ") + std::string(word); };
+  const auto add = [&](std::string_view word) { append(out, std::string(word), " "); };
   if (p.command) add("command");
   if (p.is_volatile) add("volatile");
   if (p.mirror) add("mirror=" + to_string(*p.mirror));

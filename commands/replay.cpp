@@ -2,6 +2,7 @@
 #include <functional>
 
 #include "base/number.hpp"
+#include "base/text.hpp"
 #include "canopen/sdo_abort.hpp"
 #include "commands/command.hpp"
 #include "commands/frame_decoder.hpp"
@@ -33,8 +34,7 @@ constexpr Parameter kParameters[] = {
 
 std::string question(const ReplayPlan& plan, std::string_view file, std::string_view bus) {
   std::string services;
-  for (const auto& [service, count] : plan.services)
-    services += fmt::format("{}{} {}", services.empty() ? "" : ", ", count, service);
+  for (const auto& [service, count] : plan.services) append(services, fmt::format("{} {}", count, service));
   auto out =
       fmt::format("Send the {} frames of {} on {} again ({})?", plan.frames.size(), file, bus, services);
   if (!plan.moving.empty())
@@ -160,7 +160,7 @@ void tell_plan(Context& context, const ReplayPlan& plan, std::string_view file) 
             : fmt::format("{} frames with identifiers of 29 bits are left out: such are not replayed",
                           plan.extended));
   std::string dropped;
-  for (const auto id : plan.dropped) dropped += fmt::format("{}0x{:03X}", dropped.empty() ? "" : ", ", id);
+  for (const auto id : plan.dropped) append(dropped, fmt::format("0x{:03X}", id));
   if (!dropped.empty())
     context.notices.push_back(
         fmt::format("left out as TPDOs by their CAN-ID, which no drive and no family confirms: {}", dropped));

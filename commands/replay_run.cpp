@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "canopen/cob_id.hpp"
-#include "session/hearing.hpp"
+#include "session/option_scope.hpp"
 
 namespace servoctl::commands {
 namespace {

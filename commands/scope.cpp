@@ -6,12 +6,13 @@
 #include <vector>
 
 #include "base/file.hpp"
+#include "base/text.hpp"
 #include "commands/command.hpp"
 #include "commands/listening.hpp"
 #include "commands/sampler.hpp"
 #include "commands/scope_mapping.hpp"
 #include "report/svg.hpp"
-#include "session/hearing.hpp"
+#include "session/option_scope.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -133,7 +134,7 @@ Result<std::vector<std::unique_ptr<ScopeMapping>>> map_objects(Context& context,
     if (const auto right = context.hold_family(context.nodes, context.profile, true); !right)
       return tl::unexpected<Error>(right.error());
   std::string nodes;
-  for (const auto node : context.nodes) nodes += fmt::format("{}{}", nodes.empty() ? "" : ", ", node);
+  for (const auto node : context.nodes) append(nodes, fmt::format("{}", node));
   if (const auto sure = context.confirm(fmt::format(
           "Put the objects into a spare TPDO of node {} while sampling, and put it back after?", nodes));
       !sure)

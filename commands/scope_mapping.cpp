@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/text.hpp"
 #include "commands/pdo_changing.hpp"
 #include "commands/pdo_check.hpp"
-#include "session/deaf.hpp"
 #include "session/nmt_pause.hpp"
+#include "session/option_scope.hpp"
 #include "session/pdo_change.hpp"
 #include "session/pdo_setup.hpp"
 
@@ -120,7 +121,7 @@ std::string ScopeMapping::astray() const {
   std::string out;
   for (std::size_t i = 0; i < answers.size(); ++i)
     if (const auto object = questions[i].object; !answers[i] || *answers[i] != wanted.at(object))
-      out += (out.empty() ? "" : ", ") + to_string(object);
+      append(out, to_string(object));
   return out;
 }
 

@@ -8,6 +8,7 @@
 #include "drive/cia402.hpp"
 #include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
+#include "session/answer.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -24,17 +25,12 @@ constexpr std::size_t kCount = std::size(kObjects);
 /// Longest wait for a heartbeat that tells the NMT state.
 constexpr Duration kMostPatience = std::chrono::seconds(3);
 
-std::optional<std::uint64_t> number(const Result<Bytes>& bytes) {
-  if (!bytes || bytes->empty() || bytes->size() > 8) return std::nullopt;
-  return load_le(*bytes);
-}
-
 /// Waits until every node that sends heartbeats was heard.
 Result<void> hear_heartbeats(Context& context, std::span<const Result<Bytes>> answers) {
   Duration longest{};
   std::vector<std::uint8_t> expected;
   for (std::size_t i = 0; i < context.nodes.size(); ++i) {
-    const auto period = number(answers[i * kCount + 4]);
+    const auto period = session::number_in(answers[i * kCount + 4]);
     if (!period || *period == 0 || context.session->watch().state(context.nodes[i])) continue;
     expected.push_back(context.nodes[i]);
     longest = std::max<Duration>(longest, std::chrono::milliseconds(*period & 0xFFFFU) * 3 / 2);
@@ -75,21 +71,21 @@ void add_drive_state(Record& out, const Context& context, std::optional<std::uin
 }
 
 void add_mode_and_fault(Record& out, const Context& context, std::span<const Result<Bytes>> answers) {
-  if (const auto mode = number(answers[1])) {
+  if (const auto mode = session::number_in(answers[1])) {
     const auto value = static_cast<std::int8_t>(*mode);
     const auto text = mode_text(context, value);
     out.push_back(
         {"mode", text.empty() ? fmt::format("{}", value) : fmt::format("{} {}", value, text), Show::text});
     out.push_back({"mode", Record{{"value", value}, {"label", report::text_or_null(text)}}, Show::json});
   }
-  if (const auto code = number(answers[2])) {
+  if (const auto code = session::number_in(answers[2])) {
     const auto text = fault_words(context.profile, context.chinese, static_cast<std::uint16_t>(*code));
     out.push_back(
         {"fault", *code == 0 ? std::string("none") : fmt::format("0x{:04X} {}", *code, text), Show::text});
     out.push_back(
         {"fault", *code == 0 ? Value() : Value(Record{{"code", *code}, {"text", text}}), Show::json});
   }
-  if (const auto bits = number(answers[3])) {
+  if (const auto bits = session::number_in(answers[3])) {
     const auto text = canopen::error_register_text(static_cast<std::uint8_t>(*bits));
     out.push_back({"error_register", fmt::format("0x{:02X} {}", *bits, text), Show::text, "error register"});
     out.push_back({"error_register", *bits, Show::json});
@@ -99,7 +95,7 @@ void add_mode_and_fault(Record& out, const Context& context, std::span<const Res
 Record one(Context& context, std::uint8_t node, std::span<const Result<Bytes>> answers) {
   Record out{{"node", node}};
   const auto nmt = context.session->watch().state(node);
-  const auto heartbeat = number(answers[4]);
+  const auto heartbeat = session::number_in(answers[4]);
   const bool has_no_heartbeat = !answers[4] && answers[4].error().code == Errc::sdo_abort;
   out.push_back(
       {"nmt",
@@ -109,7 +105,7 @@ Record one(Context& context, std::uint8_t node, std::span<const Result<Bytes>> a
                                                       : "not heard"),
        Show::text, "NMT state"});
   out.push_back({"nmt", nmt ? Value(canopen::name(*nmt)) : Value(), Show::json});
-  add_drive_state(out, context, number(answers[0]), number(answers[1]));
+  add_drive_state(out, context, session::number_in(answers[0]), session::number_in(answers[1]));
   add_mode_and_fault(out, context, answers);
   return out;
 }

@@ -7,7 +7,7 @@
 #include "commands/command.hpp"
 #include "commands/listening.hpp"
 #include "commands/sync_end.hpp"
-#include "session/hearing.hpp"
+#include "session/option_scope.hpp"
 
 namespace servoctl::commands {
 namespace {

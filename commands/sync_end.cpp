@@ -4,7 +4,7 @@
 
 #include "commands/rhythm_table.hpp"
 #include "drive/standard_objects.hpp"
-#include "session/deaf.hpp"
+#include "session/option_scope.hpp"
 
 namespace servoctl::commands {
 namespace {

@@ -50,6 +50,11 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
   return parts;
 }
 
+void append(std::string& list, std::string_view part, std::string_view separator) {
+  if (!list.empty()) list += separator;
+  list += part;
+}
+
 std::size_t display_width(std::string_view text) {
   std::size_t width = 0;
   while (!text.empty()) {

@@ -21,6 +21,9 @@ std::vector<std::string_view> split(std::string_view text, char separator);
 std::vector<std::string_view> split(std::string&& text,
                                     char separator) = delete;  // The parts would outlive the text.
 
+/// Adds a part to a list in words; `separator` stands between the parts.
+void append(std::string& list, std::string_view part, std::string_view separator = ", ");
+
 /// Columns the text takes on a terminal: two for East Asian wide characters, none for combining ones. UTF-8;
 /// a bad byte counts as one column.
 std::size_t display_width(std::string_view text);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/number.hpp"
+#include "base/text.hpp"
 #include "cli/result_path.hpp"
 
 namespace servoctl::cli {
@@ -255,7 +256,7 @@ Result<Expression> parse_expression(std::string_view text, const VariableLookup&
 std::string to_string(const Expression& expression) {
   std::string out;
   for (const auto& comparison : expression) {
-    out += (out.empty() ? "" : " and ") + written(comparison.left);
+    append(out, written(comparison.left), " and ");
     if (comparison.comparator != Comparator::holds)
       out += fmt::format(" {} {}", symbol(comparison.comparator), written(comparison.right));
   }

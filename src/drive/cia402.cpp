@@ -1,4 +1,5 @@
 #include "drive/cia402.hpp"
+#include "base/text.hpp"
 
 #include <fmt/format.h>
 #include <array>
@@ -131,8 +132,7 @@ std::string device_kind(std::uint32_t device_type) {
   constexpr std::string_view kKinds[] = {"frequency converter", "servo drive", "stepper motor"};
   std::string out;
   for (std::size_t i = 0; i < std::size(kKinds); ++i)
-    if ((device_type >> (16 + i) & 1U) != 0)
-      out += fmt::format("{}{}", out.empty() ? "" : " and ", kKinds[i]);
+    if ((device_type >> (16 + i) & 1U) != 0) append(out, fmt::format("{}", kKinds[i]), " and ");
   return "CiA 402, " + (out.empty() ? std::string("kind of drive not told") : out);
 }
 

@@ -45,7 +45,7 @@ std::optional<std::vector<Mark>> parse_marks(std::string_view text) {
 std::string to_text(const std::vector<Mark>& marks) {
   std::string out;
   for (const auto& mark : marks) {
-    out += (out.empty() ? "" : ", ") + mark.field;
+    append(out, mark.field);
     if (!mark.lines.empty())
       out += fmt::format(" ({} {})", mark.lines.size() == 1 ? "line" : "lines", fmt::join(mark.lines, ", "));
   }

@@ -52,8 +52,7 @@ class Thinned {
     // A single sample is a line of no length: its round ends are a dot.
     if (points_.size() == 1) points_.push_back(points_.front());
     std::string out;
-    for (const auto& point : points_)
-      out += fmt::format("{}{:.1f},{:.1f}", out.empty() ? "" : " ", point.x, point.y);
+    for (const auto& point : points_) append(out, fmt::format("{:.1f},{:.1f}", point.x, point.y), " ");
     points_.clear();
     return out;
   }
@@ -152,7 +151,7 @@ std::string svg_plot(std::span<const Series> series) {
   std::string drawing;
   double top = 0;
   for (const auto& one : series) {
-    names += (names.empty() ? "" : ", ") + title_of(one);
+    append(names, title_of(one));
     drawing += panel(one, time, top);
     top += height_of(one) + kGap;
   }

@@ -37,14 +37,13 @@ std::string line_text(const Value& value) {
                         [](const Hex& h) { return fmt::format("0x{:0{}X}", h.value, h.digits); },
                         [](const List& l) {
                           std::string out;
-                          for (const auto& v : l) out += (out.empty() ? "" : ", ") + line_text(v);
+                          for (const auto& v : l) append(out, line_text(v));
                           return out;
                         },
                         [](const Record& r) {
                           std::string out;
                           for (const auto& f : r)
-                            if (f.show != Show::json)
-                              out += (out.empty() ? "" : ", ") + f.key + "=" + line_text(f.value);
+                            if (f.show != Show::json) append(out, f.key + "=" + line_text(f.value));
                           return out;
                         },
                         [](const Table&) { return std::string(); },

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "base/text.hpp"
 #include "report/line.hpp"
 
 namespace servoctl::report {
@@ -63,7 +64,7 @@ std::string in_words(const Criterion& criterion) {
   if (criterion.relation == "<=") out += ", at most " + limit;
   if (criterion.relation == ">=") out += ", at least " + limit;
   if (criterion.relation == "=") out += ", wanted: " + limit;
-  if (!criterion.note.empty()) out += (out.empty() ? "" : "; ") + criterion.note;
+  if (!criterion.note.empty()) append(out, criterion.note, "; ");
   return out;
 }
 

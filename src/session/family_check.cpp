@@ -58,7 +58,7 @@ Says own_objects(const Identity& identity, const drive::Rules& rules) {
 
 std::string names(std::span<const ObjectAddress> objects) {
   std::string out;
-  for (const auto object : objects) out += (out.empty() ? "" : ", ") + to_string(object);
+  for (const auto object : objects) append(out, to_string(object));
   return out;
 }
 
@@ -74,8 +74,7 @@ const IdentityMark* violated(const Identity& identity, const drive::Rules& rules
 std::string held(const Identity& identity, const drive::Rules& rules) {
   std::string out;
   for (const auto& mark : rules.identity)
-    out +=
-        fmt::format("{}{} = {}", out.empty() ? "" : ", ", to_string(mark.object), drive_says(identity, mark));
+    append(out, fmt::format("{} = {}", to_string(mark.object), drive_says(identity, mark)));
   return out;
 }
 

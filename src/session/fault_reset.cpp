@@ -5,7 +5,7 @@
 #include "drive/cia402.hpp"
 #include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
-#include "session/deaf.hpp"
+#include "session/option_scope.hpp"
 #include "session/power.hpp"
 #include "session/setting_write.hpp"
 

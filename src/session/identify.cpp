@@ -4,20 +4,11 @@
 #include <algorithm>
 
 #include "drive/standard_objects.hpp"
+#include "session/answer.hpp"
 #include "session/family_check.hpp"
 
 namespace servoctl::session {
 namespace {
-
-std::optional<std::uint32_t> number(const Result<Bytes>& answer) {
-  if (!answer || answer->empty() || answer->size() > 4) return std::nullopt;
-  return static_cast<std::uint32_t>(load_le(*answer));
-}
-
-std::string text(const Result<Bytes>& answer) {
-  if (!answer) return {};
-  return std::string(answer->begin(), std::find(answer->begin(), answer->end(), std::uint8_t{0}));
-}
 
 /// A node that refuses a read is there; one that does not answer, or is not reached, is not known.
 bool tells(const Result<Bytes>& answer) {
@@ -69,11 +60,11 @@ std::vector<Result<Identity>> identify(Session& session, std::span<const std::ui
     }
     Identity identity;
     identity.node = node;
-    identity.device_type = number(here[0]);
-    identity.vendor_id = number(here[1]);
-    identity.product_code = number(here[2]);
-    identity.device_name = text(here[3]);
-    if (with_revision) identity.revision = number(here[4]);
+    identity.device_type = u32_in(here[0]);
+    identity.vendor_id = u32_in(here[1]);
+    identity.product_code = u32_in(here[2]);
+    identity.device_name = text_in(here[3]);
+    if (with_revision) identity.revision = u32_in(here[4]);
     for (std::size_t i = looks_at; i < objects.size(); ++i)
       identity.looked.emplace(objects[i], here[i].has_value());
     session.identities().keep(identity, session.watch().boots(node));

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "session/hearing.hpp"
 #include "session/motion_units.hpp"
+#include "session/option_scope.hpp"
 #include "session/power.hpp"
 #include "session/rehearsal.hpp"
 #include "session/watchdog.hpp"

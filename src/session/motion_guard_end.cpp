@@ -5,11 +5,10 @@
 #include <utility>
 
 #include "drive/standard_objects.hpp"
-#include "session/deaf.hpp"
-#include "session/hurry.hpp"
 #include "session/link_wait.hpp"
 #include "session/motion_guard.hpp"
 #include "session/operation_mode.hpp"
+#include "session/option_scope.hpp"
 
 namespace servoctl::session {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "base/number.hpp"
 #include "drive/standard_objects.hpp"
-#include "session/hurry.hpp"
 #include "session/identify.hpp"
+#include "session/option_scope.hpp"
 #include "session/pdo_setup.hpp"
 #include "session/power.hpp"
 #include "session/producer_claim.hpp"

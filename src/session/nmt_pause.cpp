@@ -6,6 +6,7 @@
 
 #include "canopen/error_control.hpp"
 #include "drive/standard_objects.hpp"
+#include "session/answer.hpp"
 
 namespace servoctl::session {
 namespace {
@@ -15,10 +16,6 @@ using canopen::NmtState;
 
 /// Longest wait for a heartbeat.
 constexpr Duration kMostPatience = std::chrono::seconds(3);
-
-std::uint64_t number(const Result<Bytes>& answer) {
-  return answer && answer->size() <= 8 ? load_le(*answer) & 0xFFFFU : 0;
-}
 
 Result<void> tell(Session& session, std::uint8_t node, NmtCommand command) {
   session.watch().on_command(node);
@@ -34,10 +31,10 @@ Result<std::optional<NmtState>> ask_nmt_state(Session& session, std::uint8_t nod
   const auto answers = session.transfer(questions);
   for (const auto& answer : answers)
     if (!answer && answer.error().code != Errc::sdo_abort) return tl::unexpected<Error>(answer.error());
-  const auto period = std::chrono::milliseconds(number(answers[0]));
+  const auto period = std::chrono::milliseconds(number_in(answers[0]).value_or(0) & 0xFFFFU);
   auto patience = std::min<Duration>(period * 3 / 2, kMostPatience);
   if (period == Duration::zero()) {
-    if (number(answers[1]) != 0 && number(answers[2]) != 0) return std::nullopt;
+    if (number_in(answers[1]).value_or(0) != 0 && number_in(answers[2]).value_or(0) != 0) return std::nullopt;
     if (const auto sent = session.send(canopen::guarding_request(node)); !sent)
       return tl::unexpected<Error>(sent.error());
     patience = session.options().timeout;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/text.hpp"
 #include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/power.hpp"
@@ -14,8 +15,7 @@ constexpr Duration kPause = std::chrono::milliseconds(5);
 
 std::string known_modes(const drive::Meaning& meaning) {
   std::string out;
-  for (const auto& label : *meaning.labels)
-    out += fmt::format("{}{} {}", out.empty() ? "" : ", ", label.value, label.label);
+  for (const auto& label : *meaning.labels) append(out, fmt::format("{} {}", label.value, label.label));
   return out;
 }
 

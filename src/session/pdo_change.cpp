@@ -5,18 +5,14 @@
 
 #include "drive/cia402.hpp"
 #include "drive/standard_objects.hpp"
-#include "session/deaf.hpp"
 #include "session/nmt_pause.hpp"
+#include "session/option_scope.hpp"
 
 namespace servoctl::session {
 namespace {
 
 using canopen::Pdo;
 using drive::PdoRules;
-
-std::uint64_t number(const Bytes& bytes) {
-  return load_le(ByteSpan(bytes).first(std::min<std::size_t>(bytes.size(), 8)));
-}
 
 bool is_mapping(std::uint16_t index) {
   const auto place = canopen::pdo_at(index);
@@ -27,7 +23,7 @@ bool is_mapping(std::uint16_t index) {
 bool is_unused(ObjectAddress object, const Values& values) {
   const auto count = values.find({object.index, 0});
   return is_mapping(object.index) && object.sub > 0 && count != values.end() &&
-         object.sub > number(count->second);
+         object.sub > load_le(count->second);
 }
 
 /// How one attempt goes about it.
@@ -175,7 +171,7 @@ void add_stored_copies(const drive::Profile& profile, std::uint8_t node, Values&
     const auto size = od::size_of(parameter.type);
     if (found == wanted.end() || !size) continue;
     const bool added = std::count(with_node.begin(), with_node.end(), *parameter.mirror) > 0;
-    wanted.insert_or_assign(*parameter.object, store_le(number(found->second) - (added ? node : 0U), *size));
+    wanted.insert_or_assign(*parameter.object, store_le(load_le(found->second) - (added ? node : 0U), *size));
   }
 }
 
@@ -197,7 +193,7 @@ Result<void> complete(Session& session, std::uint8_t node, Values& present, cons
 Result<void> check_not_energised(Session& session, std::uint8_t node) {
   const auto word = session.upload(node, objects::kStatusword);
   if (!word && word.error().code != Errc::sdo_abort) return tl::unexpected<Error>(word.error());
-  if (!word || !drive::is_energised(drive::decode_state(static_cast<std::uint16_t>(number(*word)))))
+  if (!word || !drive::is_energised(drive::decode_state(static_cast<std::uint16_t>(load_le(*word)))))
     return {};
   Error error;
   error.code = Errc::refused;

@@ -23,9 +23,6 @@ constexpr std::uint16_t kMostPdos = 512;
 
 bool is_pdo(ObjectAddress object) { return canopen::pdo_at(object.index).has_value(); }
 
-/// A drive may answer with more bytes than any number has.
-std::uint64_t number(ByteSpan data) { return load_le(data.first(std::min<std::size_t>(data.size(), 8))); }
-
 /// What is read of each PDO before its entries: the communication record, and the count of the mapping.
 std::vector<ObjectAddress> heads_of(const drive::Profile& profile) {
   std::vector<ObjectAddress> out;
@@ -115,8 +112,8 @@ class Reading {
       for (const auto& [object, data] : *values_[i]) {
         const auto place = canopen::pdo_at(object.index);
         const bool list = !place || place->mapping;
-        if (!list || object.sub != 0 || number(data) > kMostEntries) continue;
-        for (std::uint8_t sub = 1; sub <= number(data); ++sub) out.push_back({object.index, sub});
+        if (!list || object.sub != 0 || load_le(data) > kMostEntries) continue;
+        for (std::uint8_t sub = 1; sub <= load_le(data); ++sub) out.push_back({object.index, sub});
       }
       return out;
     });
@@ -158,7 +155,7 @@ class Reading {
 std::optional<std::uint32_t> number(const Values& values, ObjectAddress object) {
   const auto found = values.find(object);
   return found == values.end() ? std::nullopt
-                               : std::optional(static_cast<std::uint32_t>(number(found->second)));
+                               : std::optional(static_cast<std::uint32_t>(load_le(found->second)));
 }
 
 template <class T>
@@ -247,7 +244,7 @@ Values default_pdo_values(const drive::Profile& profile, std::uint8_t node) {
                                                 : fail(Errc::usage, {});
     if (found == out.end() || !stored) continue;
     const bool add = std::count(with_node.begin(), with_node.end(), *parameter.mirror) > 0;
-    found->second = store_le(number(*stored) + (add ? node : 0U), found->second.size());
+    found->second = store_le(load_le(*stored) + (add ? node : 0U), found->second.size());
   }
   return out;
 }

@@ -5,9 +5,10 @@
 #include <cmath>
 #include <memory>
 
+#include "base/text.hpp"
 #include "drive/standard_objects.hpp"
-#include "session/deaf.hpp"
 #include "session/link_wait.hpp"
+#include "session/option_scope.hpp"
 #include "session/power.hpp"
 
 namespace servoctl::session {
@@ -207,7 +208,7 @@ std::vector<PowerDownResult> take_down(Session& session, std::vector<PowerDownPl
   std::vector<Dialogue*> dialogues;
   std::string nodes;
   for (auto& plan : plans) {
-    nodes += fmt::format("{}{}", nodes.empty() ? "" : ", ", plan.node);
+    append(nodes, fmt::format("{}", plan.node));
     drives.push_back(std::make_unique<PowerDown>(std::move(plan)));
     dialogues.push_back(drives.back().get());
   }

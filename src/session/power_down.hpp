@@ -25,16 +25,17 @@ enum class PowerAim : std::uint8_t {
   stop_and_disable,  ///< 02h, then 07h where it is still enabled, then 00h.
 };
 
+/// How a motion is ended before a quick stop is needed.
+struct GentleStop {
+  bool halt = false;                                        ///< By bit 8 of 6040h.
+  std::vector<std::pair<std::int8_t, SdoRequest>> targets;  ///< By mode: what sets its target to zero.
+};
+
 /// How one drive is taken down.
 struct PowerDownPlan {
   std::uint8_t node = 0;
   PowerAim aim = PowerAim::disable;
-  /// Where the motion is known, it is ended before a quick stop is needed.
-  struct Gentle {
-    bool halt = false;                                        ///< By bit 8 of 6040h.
-    std::vector<std::pair<std::int8_t, SdoRequest>> targets;  ///< By mode: what sets its target to zero.
-  };
-  std::optional<Gentle> gentle = {};
+  std::optional<GentleStop> gentle = {};  ///< Where the motion is known.
   /// Size of the speed in an answer of 606Ch, in the unit of `standstill`; empty when it says none. Without
   /// this, standstill is judged by the greatest speed seen.
   std::function<std::optional<double>(ByteSpan)> speed = {};

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "base/number.hpp"
+#include "base/text.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/operation_mode.hpp"
 #include "session/power.hpp"
@@ -105,7 +106,7 @@ class Preflight {
     bool limit = false;
     for (std::size_t i = 0; i < kNames.size(); ++i) {
       if (!rules.motion.is_actuated(word, rules.motion.inputs[i])) continue;
-      text += (text.empty() ? "" : ", ") + std::string(kNames[i]);
+      append(text, std::string(kNames[i]));
       limit = limit || i < 2;
     }
     if (text.empty()) text = "no limit, no home switch";

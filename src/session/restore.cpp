@@ -4,7 +4,7 @@
 #include <set>
 
 #include "canopen/pdo.hpp"
-#include "session/deaf.hpp"
+#include "session/option_scope.hpp"
 #include "session/write.hpp"
 
 namespace servoctl::session {

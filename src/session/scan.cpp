@@ -1,11 +1,13 @@
 #include "session/scan.hpp"
-#include "drive/standard_objects.hpp"
-#include "session/family_check.hpp"
-#include "session/identify.hpp"
 
 #include <algorithm>
 #include <array>
-#include <utility>
+
+#include "drive/standard_objects.hpp"
+#include "session/answer.hpp"
+#include "session/family_check.hpp"
+#include "session/identify.hpp"
+#include "session/option_scope.hpp"
 
 namespace servoctl::session {
 namespace {
@@ -14,25 +16,14 @@ constexpr std::array kNumbers{objects::kVendorId, objects::kProductCode, objects
                               objects::kSerialNumber};
 constexpr std::array kTexts{objects::kDeviceName, ObjectAddress{0x1009, 0}, ObjectAddress{0x100A, 0}};
 
-std::optional<std::uint32_t> number(const Result<Bytes>& answer) {
-  if (!answer || answer->empty() || answer->size() > 4) return std::nullopt;
-  return static_cast<std::uint32_t>(load_le(*answer));
-}
-
-std::string text(const Result<Bytes>& answer) {
-  if (!answer) return {};
-  std::string out(answer->begin(), answer->end());
-  while (!out.empty() && out.back() == '\0') out.pop_back();
-  return out;
-}
-
 /// The first nodes' worth of requests asks who is there.
 Result<std::vector<Identity>> find_nodes(Session& session, std::span<const std::uint8_t> nodes) {
   std::vector<SdoRequest> requests;
   for (const auto node : nodes) requests.push_back({node, objects::kDeviceType, {}});
-  const auto retries = std::exchange(session.options().retries, 0);
-  const auto answers = session.transfer(requests);
-  session.options().retries = retries;
+  const auto answers = [&] {
+    const OptionScope once(session, &Options::retries, 0U);
+    return session.transfer(requests);
+  }();
   std::vector<Identity> found;
   for (std::size_t i = 0; i < answers.size(); ++i) {
     if (!answers[i] && (answers[i].error().code == Errc::bus || answers[i].error().code == Errc::interrupted))
@@ -40,7 +31,7 @@ Result<std::vector<Identity>> find_nodes(Session& session, std::span<const std::
     if (!answers[i] && answers[i].error().code == Errc::timeout) continue;
     Identity identity;
     identity.node = nodes[i];
-    identity.device_type = number(answers[i]);
+    identity.device_type = u32_in(answers[i]);
     found.push_back(std::move(identity));
   }
   return found;
@@ -62,13 +53,13 @@ Result<std::vector<Identity>> scan(Session& session, std::span<const std::uint8_
   const auto answers = session.transfer(requests);
   auto at = answers.begin();
   for (auto& identity : *found) {
-    identity.vendor_id = number(*at++);
-    identity.product_code = number(*at++);
-    identity.revision = number(*at++);
-    identity.serial = number(*at++);
-    identity.device_name = text(*at++);
-    identity.hardware_version = text(*at++);
-    identity.software_version = text(*at++);
+    identity.vendor_id = u32_in(*at++);
+    identity.product_code = u32_in(*at++);
+    identity.revision = u32_in(*at++);
+    identity.serial = u32_in(*at++);
+    identity.device_name = text_in(*at++);
+    identity.hardware_version = text_in(*at++);
+    identity.software_version = text_in(*at++);
     identity.nmt = session.watch().state(identity.node);
     session.identities().keep(identity, session.watch().boots(identity.node));
   }

@@ -6,27 +6,12 @@
 #include <utility>
 
 #include "drive/standard_objects.hpp"
-#include "session/deaf.hpp"
+#include "session/option_scope.hpp"
 #include "session/power.hpp"
 #include "session/setting_write.hpp"
 
 namespace servoctl::session {
 namespace {
-
-/// The session with more patience for one answer.
-class Patience {
- public:
-  Patience(Session& session, Duration timeout) : session_(&session), before_(session.options()) {
-    session.options().timeout = std::max(before_.timeout, timeout);
-  }
-  Patience(const Patience&) = delete;
-  Patience& operator=(const Patience&) = delete;
-  ~Patience() { session_->options() = std::move(before_); }
-
- private:
-  Session* session_;
-  Options before_;
-};
 
 Result<std::vector<SdoRequest>> writes_of(const drive::Profile& profile, std::uint8_t node,
                                           std::span<const drive::Setting> settings) {
@@ -42,7 +27,7 @@ Result<std::vector<SdoRequest>> writes_of(const drive::Profile& profile, std::ui
 /// One after the other, each when the one before is done.
 Result<void> carry_out(Session& session, const Result<std::vector<SdoRequest>>& writes) {
   if (!writes) return tl::unexpected<Error>(writes.error());
-  const Patience patience(session, kStorePatience);
+  const OptionScope patience(session, &Options::timeout, std::max(session.options().timeout, kStorePatience));
   for (const auto& write : *writes)
     if (const auto done = session.download(write.node, write.object, *write.data); !done) return done;
   return {};

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "canopen/pdo.hpp"
-#include "session/hearing.hpp"
+#include "session/option_scope.hpp"
 
 namespace servoctl::session {
 

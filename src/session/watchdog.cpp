@@ -10,7 +10,7 @@
 #include "drive/naming.hpp"
 #include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
-#include "session/hurry.hpp"
+#include "session/option_scope.hpp"
 #include "session/power.hpp"
 
 namespace servoctl::session {

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <utility>
+
+#include "session/session.hpp"
+
+namespace servoctl::session {
+
+/// While it lives an option of the session has this value; then it has again the one before.
+template <typename Value>
+class OptionScope {
+ public:
+  OptionScope(Session& session, Value Options::*option, Value value)
+      : session_(&session),
+        option_(option),
+        before_(std::exchange(session.options().*option, std::move(value))) {}
+  OptionScope(const OptionScope&) = delete;
+  OptionScope& operator=(const OptionScope&) = delete;
+  ~OptionScope() { session_->options().*option_ = std::move(before_); }
+
+ private:
+  Session* session_;
+  Value Options::*option_;
+  Value before_;
+};
+
+/// While it lives the session does not hear Ctrl-C: what was begun at a drive is put in order first. Waits
+/// stay as short as they are, so the user is not kept for longer than a few timeouts.
+class Deaf : public OptionScope<std::function<bool()>> {
+ public:
+  explicit Deaf(Session& session) : OptionScope(session, &Options::cancelled, {}) {}
+};
+
+/// While it lives `on_frame` is told every frame the session receives, in every wait: transfers as well.
+class Hearing : public OptionScope<std::function<void(const can::Frame& frame, TimePoint time)>> {
+ public:
+  using OnFrame = std::function<void(const can::Frame& frame, TimePoint time)>;
+  Hearing(Session& session, OnFrame on_frame) : OptionScope(session, &Options::heard, std::move(on_frame)) {}
+};
+
+/// While it lives the session waits no longer than this for one answer, and asks no more often.
+class Hurry {
+ public:
+  Hurry(Session& session, Duration timeout, std::uint32_t retries)
+      : timeout_(session, &Options::timeout, std::min(session.options().timeout, timeout)),
+        retries_(session, &Options::retries, std::min(session.options().retries, retries)) {}
+
+ private:
+  OptionScope<Duration> timeout_;
+  OptionScope<std::uint32_t> retries_;
+};
+
+}  // namespace servoctl::session
