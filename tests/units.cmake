@@ -1,0 +1,51 @@
+# The tests that are programs of their own: one a layer, and the corpora of the fuzzers.
+find_package(GTest REQUIRED)
+include(GoogleTest)
+find_library(rapidcheck_library rapidcheck REQUIRED)
+
+# The path of the sources stands in one object, so that a compiler cache serves every checkout.
+add_library(servoctl_source_dir STATIC source_dir.cpp)
+target_include_directories(servoctl_source_dir PRIVATE ${CMAKE_SOURCE_DIR})
+target_compile_definitions(servoctl_source_dir PRIVATE SERVOCTL_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+
+# tests/ mirrors src/: one program a layer.
+function(servoctl_tests layer)
+  file(GLOB sources CONFIGURE_DEPENDS ${layer}/*_test.cpp ${layer}/*_support.cpp)
+  if(NOT sources)
+    return()
+  endif()
+  add_executable(${layer}_tests ${sources})
+  target_link_libraries(${layer}_tests PRIVATE ${ARGN} servoctl_options fmt::fmt GTest::gtest GTest::gtest_main ${rapidcheck_library})
+  target_include_directories(${layer}_tests PRIVATE ${CMAKE_SOURCE_DIR})
+  target_link_libraries(${layer}_tests PRIVATE servoctl_source_dir)
+  if(SERVOCTL_PCH AND layer STREQUAL "base")
+    target_precompile_headers(base_tests PRIVATE <algorithm> <chrono> <filesystem> <functional> <map> <memory> <optional> <span>
+                              <string> <variant> <vector> <fmt/format.h> <gtest/gtest.h> <tl/expected.hpp>)
+  elseif(SERVOCTL_PCH)
+    target_precompile_headers(${layer}_tests REUSE_FROM base_tests)
+  endif()
+  if(NOT SERVOCTL_TEST_SHARDS)
+    gtest_discover_tests(${layer}_tests DISCOVERY_TIMEOUT 60)
+    return()
+  endif()
+  # A process a shard instead of one a test: the sanitizers take their time to start.
+  math(EXPR last "${SERVOCTL_TEST_SHARDS} - 1")
+  foreach(shard RANGE ${last})
+    add_test(NAME Units.${layer}.${shard} COMMAND ${layer}_tests --gtest_brief=1)
+    set_tests_properties(Units.${layer}.${shard} PROPERTIES TIMEOUT 900
+                         ENVIRONMENT "GTEST_TOTAL_SHARDS=${SERVOCTL_TEST_SHARDS};GTEST_SHARD_INDEX=${shard}")
+  endforeach()
+endfunction()
+
+servoctl_tests(base servoctl_base)
+servoctl_tests(can servoctl_can)
+servoctl_tests(canopen servoctl_canopen)
+servoctl_tests(od servoctl_od)
+servoctl_tests(drive servoctl_drive)
+servoctl_tests(report servoctl_report)
+servoctl_tests(sim servoctl_sim)
+servoctl_tests(session servoctl_session)
+servoctl_tests(commands servoctl_commands)
+servoctl_tests(cli servoctl_cli)
+
+add_subdirectory(fuzz)
