@@ -162,6 +162,7 @@ Meaning meaning(const Target& target, std::uint8_t node) {
   out.scale = entry.scale;
   if (entry.low) out.min = entry.low->for_node(node);
   if (entry.high) out.max = entry.high->for_node(node);
+  out.least = entry.least;
   out.labels = entry.labels.empty() ? nullptr : &entry.labels;
   out.effect = entry.effect;
   out.encoding = entry.encoding;
@@ -186,7 +187,7 @@ Meaning fitted(Meaning meaning, std::size_t bytes) {
 Result<void> check_limits(const Meaning& meaning, const od::Value& value) {
   const bool low = meaning.min && compare(meaning, value, *meaning.min) < 0;
   const bool high = meaning.max && compare(meaning, value, *meaning.max) > 0;
-  if (!low && !high) return {};
+  if (!low && !high && !is_too_little(meaning, value)) return {};
   std::string hint;
   if (meaning.labels != nullptr)
     hint = "values: " + labels_text(meaning);
@@ -262,7 +263,15 @@ std::optional<Familiar> familiar(const Meaning& meaning, const od::Value& value)
   return Familiar{tidy(own * conversion(meaning.unit, unit).value_or(1)), unit};
 }
 
+bool is_too_little(const Meaning& meaning, const od::Value& value) {
+  return meaning.least && od::compare_numbers(value, od::Value(std::uint64_t{0})) != 0 &&
+         od::compare_numbers(value, od::Value(*meaning.least)) < 0;
+}
+
 std::string range_text(const Meaning& meaning) {
+  if (meaning.least && meaning.max)
+    return fmt::format("0, or {}..{}", *meaning.least, plain_text(meaning, *meaning.max));
+  if (meaning.least) return fmt::format("0, or at least {}", *meaning.least);
   if (meaning.min && meaning.max)
     return fmt::format("{}..{}", plain_text(meaning, *meaning.min), plain_text(meaning, *meaning.max));
   if (meaning.min) return "at least " + plain_text(meaning, *meaning.min);

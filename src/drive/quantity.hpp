@@ -23,6 +23,7 @@ struct Meaning {
   double scale = 1;
   std::optional<od::Value> min;
   std::optional<od::Value> max;
+  std::optional<std::uint64_t> least;  ///< Below it only 0, which switches off: od::Entry::least.
   const std::vector<od::EnumLabel>* labels = nullptr;
   od::Effect effect = od::Effect::unstated;
   od::Encoding encoding = od::Encoding::plain;
@@ -76,6 +77,9 @@ Result<Quantity> nearest_quantity(const Meaning& meaning, std::string_view text)
 /// Whether the text carries a unit that only the drive's own measures can convert.
 bool needs_bridge(const Meaning& meaning, std::string_view text);
 
+/// Whether the value is neither 0 nor as much as Meaning::least.
+bool is_too_little(const Meaning& meaning, const od::Value& value);
+
 /// Checks a value against the limits; `what` names the object in the message.
 Result<void> check_limits(const Meaning& meaning, const od::Value& value);
 
@@ -101,7 +105,7 @@ const od::EnumLabel* find_label(const Meaning& meaning, std::string_view text);
 /// The label of the value, or null.
 const od::EnumLabel* label_of(const Meaning& meaning, const od::Value& value);
 
-/// `1..5000`, `at least 0`, or empty when no limit is known; raw numbers.
+/// `1..5000`, `at least 0`, `0, or at least 1000`, or empty when no limit is known; raw numbers.
 std::string range_text(const Meaning& meaning);
 
 }  // namespace servoctl::drive

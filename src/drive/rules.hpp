@@ -96,7 +96,7 @@ struct PdoRules {
   std::uint32_t mapped_abort = 0x0601'0000;
   std::vector<std::int64_t> refused_types;  ///< Transmission types the drive does not know.
   /// What vendor-specific types mean here, in words; `on change` and `by the event timer` say that nothing
-  /// else makes the drive send.
+  /// else makes the drive send, `at the SYNC after a remote frame` when it answers one.
   std::map<std::int64_t, std::string> types;
   std::vector<PdoPreset> presets;
   std::string assign_rpdo;  ///< Object that chooses among fixed PDOs (CoE 1C12h, 1C13h).
@@ -106,6 +106,9 @@ struct PdoRules {
   /// event timer ends.
   bool sends_on_change(std::uint8_t type) const { return !says(type, "by the event timer"); }
   bool sends_by_timer(std::uint8_t type) const { return !says(type, "on change"); }
+  /// Whether a TPDO that was asked for by a remote frame is sent at the next SYNC (type 252; by CiA 301 it is
+  /// sent at once, with the values of the last SYNC).
+  bool answers_at_sync(std::uint8_t type) const { return says(type, "at the SYNC after a remote frame"); }
 
  private:
   bool says(std::uint8_t type, std::string_view words) const {

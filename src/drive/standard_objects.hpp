@@ -20,6 +20,8 @@ inline constexpr ObjectAddress kSyncCobId{0x1005, 0};
 inline constexpr ObjectAddress kSyncPeriod{0x1006, 0};  ///< Communication cycle period, µs.
 inline constexpr ObjectAddress kTimeCobId{0x1012, 0};
 inline constexpr ObjectAddress kEmergencyCobId{0x1014, 0};
+inline constexpr ObjectAddress kEmergencyInhibit{0x1015, 0};             ///< In 100 µs.
+inline constexpr ObjectAddress kCommunicationErrorBehaviour{0x1029, 1};  ///< NMT state after it.
 inline constexpr ObjectAddress kSyncOverflow{0x1019, 0};  ///< Synchronous counter overflow value.
 inline constexpr ObjectAddress kGuardTime{0x100C, 0};     ///< ms.
 inline constexpr ObjectAddress kLifeTimeFactor{0x100D, 0};

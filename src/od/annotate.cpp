@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <array>
 
+#include "base/number.hpp"
 #include "base/text.hpp"
 #include "od/parameter.hpp"
 #include "od/table_row.hpp"
@@ -28,6 +29,12 @@ constexpr auto kColumns = std::to_array<std::string_view>({"object", "unit", "sc
                                                            "enum", "enum_zh", "name_zh", "flags", "assumed",
                                                            "contradicted", "note", "note_zh", "line"});
 
+/// The number in `least=1000`.
+std::optional<std::uint64_t> least_of(std::string_view flag) {
+  constexpr std::string_view kKey = "least=";
+  return flag.starts_with(kKey) ? parse_digits(flag.substr(kKey.size()), 10) : std::nullopt;
+}
+
 void read_flags(TableRow& row, Entry& entry) {
   bool rpdo = false;
   bool tpdo = false;
@@ -40,8 +47,10 @@ void read_flags(TableRow& row, Entry& entry) {
       rpdo = true;
     else if (flag == "tpdo")
       tpdo = true;
+    else if (const auto least = least_of(flag))
+      entry.least = least;
     else if (!flag.empty())
-      row.refuse(kFlags, "made of command, volatile, rpdo and tpdo");
+      row.refuse(kFlags, "made of command, volatile, rpdo, tpdo and least=NUMBER");
   }
   if (rpdo || tpdo) entry.pdo = rpdo && tpdo ? PdoMapping::both : rpdo ? PdoMapping::rpdo : PdoMapping::tpdo;
 }

@@ -80,6 +80,8 @@ struct Entry {
   std::string note_zh;
   bool command = false;      ///< Writing it starts an action: kept out of backups.
   bool is_volatile = false;  ///< A reading, not a setting: kept out of backups.
+  /// Below this no value but 0, which switches off what the object is about.
+  std::optional<std::uint64_t> least;
   Doubts doubts;
   std::uint32_t line = 0;  ///< Line of the manual or of the file it comes from; 0: unknown.
 };

@@ -13,7 +13,7 @@ namespace servoctl::sim {
 class ErrorLog {
  public:
   /// Whose error it is: each has one at a time.
-  enum class Source : std::uint8_t { fault, rpdo, master };
+  enum class Source : std::uint8_t { fault, rpdo_short, rpdo_long, master };
 
   /// An error begins: it stands in the history, and in the register until it ends.
   void begin(Source source, std::uint16_t code, std::uint16_t additional);
@@ -33,7 +33,7 @@ class ErrorLog {
  private:
   static constexpr std::size_t place(Source source) { return static_cast<std::size_t>(source); }
 
-  std::array<std::optional<std::uint16_t>, 3> present_{};
+  std::array<std::optional<std::uint16_t>, 4> present_{};
   std::deque<std::uint32_t> history_;
   std::size_t capacity_ = 8;
 };

@@ -11,20 +11,33 @@ namespace abort = canopen::sdo_abort;
 
 void ObjectValues::load_defaults(std::uint8_t node) {
   values_.clear();
-  for (const auto& object : profile_->dictionary.objects()) {
-    for (const auto& entry : object.entries) {
-      auto& bytes = values_[entry.address];
-      if (entry.default_value)
-        if (auto encoded = od::encode(entry.type, entry.default_value->for_node(node))) bytes = *encoded;
-      if (bytes.empty()) bytes.resize(od::size_of(entry.type).value_or(0));
-    }
-  }
-  // The identity its family tells, where the dictionary states none.
+  for (const auto& object : profile_->dictionary.objects())
+    for (const auto& entry : object.entries) load_default(entry, node);
+  load_identity();
+  if (has(objects::kSupportedModes) && number(objects::kSupportedModes) == 0)
+    set_number(objects::kSupportedModes, supported_modes());
+}
+
+void ObjectValues::load_communication_defaults(std::uint8_t node) {
+  for (const auto& object : profile_->dictionary.objects())
+    if (in_communication_area(object.index))
+      for (const auto& entry : object.entries) load_default(entry, node);
+  load_identity();
+}
+
+void ObjectValues::load_default(const od::Entry& entry, std::uint8_t node) {
+  auto& bytes = values_[entry.address];
+  bytes.clear();
+  if (entry.default_value)
+    if (auto encoded = od::encode(entry.type, entry.default_value->for_node(node))) bytes = *encoded;
+  if (bytes.empty()) bytes.resize(od::size_of(entry.type).value_or(0));
+}
+
+/// The identity its family tells, where the dictionary states none.
+void ObjectValues::load_identity() {
   for (const auto& mark : profile_->rules.identity)
     if (has(mark.object) && mark.text.empty() && number(mark.object) == 0)
       set_number(mark.object, mark.value);
-  if (has(objects::kSupportedModes) && number(objects::kSupportedModes) == 0)
-    set_number(objects::kSupportedModes, supported_modes());
 }
 
 /// 6502h as the modes that 6060h takes: bit 0 for mode 1 (CiA 402-2, 6502h).
@@ -83,6 +96,7 @@ std::uint32_t ObjectValues::check_write(ObjectAddress object, ByteSpan data, std
   const auto limits = drive::meaning(drive::target_at(profile_, object), node);
   if (limits.max && od::compare_numbers(*value, *limits.max) > 0) return abort::kTooHigh;
   if (limits.min && od::compare_numbers(*value, *limits.min) < 0) return abort::kTooLow;
+  if (drive::is_too_little(limits, *value)) return abort::kRange;
   return 0;
 }
 

@@ -9,6 +9,9 @@
 
 namespace servoctl::sim {
 
+/// Whether an index is of the communication profile area (CiA 301, table 38).
+inline bool in_communication_area(std::uint16_t index) { return index >= 0x1000 && index < 0x2000; }
+
 /// The values of all entries of a drive, as bytes, with the checks a drive makes before it takes a new one:
 /// existence, access, length and limits. Rules that depend on the drive's state are made by the drive.
 class ObjectValues {
@@ -17,6 +20,8 @@ class ObjectValues {
 
   /// Every entry goes to its default for this node; one without a default to zero.
   void load_defaults(std::uint8_t node);
+  /// The same for the communication profile area (1000h to 1FFFh) alone.
+  void load_communication_defaults(std::uint8_t node);
 
   /// Abort code when the entry cannot be read, or 0.
   std::uint32_t check_read(ObjectAddress object) const;
@@ -36,6 +41,8 @@ class ObjectValues {
 
  private:
   std::uint32_t supported_modes() const;
+  void load_default(const od::Entry& entry, std::uint8_t node);
+  void load_identity();
 
   const drive::Profile* profile_;
   std::unordered_map<ObjectAddress, Bytes> values_;

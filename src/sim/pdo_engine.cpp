@@ -14,6 +14,8 @@ using canopen::Pdo;
 using canopen::PdoDirection;
 
 constexpr std::uint8_t kLastSynchronous = 240;
+constexpr std::uint8_t kBySyncAndRequest = 252;
+constexpr std::uint8_t kByRequest = 253;
 constexpr std::uint8_t kFirstEvent = 254;
 /// How often a drive compares what an event-driven TPDO carries with what it last sent.
 constexpr Duration kCycle = std::chrono::milliseconds(1);
@@ -57,11 +59,13 @@ void PdoEngine::stop() {
   next_look_ = kNever;
   work_.clear();
   short_.clear();
+  long_.clear();
   tx_.clear();
 }
 
 void PdoEngine::on_frame(const can::Frame& frame, TimePoint now) {
-  if (!operational_ || frame.remote || frame.error) return;
+  if (!operational_ || frame.error) return;
+  if (frame.remote) return on_request(frame, now);
   const auto sync = static_cast<std::uint32_t>(values_->number(objects::kSyncCobId)) & canopen::kPdoCobIdMask;
   if (!frame.extended && frame.id == (sync == 0 ? canopen::kSync : sync)) return on_sync(frame, now);
   for (const auto& known : known_) {
@@ -71,13 +75,42 @@ void PdoEngine::on_frame(const can::Frame& frame, TimePoint now) {
   }
 }
 
-void PdoEngine::on_receive(const Pdo& pdo, const can::Frame& frame) {
-  const auto data = frame.payload();
-  if (pdo.bits() > data.size() * 8) {
-    short_.insert(pdo.communication_index());
+void PdoEngine::on_request(const can::Frame& frame, TimePoint now) {
+  for (const auto& known : known_) {
+    if (known.direction != PdoDirection::transmit) continue;
+    const auto pdo = read_pdo(known.direction, known.number);
+    const bool answers = pdo.is_valid() && (pdo.cob_id & canopen::kPdoNoRtr) == 0 && !pdo.entries.empty();
+    if (answers && pdo.can_id() == canopen::can_id_of(frame)) on_request(pdo, now);
+  }
+}
+
+void PdoEngine::on_request(const Pdo& pdo, TimePoint now) {
+  auto& state = work(pdo);
+  if (pdo.type == kByRequest) return transmit(pdo, sample(pdo), now);
+  if (pdo.type == kBySyncAndRequest) {
+    state.requested = profile_->rules.pdo.answers_at_sync(pdo.type);
+    if (!state.requested && state.data) transmit(pdo, *state.data, now);
     return;
   }
-  short_.erase(pdo.communication_index());
+  if (pdo.type < kFirstEvent) return;
+  state.requested = true;
+  check_events(pdo, now);
+}
+
+void PdoEngine::on_receive(const Pdo& pdo, const can::Frame& frame) {
+  if (pdo.entries.empty()) return;
+  auto data = frame.payload();
+  const auto size = (pdo.bits() + 7) / 8;
+  const auto note = [&](std::set<std::uint16_t>& records, bool wrong) {
+    if (wrong)
+      records.insert(pdo.communication_index());
+    else
+      records.erase(pdo.communication_index());
+  };
+  note(short_, data.size() < size);
+  note(long_, data.size() > size);
+  if (data.size() < size) return;
+  data = data.first(size);
   if (pdo.type <= kLastSynchronous)
     work(pdo).data = Bytes(data.begin(), data.end());
   else
@@ -91,8 +124,19 @@ void PdoEngine::on_sync(const can::Frame& frame, TimePoint now) {
     for (const auto& known : known_) {
       if (known.direction != direction) continue;
       const auto pdo = read_pdo(direction, known.number);
-      if (pdo.is_valid() && pdo.type <= kLastSynchronous) on_sync(pdo, counter, now);
+      if (!pdo.is_valid()) continue;
+      if (pdo.type <= kLastSynchronous) on_sync(pdo, counter, now);
+      if (pdo.type == kBySyncAndRequest) on_sync_by_request(pdo, now);
     }
+}
+
+void PdoEngine::on_sync_by_request(const Pdo& pdo, TimePoint now) {
+  auto& state = work(pdo);
+  auto data = sample(pdo);
+  if (state.requested)
+    transmit(pdo, std::move(data), now);
+  else
+    state.data = std::move(data);
 }
 
 void PdoEngine::on_sync(const Pdo& pdo, std::optional<std::uint8_t> counter, TimePoint now) {
@@ -136,7 +180,7 @@ void PdoEngine::check_events(const Pdo& pdo, TimePoint now) {
   const auto& rules = profile_->rules.pdo;
   const auto timer = std::chrono::milliseconds(pdo.event.value_or(0));
   const bool timed = rules.sends_by_timer(pdo.type) && timer > Duration::zero();
-  const bool due = timed && (!state.sent || now >= *state.sent + timer);
+  const bool due = state.requested || (timed && (!state.sent || now >= *state.sent + timer));
   const bool watched = rules.sends_on_change(pdo.type);
   if (!due && !watched) return;
   auto data = sample(pdo);
@@ -161,6 +205,7 @@ void PdoEngine::transmit(const Pdo& pdo, Bytes data, TimePoint now) {
   auto& state = work(pdo);
   state.syncs = 0;
   state.sent = now;
+  state.requested = false;
   auto frame = can::make_frame(pdo.cob_id & canopen::kPdoCobIdMask, data);
   frame.extended = (pdo.cob_id & canopen::kPdoExtended) != 0;
   tx_.push_back(frame);

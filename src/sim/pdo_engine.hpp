@@ -16,9 +16,14 @@
 namespace servoctl::sim {
 
 /// The PDOs of a simulated drive at work (CiA 301, 7.2.2): sends TPDOs at SYNC, when what they carry changes,
-/// and by their event timer; takes RPDOs at once or at the next SYNC, through the checks every write goes
-/// through. What its parameters say is looked up each time, so that a change holds at once. Remote frames are
-/// not answered. Performs no I/O and reads no clock.
+/// by their event timer and to whoever asks by a remote frame; takes RPDOs at once or at the next SYNC,
+/// through the checks every write goes through. What its parameters say is looked up each time, so that a
+/// change holds at once. Performs no I/O and reads no clock.
+///
+/// A remote frame is answered where bit 30 of the COB-ID allows it: by type 253 at once, by 252 with the
+/// values of the last SYNC (or at the next, where the family's rules say so), by event-driven TPDOs when
+/// their inhibit time is over (7.2.2.3: it is event-driven PDOs that are remotely requested). Synchronous
+/// ones do not answer.
 class PdoEngine {
  public:
   /// All outlive the engine. `store` gives and takes the mapped objects; `values` has the PDO parameters.
@@ -36,7 +41,9 @@ class PdoEngine {
 
   /// Whether an RPDO came shorter than its mapping and was dropped, and none that fits has come since (CiA
   /// 301, table 26: 8210h).
-  bool has_length_error() const { return !short_.empty(); }
+  bool has_short_rpdo() const { return !short_.empty(); }
+  /// … longer than its mapping, of which the first bytes were taken (8220h).
+  bool has_long_rpdo() const { return !long_.empty(); }
 
  private:
   /// One PDO between its frames.
@@ -45,11 +52,15 @@ class PdoEngine {
     std::optional<Bytes> data;      ///< What a TPDO last carried; what an RPDO brought for the next SYNC.
     std::uint32_t syncs = 0;        ///< Since a TPDO was last sent.
     bool started = false;           ///< The SYNC with the start value has come.
+    bool requested = false;         ///< A remote frame asks for a TPDO that cannot be sent yet.
   };
 
   canopen::Pdo read_pdo(canopen::PdoDirection direction, std::uint16_t number) const;
   void on_sync(const can::Frame& frame, TimePoint now);
   void on_sync(const canopen::Pdo& pdo, std::optional<std::uint8_t> counter, TimePoint now);
+  void on_sync_by_request(const canopen::Pdo& pdo, TimePoint now);
+  void on_request(const can::Frame& frame, TimePoint now);
+  void on_request(const canopen::Pdo& pdo, TimePoint now);
   void on_receive(const canopen::Pdo& pdo, const can::Frame& frame);
   void check_events(const canopen::Pdo& pdo, TimePoint now);
   void apply(const canopen::Pdo& pdo, ByteSpan data);
@@ -65,6 +76,7 @@ class PdoEngine {
   bool operational_ = false;
   TimePoint next_look_ = kNever;
   std::set<std::uint16_t> short_;  ///< Communication records of RPDOs whose last frame was too short.
+  std::set<std::uint16_t> long_;   ///< … was too long.
   std::deque<can::Frame> tx_;
 };
 

@@ -17,8 +17,10 @@ namespace {
 constexpr Duration kBootTime = std::chrono::milliseconds(50);
 /// CiA 402-2, table of error codes.
 constexpr std::uint16_t kFollowingErrorFault = 0x8611;
-/// … of an RPDO that was too short to be taken.
+/// EMCY of an RPDO that was too short to be taken, and of one of which the first bytes were (CiA 301, table
+/// 26).
 constexpr std::uint16_t kPdoLengthError = 0x8210;
+constexpr std::uint16_t kPdoLengthExceeded = 0x8220;
 
 canopen::SdoServer::Options server_options(const drive::Rules& rules) {
   canopen::SdoServer::Options options;
@@ -73,9 +75,17 @@ void SimDrive::on_frame(const can::Frame& frame, TimePoint now) {
 
 void SimDrive::collect_pdos() {
   while (const auto frame = pdos_.take_frame()) tx_.push_back(*frame);
-  const bool known = errors_.is_present(ErrorLog::Source::rpdo);
-  if (pdos_.has_length_error() && !known) begin_error(ErrorLog::Source::rpdo, kPdoLengthError, {});
-  if (!pdos_.has_length_error()) end_error(ErrorLog::Source::rpdo);
+  struct Row {
+    ErrorLog::Source source;
+    bool present;
+    std::uint16_t code;
+  };
+  const Row rows[] = {{ErrorLog::Source::rpdo_short, pdos_.has_short_rpdo(), kPdoLengthError},
+                      {ErrorLog::Source::rpdo_long, pdos_.has_long_rpdo(), kPdoLengthExceeded}};
+  for (const auto& row : rows)
+    if (!row.present) end_error(row.source);
+  for (const auto& row : rows)
+    if (row.present && !errors_.is_present(row.source)) begin_error(row.source, row.code, {});
 }
 
 void SimDrive::collect_answers(TimePoint now) {
@@ -120,12 +130,14 @@ void SimDrive::on_time(TimePoint now) {
     const auto alarm = std::exchange(planned_fault_, std::nullopt)->alarm;
     raise_fault(alarm.code, alarm.vendor, now);
   }
+  collect_emergencies();
   if (misbehaviour_.silent) tx_.clear();
 }
 
 TimePoint SimDrive::deadline() const {
-  auto next = std::min({boot_at_, power_.deadline(), pdos_.deadline(), server_.deadline(),
-                        error_control_.deadline(), consumer_.deadline(), planned_silence_});
+  auto next =
+      std::min({boot_at_, power_.deadline(), pdos_.deadline(), server_.deadline(), error_control_.deadline(),
+                consumer_.deadline(), emergencies_.deadline(emergency_inhibit()), planned_silence_});
   if (!late_.empty()) next = std::min(next, late_.front().time);
   if (planned_fault_) next = std::min(next, planned_fault_->time);
   return next;
@@ -140,29 +152,14 @@ std::optional<can::Frame> SimDrive::take_frame() {
 
 void SimDrive::power_on(TimePoint now) {
   boot_at_ = kNever;
-  if (full_restart_) {
-    restore_if_asked();
-    values_.load_defaults(node_);
-    for (const auto& cell : memory_->cells(key_)) values_.set(cell.first, cell.second);
-    if (const auto node_id = drive::place_of(*profile_, profile_->rules.nmt.node_id)) {
-      const auto set_to = values_.number(*node_id);
-      if (set_to >= canopen::kFirstNode && set_to <= canopen::kLastNode && set_to != node_) {
-        node_ = static_cast<std::uint8_t>(set_to);
-        values_.load_defaults(node_);
-        for (const auto& cell : memory_->cells(key_)) values_.set(cell.first, cell.second);
-      }
-    }
-    at_start_.clear();
-    for (const auto& p : profile_->parameters)
-      if (p.object && p.effect == od::Effect::restart) at_start_[*p.object] = values_.number(*p.object);
-    power_.reset();
-    axis_.reset(now);
-    errors_ = {};
-    errors_.set_capacity(values_.last_sub(objects::kErrorHistory.index));
-    fault_ = nullptr;
-  }
-  errors_.end(ErrorLog::Source::rpdo);
-  errors_.end(ErrorLog::Source::master);
+  if (full_restart_)
+    load_values(now);
+  else
+    load_communication_area();
+  for (const auto source :
+       {ErrorLog::Source::rpdo_short, ErrorLog::Source::rpdo_long, ErrorLog::Source::master})
+    errors_.end(source);
+  emergencies_ = {};
   values_.set_number(objects::kErrorRegister, errors_.error_register());
   load_mirrors();
   server_ = canopen::SdoServer(node_, *this, server_options(profile_->rules));
@@ -178,6 +175,38 @@ void SimDrive::power_on(TimePoint now) {
   if (start) pdos_.start(now);
 }
 
+/// What a drive has when its power comes.
+void SimDrive::load_values(TimePoint now) {
+  const auto load = [this] {
+    values_.load_defaults(node_);
+    for (const auto& cell : memory_->cells(key_)) values_.set(cell.first, cell.second);
+  };
+  restore_if_asked();
+  load();
+  if (const auto node_id = drive::place_of(*profile_, profile_->rules.nmt.node_id)) {
+    const auto set_to = values_.number(*node_id);
+    if (set_to >= canopen::kFirstNode && set_to <= canopen::kLastNode && set_to != node_) {
+      node_ = static_cast<std::uint8_t>(set_to);
+      load();
+    }
+  }
+  at_start_.clear();
+  for (const auto& p : profile_->parameters)
+    if (p.object && p.effect == od::Effect::restart) at_start_[*p.object] = values_.number(*p.object);
+  power_.reset();
+  axis_.reset(now);
+  errors_ = {};
+  errors_.set_capacity(values_.last_sub(objects::kErrorHistory.index));
+  fault_ = nullptr;
+}
+
+/// 1000h to 1FFFh as they are after power-on: what was stored, else the defaults (CiA 301, 7.3.2.2.1).
+void SimDrive::load_communication_area() {
+  values_.load_communication_defaults(node_);
+  for (const auto& cell : memory_->cells(key_))
+    if (in_communication_area(cell.first.index)) values_.set(cell.first, cell.second);
+}
+
 void SimDrive::on_nmt(NmtCommand command, TimePoint now) {
   switch (command) {
     case NmtCommand::start: return set_nmt(NmtState::operational);
@@ -190,8 +219,7 @@ void SimDrive::on_nmt(NmtCommand command, TimePoint now) {
       error_control_.stop();
       server_.reset();
       late_.clear();
-      nmt_ = NmtState::initialising;
-      pdos_.stop();
+      set_nmt(NmtState::initialising);
   }
 }
 
@@ -199,6 +227,7 @@ void SimDrive::set_nmt(NmtState state) {
   const bool leaves = nmt_ == NmtState::operational && state != NmtState::operational;
   if (leaves && profile_->rules.nmt.disables_outside_operational) power_.disable();
   nmt_ = state;
+  if (state == NmtState::stopped || state == NmtState::initialising) emergencies_.clear();
   error_control_.set_state(state);
   if (state == NmtState::operational)
     pdos_.start(now_);

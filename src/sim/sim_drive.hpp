@@ -13,6 +13,7 @@
 #include "drive/profile.hpp"
 #include "sim/axis.hpp"
 #include "sim/device.hpp"
+#include "sim/emergency_producer.hpp"
 #include "sim/error_log.hpp"
 #include "sim/heartbeat_consumer.hpp"
 #include "sim/memory.hpp"
@@ -42,7 +43,8 @@ struct Misbehaviour {
 ///
 /// What the manual leaves open is answered like this: a panel parameter is kept at once when it is written,
 /// an object of the communication or device profile only by 1010h; an NMT reset of the node restarts the
-/// drive as a power cycle does.
+/// drive as a power cycle does, one of the communication gives 1000h to 1FFFh what they have after that (CiA
+/// 301, 7.3.2.2.1).
 class SimDrive final : public Device, private canopen::ObjectStore {
  public:
   /// `profile` and `memory` outlive the drive. `key` names its cells in the memory; `node` is the node-ID it
@@ -100,7 +102,8 @@ class SimDrive final : public Device, private canopen::ObjectStore {
   std::uint32_t restore_objects(std::uint8_t group);
 
   void power_on(TimePoint now);
-  void reset_communication(TimePoint now);
+  void load_values(TimePoint now);
+  void load_communication_area();
   void load_mirrors();
   void restore_if_asked();
   void on_nmt(canopen::NmtCommand command, TimePoint now);
@@ -120,8 +123,12 @@ class SimDrive final : public Device, private canopen::ObjectStore {
   void on_life_lost(TimePoint now);
   void set_up_consumers();
   void on_master_lost(TimePoint now);
+  void react_to_lost_master(TimePoint now);
+  void enter_error_state();
   void move_axis();
   void send_emergency(std::uint16_t code, std::array<std::uint8_t, 5> vendor);
+  void collect_emergencies();
+  Duration emergency_inhibit() const;
   std::uint64_t effective(ObjectAddress object) const;
   const od::Parameter* parameter(const std::string& id) const {
     return id.empty() ? nullptr : profile_->parameter(id);
@@ -144,6 +151,7 @@ class SimDrive final : public Device, private canopen::ObjectStore {
   TimePoint boot_at_ = TimePoint::min();  ///< When the boot-up message is due; kNever once it is sent.
   bool full_restart_ = true;
   ErrorLog errors_;
+  EmergencyProducer emergencies_;
   const drive::Fault* fault_ = nullptr;  ///< The present one, when its code tells which it is.
   std::uint64_t flash_writes_ = 0;
   std::deque<can::Frame> tx_;

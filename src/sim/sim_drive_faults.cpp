@@ -16,10 +16,14 @@ namespace {
 /// EMCY of a life guarding or heartbeat error (CiA 301, table 26).
 constexpr std::uint16_t kLifeGuardError = 0x8130;
 constexpr std::uint16_t kQuickStopWord = 0x0002;
+/// Of 1014h: bit 31, the drive sends no EMCY; its CAN-ID has 11 bits.
+constexpr std::uint32_t kNoEmergency = 0x8000'0000;
+constexpr std::uint32_t kCanId = 0x7FF;
 
 }  // namespace
 
 void SimDrive::raise_fault(std::uint16_t code, std::array<std::uint8_t, 5> vendor, TimePoint now) {
+  now_ = now;
   const auto found = drive::faults_of(profile_->faults, profile_->rules.emergency, code, vendor);
   if (!found.empty() && found.front()->kind == drive::Fault::Kind::status)
     return send_emergency(code, vendor);
@@ -45,9 +49,24 @@ void SimDrive::end_error(ErrorLog::Source source) {
   send_emergency(0, {});
 }
 
-/// A heartbeat that 1016h watches, or the question of life guarding, has not come: emergency, and what 6007h
-/// says; a fault where there is none.
+/// A heartbeat that 1016h watches, or the question of life guarding, has not come: emergency, what 6007h
+/// says, and the NMT state that 1029h names.
 void SimDrive::on_master_lost(TimePoint now) {
+  react_to_lost_master(now);
+  enter_error_state();
+}
+
+/// CiA 301, 7.5.2.32: from Operational to Pre-operational, also of a drive without the object.
+void SimDrive::enter_error_state() {
+  enum : std::uint64_t { kPreOperational, kNoChange, kStopped };
+  const auto object = objects::kCommunicationErrorBehaviour;
+  const auto behaviour = values_.has(object) ? values_.number(object) : kPreOperational;
+  if (behaviour == kPreOperational && nmt_ == NmtState::operational) set_nmt(NmtState::pre_operational);
+  if (behaviour == kStopped) set_nmt(NmtState::stopped);
+}
+
+/// 6007h; a fault where there is none.
+void SimDrive::react_to_lost_master(TimePoint now) {
   enum : std::uint64_t { kNoAction, kFault, kDisable, kQuickStop };
   const bool has_option = values_.has(objects::kAbortConnectionOption);
   const auto option = has_option ? values_.number(objects::kAbortConnectionOption) : kFault;
@@ -96,15 +115,30 @@ void SimDrive::clear_fault() {
   send_emergency(0, {});
 }
 
+/// Under the COB-ID in 1014h, unless its bit 31 says that there is none; under that of the pre-defined
+/// connection set where there is no such object.
 void SimDrive::send_emergency(std::uint16_t code, std::array<std::uint8_t, 5> vendor) {
   if (nmt_ == NmtState::stopped || nmt_ == NmtState::initialising) return;
+  const auto cob_id = static_cast<std::uint32_t>(values_.number(objects::kEmergencyCobId));
+  if ((cob_id & kNoEmergency) != 0) return;
   canopen::Emergency emergency;
   emergency.node = node_;
   emergency.code = code;
   emergency.error_register = static_cast<std::uint8_t>(values_.number(objects::kErrorRegister));
   emergency.vendor = vendor;
   emergency.size = profile_->rules.emergency.size;
-  tx_.push_back(canopen::emergency_frame(emergency));
+  auto frame = canopen::emergency_frame(emergency);
+  if (values_.has(objects::kEmergencyCobId)) frame.id = cob_id & kCanId;
+  emergencies_.push(frame);
+  collect_emergencies();
+}
+
+void SimDrive::collect_emergencies() {
+  while (const auto frame = emergencies_.take_frame(emergency_inhibit(), now_)) tx_.push_back(*frame);
+}
+
+Duration SimDrive::emergency_inhibit() const {
+  return values_.number(objects::kEmergencyInhibit) * std::chrono::microseconds(100);
 }
 
 }  // namespace servoctl::sim

@@ -82,6 +82,20 @@ TEST(Quantity, OutOfRangeIsRefusedBeforeTheBus) {
   EXPECT_EQ(unsigned_of(parse_quantity(hertz(), "20000")), 20000U);
 }
 
+TEST(Quantity, ThatIsNeitherNothingNorEnoughIsRefused) {
+  Meaning period;
+  period.type = od::DataType::u32;
+  period.type_known = true;
+  period.least = 1000;
+  EXPECT_EQ(unsigned_of(parse_quantity(period, "0")), 0U);
+  EXPECT_EQ(unsigned_of(parse_quantity(period, "1000")), 1000U);
+  for (const auto* text : {"1", "999"})
+    expect_refused(period, text, std::string(text) + " is out of range: 0, or at least 1000", "");
+  period.max = od::Value(std::uint64_t{5000});
+  EXPECT_EQ(range_text(period), "0, or 1000..5000");
+  expect_refused(period, "5001", "5001 is out of range: 0, or 1000..5000", "");
+}
+
 Meaning labelled(const std::vector<od::EnumLabel>& labels) {
   auto mode = hertz();
   mode.unit = "";

@@ -204,6 +204,15 @@ TEST(Annotate, KnowsEveryFlag) {
   }
 }
 
+TEST(Annotate, KnowsTheLeastThatIsMoreThanNothing) {
+  auto d = dictionary();
+  ASSERT_TRUE(annotate(d, "object,flags\n0x6060:00,least=1000 volatile\n", "o.csv"));
+  EXPECT_EQ(d.find({0x6060, 0})->least, 1000U);
+  EXPECT_TRUE(d.find({0x6060, 0})->is_volatile);
+  for (const char* flag : {"least=", "least=x", "least=-1", "least"})
+    EXPECT_FALSE(annotate(d, std::string("object,flags\n0x6060:00,") + flag + "\n", "o.csv")) << flag;
+}
+
 TEST(Annotate, RefusesAnObjectTheDictionaryDoesNotHave) {
   auto d = dictionary();
   EXPECT_EQ(annotate(d, "object,unit\n0x6061:00,rpm\n", "o.csv").error().message,
@@ -213,7 +222,7 @@ TEST(Annotate, RefusesAnObjectTheDictionaryDoesNotHave) {
   EXPECT_EQ(annotate(d, "object,colour\n", "o.csv").error().message, "o.csv:1: column 'colour' is unknown");
   EXPECT_EQ(annotate(d, "", "o.csv").error().code, Errc::file);
   EXPECT_EQ(annotate(d, "object,flags\n0x6060:00,red\n", "o.csv").error().message,
-            "o.csv:2: column flags: 'red' is not made of command, volatile, rpdo and tpdo");
+            "o.csv:2: column flags: 'red' is not made of command, volatile, rpdo, tpdo and least=NUMBER");
 }
 
 }  // namespace

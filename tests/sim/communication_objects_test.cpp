@@ -156,10 +156,34 @@ TEST_F(CommunicationObjects, TheGenericDriveTellsTheModesItTakes) {  // CiA 402-
   }
 }
 
+TEST_F(CommunicationObjects, TheSyncPeriodOfTheDa200IsZeroOrAThousandMicroseconds) {  // 145
+  boot("da200");
+  for (const char* value : {"01000000", "F4010000", "E7030000"}) {
+    EXPECT_EQ(put(0x1006, 0, value), kRange) << value;
+    EXPECT_EQ(emergency_.substr(10, 4), "1A04") << "Er26-4 (1087)";
+    EXPECT_EQ(get(0x1006, 0), "4306100000000000");
+  }
+  for (const char* value : {"E8030000", "E9030000", "FFFFFFFF", "00000000"})
+    EXPECT_EQ(put(0x1006, 0, value), kTaken) << value;
+}
+
 TEST_F(CommunicationObjects, ModesThatAManualPrintsStay) {
   boot("gsd600");
   EXPECT_EQ(get(0x6502, 0), "430265006D000000");  // 5336
 }
+
+class LongDownload : public OfFamily {};
+
+TEST_P(LongDownload, ToWhatIsReadOnlyEndsWhereItBegins) {  // CiA 301, 7.2.4.3.3
+  const bool segmented = profile().rules.sdo.segmented;
+  const std::string refused = segmented ? "02000106" : "01000405";  // 0601 0002h; 0504 0001h: none at all.
+  EXPECT_EQ(sdo("601#2141600002000000"), "581#80416000" + refused);
+  EXPECT_EQ(sdo("601#2041600000000000"), "581#80416000" + refused);
+  EXPECT_EQ(segmented, std::string(GetParam()) != "gsd600");
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, LongDownload,
+                         testing::Values("gsd600", "dm", "da200", "ts", "sv2", "cia402"), family_name);
 
 TEST_F(CommunicationObjects, ALongDownloadToWhatIsReadOnlyEndsWhereItBegins) {  // CiA 301, 7.2.4.3.3
   boot("cia402");

@@ -80,5 +80,66 @@ TEST_F(LostMaster, DoesNothingWhereTheOptionIsNoAction) {
   EXPECT_EQ(drive().power_state(), drive::DriveState::operation_enabled);
 }
 
+struct Behaviour {
+  const char* family;
+  int value;  ///< Of 1029h:01; -1: the family has none.
+  canopen::NmtState after;
+};
+
+/// CiA 301, 7.5.2.32: from Operational to Pre-operational (0), no change (1), to Stopped (2).
+class ErrorBehaviour : public DrivenTest, public testing::WithParamInterface<Behaviour> {
+ protected:
+  /// Operational, watching node 127 for 500 ms, which then falls silent.
+  void lose_the_master(const char* family, int value) {
+    boot(family);
+    if (value >= 0) {
+      char frame[32];
+      std::snprintf(frame, sizeof frame, "601#2F291001%02X000000", static_cast<unsigned>(value));
+      ASSERT_EQ(sdo(frame).substr(0, 6), "581#60");
+    }
+    ASSERT_EQ(sdo("601#23161001F4017F00").substr(0, 6), "581#60");
+    send("000#0101");
+    send("77F#05");
+    wait(600ms);
+  }
+};
+
+TEST_P(ErrorBehaviour, DecidesTheStateBehindALostHeartbeat) {
+  lose_the_master(GetParam().family, GetParam().value);
+  EXPECT_EQ(emergency_.substr(0, 8), "081#3081") << "told before the state changes";
+  EXPECT_EQ(drive().nmt_state(), GetParam().after);
+  const bool silent = GetParam().after == canopen::NmtState::stopped;
+  EXPECT_EQ(sdo("601#4000100000000000").empty(), silent) << "no SDO where it is stopped";
+}
+
+using canopen::NmtState;
+INSTANTIATE_TEST_SUITE_P(
+    Families, ErrorBehaviour,
+    testing::Values(Behaviour{"gsd600", 0, NmtState::pre_operational},
+                    Behaviour{"gsd600", 1, NmtState::operational}, Behaviour{"gsd600", 2, NmtState::stopped},
+                    Behaviour{"dm", 0, NmtState::pre_operational}, Behaviour{"dm", 1, NmtState::operational},
+                    Behaviour{"dm", 2, NmtState::stopped}, Behaviour{"cia402", 0, NmtState::pre_operational},
+                    Behaviour{"cia402", 1, NmtState::operational}, Behaviour{"cia402", 2, NmtState::stopped},
+                    Behaviour{"ts", -1, NmtState::pre_operational}),
+    [](const auto& test) {
+      return std::string(test.param.family) + (test.param.value < 0 ? "" : std::to_string(test.param.value));
+    });
+
+TEST_F(ErrorBehaviour, OfTheFactoryLeavesADmAsItIsAndTakesAGsd600OutOfOperational) {  // 569; 898
+  lose_the_master("dm", -1);
+  EXPECT_EQ(drive().nmt_state(), NmtState::operational);
+}
+
+TEST_F(ErrorBehaviour, HoldsForLifeGuardingToo) {
+  boot("cia402");
+  for (const char* request : {"601#2B0C100064000000", "601#2F0D100002000000"})
+    ASSERT_EQ(sdo(request).substr(0, 6), "581#60");
+  send("000#0101");
+  send("701#R1");
+  wait(300ms);
+  EXPECT_EQ(emergency_.substr(0, 8), "081#3081");
+  EXPECT_EQ(drive().nmt_state(), NmtState::pre_operational);
+}
+
 }  // namespace
 }  // namespace servoctl::sim

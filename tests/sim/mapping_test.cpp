@@ -63,6 +63,22 @@ TEST_P(MappedEntries, ThatAreNotThereAreNotCounted) {  // 0604 0042h
   EXPECT_EQ(sdo("601#2F001A0001000000").substr(0, 6), kTaken);
 }
 
+TEST_P(MappedEntries, AreNoMoreThanTheDriveHas) {
+  boot(GetParam().family);
+  set_valid(0x1400, false);
+  set_valid(0x1800, false);
+  for (const std::uint16_t index : {std::uint16_t{0x1600}, std::uint16_t{0x1A00}}) {
+    unsigned last = 0;
+    for (const auto& entry : profile().dictionary.object(index)->entries)
+      last = std::max<unsigned>(last, entry.address.sub);
+    ASSERT_GT(last, 0U);
+    const auto object = fmt::format("{:02X}{:02X}00", index & 0xFFU, index >> 8U);
+    for (const auto count : {last + 1, 0x41U, 0xFFU})
+      EXPECT_EQ(sdo(fmt::format("601#2F{}{:02X}000000", object, count)), "581#80" + object + "42000406")
+          << count;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Families, MappedEntries,
                          testing::Values(Mapped{"gsd600", "06010000"}, Mapped{"dm", "06010000"},
                                          Mapped{"da200", "08000000"}, Mapped{"ts", "06010000"},
@@ -104,6 +120,16 @@ TEST_F(Mapping, RemoteFramesAreNoTypeWhereTheyAreForbidden) {  // 1800h:01, bit 
     EXPECT_EQ(sdo("601#2F001402" + std::string(type) + "000000"), "581#8000140230000906") << "RPDO " << type;
   for (const char* type : {"00", "F0", "FE", "FF"})
     EXPECT_EQ(sdo("601#2F001402" + std::string(type) + "000000").substr(0, 6), kTaken) << "RPDO " << type;
+}
+
+TEST_F(Mapping, OfTheTsARemoteFrameIsATypeAsBit30Says) {
+  boot("ts");
+  ASSERT_EQ(sdo("601#23001801810100C0").substr(0, 6), kTaken);
+  for (const char* type : {"FC", "FD"})
+    EXPECT_EQ(sdo("601#2F001802" + std::string(type) + "000000"), "581#8000180230000906") << type;
+  ASSERT_EQ(sdo("601#2300180181010080").substr(0, 6), kTaken);
+  for (const char* type : {"FC", "FD"})
+    EXPECT_EQ(sdo("601#2F001802" + std::string(type) + "000000").substr(0, 6), kTaken) << type;
 }
 
 TEST_F(Mapping, OfTheGsd600NoRemoteFrameIsAType) {  // Its TPDOs have bit 30 set (1664), and it stays (680).
