@@ -11,6 +11,7 @@
 #include "commands/notice.hpp"
 #include "commands/reading.hpp"
 #include "commands/records.hpp"
+#include "drive/standard_objects.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -90,8 +91,13 @@ const DecodedFrame& FrameDecoder::decode(const can::Frame& frame) {
     out_.text = report ? can::text(*report) : "error frame, or report of the controller";
   } else if (frame.extended) {
     const auto* pdo = frame.remote ? nullptr : pdos_.find(canopen::can_id_of(frame));
-    if (pdo != nullptr) decode_pdo(frame, pdo->node, pdo);
-    if (pdo == nullptr) out_.text = "29-bit identifier";
+    const auto emergency = pdo == nullptr ? emergency_ids_.parse(frame) : std::nullopt;
+    if (pdo != nullptr)
+      decode_pdo(frame, pdo->node, pdo);
+    else if (emergency)
+      decode_emergency(*emergency);
+    else
+      out_.text = "29-bit identifier";
   } else {
     decode_service(frame);
   }
@@ -106,7 +112,7 @@ void FrameDecoder::decode_service(const can::Frame& frame) {
   if (frame.id == canopen::kNmt) return decode_nmt(frame);
   if (frame.id == canopen::kSync) return decode_sync(frame);
   if (frame.id == kTime) return decode_time(frame);
-  if (const auto emergency = canopen::parse_emergency(frame)) return decode_emergency(*emergency);
+  if (const auto emergency = emergency_ids_.parse(frame)) return decode_emergency(*emergency);
   if (node_of(frame, canopen::kSdoAnswer) || node_of(frame, canopen::kSdoRequest)) return decode_sdo(frame);
   if (node_of(frame, canopen::kErrorControl)) return decode_error_control(frame);
   if (frame.id > kFirstPdo && frame.id < canopen::kSdoAnswer && node != 0)
@@ -279,12 +285,19 @@ void FrameDecoder::add_sdo_value(const Bytes& data, const drive::Target& target)
 /// A value that was read holds; one that was written holds when the node has taken it.
 void FrameDecoder::learn(const canopen::SdoStep& step) {
   auto& pending = pending_[*out_.node];
-  if (!step.object || !canopen::pdo_at(step.object->index)) return;
-  if (step.data && !step.from_client) pdos_.learn(*out_.node, *step.object, *step.data);
+  const bool emergency = step.object == objects::kEmergencyCobId;
+  if (!step.object || (!emergency && !canopen::pdo_at(step.object->index))) return;
+  const auto keep = [&](const Bytes& data) {
+    if (emergency && data.size() == 4)
+      emergency_ids_.learn(*out_.node, static_cast<std::uint32_t>(load_le(data)));
+    else if (!emergency)
+      pdos_.learn(*out_.node, *step.object, data);
+  };
+  if (step.data && !step.from_client) keep(*step.data);
   if (step.data && step.from_client) pending = Pending{*step.object, *step.data};
   if (step.kind == Step::abort) pending.reset();
   if (step.kind != Step::acknowledge || !pending || pending->object != *step.object) return;
-  pdos_.learn(*out_.node, pending->object, pending->data);
+  keep(pending->data);
   pending.reset();
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "can/frame.hpp"
+#include "canopen/emergency_ids.hpp"
 #include "canopen/sdo_observer.hpp"
 #include "commands/command.hpp"
 #include "commands/pdo_book.hpp"
@@ -71,6 +72,7 @@ class FrameDecoder {
 
   Options options_;
   PdoBook pdos_;
+  canopen::EmergencyIds emergency_ids_;
   DecodedFrame out_;
   report::JsonWriter fields_{out_.fields};
   std::array<canopen::SdoObserver, 128> channels_;

@@ -96,6 +96,11 @@ report::Table result_table(Context& context, std::span<const Before> before, Nmt
   return table;
 }
 
+/// What a user may have set a moment ago, and a drive no longer has.
+constexpr std::string_view kCommunicationLost =
+    "by CiA 301, 1000h to 1FFFh are now as after power-on: PDOs, COB-IDs, heartbeats (1017h) and watched "
+    "producers (1016h) that were set and not stored are gone";
+
 Result<report::Value> run(Context& context, const Arguments& arguments, NmtCommand command) {
   if (context.dry_run) {
     report::Table table;
@@ -126,6 +131,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments, NmtComma
       return tl::unexpected<Error>(sent.error());
     context.session->watch().on_command(node);
   }
+  if (command == NmtCommand::reset_communication) context.notices.emplace_back(kCommunicationLost);
   if (!wait) return report::Value(result_table(context, before, command, false));
   const auto done = [&] {
     return std::all_of(before.begin(), before.end(),
@@ -149,8 +155,18 @@ Result<report::Value> run_command(Context& context, const Arguments& arguments) 
 
 constexpr std::string_view kDetails =
     "The command is sent once and is not answered by nodes. With --wait it counts as done when a heartbeat "
-    "(or, after a reset, the "
-    "boot-up message) confirms it; exit code 4 when nothing does. `-n all` addresses every node.";
+    "confirms it; exit code 4 when nothing does. `-n all` addresses every node.";
+
+constexpr std::string_view kResetDetails =
+    "The node restarts as if it had been switched off and on: what was set and neither stored (`store`) nor "
+    "kept (--keep) is gone. With --wait it counts as done when the boot-up message confirms it; exit code 4 "
+    "when none comes. `-n all` addresses every node.";
+
+constexpr std::string_view kResetCommDetails =
+    "By CiA 301 the node gives 1000h to 1FFFh the values they have after power-on and leaves everything else "
+    "as it is: PDOs, COB-IDs, its heartbeat (1017h) and whom it watches (1016h) go back to what is stored. "
+    "With --wait it counts as done when the boot-up message confirms it; exit code 4 when none comes. `-n "
+    "all` addresses every node.";
 
 }  // namespace
 
@@ -194,7 +210,7 @@ extern const Command kNmtReset;
 const Command kNmtReset{
     .path = "nmt reset",
     .summary = "Restart nodes (reset node); asks first",
-    .details = kDetails,
+    .details = kResetDetails,
     .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::resets,
@@ -206,7 +222,7 @@ extern const Command kNmtResetComm;
 const Command kNmtResetComm{
     .path = "nmt reset-comm",
     .summary = "Restart the communication of nodes; asks first",
-    .details = kDetails,
+    .details = kResetCommDetails,
     .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::resets,

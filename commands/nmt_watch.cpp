@@ -67,13 +67,18 @@ Result<std::vector<std::uint8_t>> nodes_of(Context& context) {
   return out;
 }
 
-/// What the nodes say of their heartbeat (1017h); one that is stopped or away says nothing.
+/// What the nodes say of their heartbeat (1017h); one that is stopped or away says nothing. The session
+/// learns from their 1014h under which CAN-ID emergencies come.
 std::vector<Result<Bytes>> ask_for_heartbeats(session::Session& session,
                                               std::span<const std::uint8_t> nodes) {
   std::vector<session::SdoRequest> requests;
   for (const auto node : nodes)
     requests.push_back({.node = node, .object = objects::kProducerHeartbeat, .size = 2});
-  return session.transfer(requests);
+  for (const auto node : nodes)
+    requests.push_back({.node = node, .object = objects::kEmergencyCobId, .size = 4});
+  auto answers = session.transfer(requests);
+  answers.resize(nodes.size(), Result<Bytes>(Bytes{}));
+  return answers;
 }
 
 std::string_view event_name(const NodeEvent& event) {
@@ -252,7 +257,12 @@ const Command kNmtWatch{
         "the end "
         "(--for, or Ctrl-C) what became of each node. A lost node is one that was silent for three of its "
         "heartbeat "
-        "periods, or with --guard did not answer in its life time. Guarding sends frames that start a "
+        "periods, or with --guard did not answer in its life time. Emergencies are found under "
+        "the "
+        "CAN-ID of 1014h, which is read first, and under 080h + node-ID, the only one that is known of a "
+        "node "
+        "which "
+        "did not answer and with --guard. Guarding sends frames that start a "
         "drive's "
         "own watch over its master: --read-only refuses it. Exit code 1 when a node was lost, never "
         "heard, or "

@@ -90,6 +90,17 @@ Result<void> check_type(const drive::Profile& profile, const Pdo& pdo) {
   return {};
 }
 
+/// A drive refuses to be asked by what its COB-ID forbids (CiA 301, table 71).
+Result<void> check_remote(const Pdo& wanted) {
+  const bool remote = wanted.type == 252 || wanted.type == 253;
+  const bool forbidden = (wanted.cob_id & canopen::kPdoNoRtr) != 0;
+  if (wanted.direction != PdoDirection::transmit || !remote || !forbidden) return {};
+  return no(wanted,
+            fmt::format("transmission type {} is sent on remote frames, which bit 30 of its COB-ID forbids",
+                        wanted.type),
+            "0 to 240 are sent by SYNC, 254 and 255 by event");
+}
+
 Result<void> check_bits(const drive::Profile& profile, const Pdo& present, const Pdo& wanted) {
   const auto may_change = profile.rules.pdo.cob_id_bits | canopen::kPdoInvalid;
   if (((present.cob_id ^ wanted.cob_id) & ~may_change) == 0) return {};
@@ -159,7 +170,9 @@ Result<void> check_communication(const drive::Profile& profile, const Pdo& prese
           missing(present.sync_start.has_value(), wanted.sync_start.has_value(), "SYNC start value");
       !r)
     return r;
-  return wanted.type == present.type ? Result<void>() : check_type(profile, wanted);
+  if (wanted.type == present.type) return {};
+  if (const auto known = check_type(profile, wanted); !known) return known;
+  return check_remote(wanted);
 }
 
 }  // namespace servoctl::commands

@@ -109,6 +109,16 @@ Result<Value> run(Context& context, const Arguments& arguments) {
         "no PDO came: nodes send them when operational (`nmt start`), synchronous ones at SYNC (`sync "
         "start`), "
         "others when a value changes or by their event timer");
+  const bool on_request = std::any_of(watched->begin(), watched->end(), [](const Watched& entry) {
+    const auto& pdo = entry.view.pdo;
+    return pdo.direction == canopen::PdoDirection::transmit && (pdo.type == 252 || pdo.type == 253) &&
+           entry.rhythm.count() == 0;
+  });
+  if (on_request)
+    context.notices.emplace_back(
+        "TPDOs of transmission types 252 and 253 come when somebody asks for them by a remote frame; "
+        "servoctl "
+        "does not");
   if (!context.keeps_samples) return Value(summary(*watched));
   return Value(report::Record{{"pdos", summary(*watched)}, {"samples", writer.take_kept()}});
 }

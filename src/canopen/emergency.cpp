@@ -65,9 +65,14 @@ constexpr auto kRegisterBits =
 
 std::optional<Emergency> parse_emergency(const can::Frame& frame) {
   if (frame.id < kEmergency + kFirstNode || frame.id > kEmergency + kLastNode) return std::nullopt;
-  if (frame.size < 2 || frame.extended || frame.remote || frame.error) return std::nullopt;
+  if (frame.extended) return std::nullopt;
+  return parse_emergency(frame, static_cast<std::uint8_t>(frame.id - kEmergency));
+}
+
+std::optional<Emergency> parse_emergency(const can::Frame& frame, std::uint8_t node) {
+  if (frame.size < 2 || frame.remote || frame.error) return std::nullopt;
   Emergency out;
-  out.node = static_cast<std::uint8_t>(frame.id - kEmergency);
+  out.node = node;
   out.code = static_cast<std::uint16_t>(frame.data[0] | frame.data[1] << 8U);
   if (frame.size > 2) out.error_register = frame.data[2];
   if (frame.size > 3) std::copy_n(frame.data.begin() + 3, frame.size - 3, out.vendor.begin());

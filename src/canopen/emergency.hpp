@@ -23,6 +23,9 @@ struct Emergency {
 
 /// Takes EMCY frames of the pre-defined connection set apart; 2 bytes are enough. SYNC (080h) is none.
 std::optional<Emergency> parse_emergency(const can::Frame& frame);
+/// The same, of a frame whose CAN-ID is known to be that of this node's emergencies (1014h).
+std::optional<Emergency> parse_emergency(const can::Frame& frame, std::uint8_t node);
+/// Under the CAN-ID of the pre-defined connection set.
 can::Frame emergency_frame(const Emergency& emergency);
 
 /// The class of an error code in the words of CiA 301, table 26: `temperature`, `voltage`, `heartbeat or life

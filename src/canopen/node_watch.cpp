@@ -16,7 +16,7 @@ TimePoint NodeWatch::Node::deadline() const {
 }
 
 void NodeWatch::on_frame(const can::Frame& frame, TimePoint now) {
-  if (const auto emergency = parse_emergency(frame)) return on_emergency(*emergency, now);
+  if (const auto emergency = emergency_ids_.parse(frame)) return on_emergency(*emergency, now);
   if (const auto message = parse_error_control(frame)) {
     on_error_control(*message, now);
     update_deadline();

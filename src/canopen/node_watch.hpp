@@ -9,7 +9,7 @@
 
 #include "base/time.hpp"
 #include "can/frame.hpp"
-#include "canopen/emergency.hpp"
+#include "canopen/emergency_ids.hpp"
 #include "canopen/nmt.hpp"
 
 namespace servoctl::canopen {
@@ -65,6 +65,8 @@ class NodeWatch {
   Duration period(std::uint8_t node) const { return nodes_[node].period; }
   /// The last emergencies of the node since its boot-up or error reset, oldest first, at most eight.
   const std::deque<Emergency>& emergencies(std::uint8_t node) const { return nodes_[node].emergencies; }
+  /// The node's 1014h holds this: emergencies come under its CAN-ID as well.
+  void learn_emergency_id(std::uint8_t node, std::uint32_t cob_id) { emergency_ids_.learn(node, cob_id); }
   /// The node answers a master's questions and sends nothing by itself: its silence means nothing.
   void set_guarded(std::uint8_t node, bool guarded);
   /// The node (0: every node) was sent an NMT command: the state of one that sends no heartbeat is unknown
@@ -92,6 +94,7 @@ class NodeWatch {
   void update_deadline();
 
   std::array<Node, 128> nodes_{};
+  EmergencyIds emergency_ids_;
   TimePoint deadline_ = kNever;  ///< Of all nodes; asked with every frame, changed by heartbeats only.
   std::deque<NodeEvent> events_;
 };

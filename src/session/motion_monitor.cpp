@@ -56,6 +56,8 @@ void MotionMonitor::find_tpdos() {
   for (const auto channel : channels_) objects.push_back(object_of(channel));
   tpdos_ = std::make_unique<TpdoValues>(*session_, pdos ? std::span(*pdos) : std::span<const canopen::Pdo>(),
                                         objects);
+  // The session learns from it under which CAN-ID emergencies come.
+  if (units_->has(objects::kEmergencyCobId)) (void)session_->upload(node_, objects::kEmergencyCobId);
 }
 
 std::vector<Result<Bytes>> MotionMonitor::look(std::span<const ObjectAddress> objects) {

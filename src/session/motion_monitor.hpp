@@ -47,8 +47,8 @@ class MotionMonitor {
   MotionMonitor(Session& session, const MotionUnits& units, std::uint8_t node);
 
   MotionLimits& limits() { return limits_; }
-  /// From now on what TPDOs bring is not read by SDO. Reads the drive's mapping; where it does not tell it,
-  /// everything is read.
+  /// From now on what TPDOs bring is not read by SDO. Reads the drive's mapping (where it does not tell it,
+  /// everything is read) and the COB-ID of its emergencies.
   void find_tpdos();
   /// The drive was told something: what it said before is no answer to it.
   void on_written() { told_at_ = session_->now(); }

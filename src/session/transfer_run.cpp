@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "canopen/cob_id.hpp"
+#include "drive/standard_objects.hpp"
 
 namespace servoctl::session {
 namespace {
@@ -114,6 +115,8 @@ void TransferRun::finish(Channel& channel, Result<Bytes> result) {
   }
   if (silent && result.error().hint.empty())
     result.error().hint = silence_hint(session_->watch(), request.node);
+  if (result && request.object == objects::kEmergencyCobId)
+    learn_emergency_id(request.node, request.data ? *request.data : *result);
   results_[channel.current] = result;
   --open_;
   const auto& options = session_->options();
@@ -121,6 +124,10 @@ void TransferRun::finish(Channel& channel, Result<Bytes> result) {
     options.list_progress(requests_.size() - open_, requests_.size(), session_->received_at_);
   if (!result && (silent || request.data)) skip_rest(channel, result.error(), silent);
   start(channel);
+}
+
+void TransferRun::learn_emergency_id(std::uint8_t node, ByteSpan data) {
+  if (data.size() == 4) session_->watch().learn_emergency_id(node, static_cast<std::uint32_t>(load_le(data)));
 }
 
 void TransferRun::skip_rest(Channel& channel, const Error& reason, bool reads_too) {

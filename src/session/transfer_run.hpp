@@ -28,6 +28,8 @@ class TransferRun {
   void finish(Channel& channel, Result<Bytes> result);
   void skip_rest(Channel& channel, const Error& reason, bool reads_too);
   void fail_all(const Error& error);
+  /// 1014h was read or written.
+  void learn_emergency_id(std::uint8_t node, ByteSpan data);
   void dispatch(const can::Frame& frame);
 
   Session* session_;

@@ -1,6 +1,10 @@
 // What scan, nmt and read say of nodes that are there, stopped, silent or away.
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+#include <unistd.h>
+#include <fstream>
+
 #include "../source_dir.hpp"
 #include "cli/line_runner.hpp"
 #include "cli/shell.hpp"
@@ -70,6 +74,62 @@ TEST_F(NodeTruth, WatchHearsTheEmergencyOfADriveThatAnswersNothing) {
   EXPECT_EQ(run("nmt reset -n 1 --yes"), 0) << all();
   EXPECT_EQ(run("nmt watch -n 1 --for 3s"), 1) << all();
   EXPECT_FALSE(says("never heard")) << all();
+}
+
+TEST_F(NodeTruth, WatchHearsEmergenciesUnderTheCanIdOf1014h) {
+  const auto file = std::filesystem::temp_directory_path() / fmt::format("servoctl-emcy-{}", ::getpid());
+  const std::pair<std::string, std::string> stored[] = {{"gsd600", "0x2000:6B F0000000"},  // Pn0106
+                                                        {"dm", "0x1014:00 F1000000"},
+                                                        {"ts", "0x1014:00 F1000000"},
+                                                        {"cia402", "0x1014:00 F1000000"}};
+  for (const auto& [family, cell] : stored) {
+    SCOPED_TRACE(family);
+    std::ofstream(file) << "# servoctl: memory of simulated drives, version 1\n1." << family << ' ' << cell
+                        << '\n';
+    use("sim:" + family + "@1?state=" + file.string() + "&fault=0x2310@500ms");
+    (void)run("nmt watch -n 1 --for 1s");
+    EXPECT_TRUE(says("node 1: EMCY 0x2310")) << all();
+  }
+  std::filesystem::remove(file);
+}
+
+TEST_F(NodeTruth, AnAddressOfEmergenciesThatWasWrittenIsKnown) {
+  use("sim:cia402@1?fault=0x2310@500ms", "1");
+  EXPECT_EQ(run("write 0x1014 0x80000081"), 0) << all();
+  EXPECT_EQ(run("write 0x1014 0x1F1"), 0) << all();
+  EXPECT_EQ(run("monitor --for 1s"), 0) << all();
+  (void)run("fault show");
+  EXPECT_TRUE(says("0x2310")) << all();
+}
+
+TEST_F(NodeTruth, AResetOfTheCommunicationSaysWhatIsGone) {
+  for (const std::string family : kFamilies) {
+    SCOPED_TRACE(family);
+    use("sim:" + family + "@1", "1");
+    EXPECT_EQ(run("nmt reset-comm --yes --wait"), 0) << all();
+    EXPECT_TRUE(says("1000h to 1FFFh are now as after power-on")) << all();
+    EXPECT_EQ(run("nmt reset --yes --wait"), 0) << all();
+    EXPECT_FALSE(says("1000h to 1FFFh")) << all();
+  }
+}
+
+TEST_F(NodeTruth, ASyncPeriodThatTheDriveRefusesIsNotSent) {  // da200, line 145 of its manual
+  use("sim:da200@1", "1");
+  EXPECT_EQ(run("write 0x1006 999 -d da200"), 2) << all();
+  EXPECT_TRUE(says("999 is out of range: 0, or at least 1000")) << all();
+  EXPECT_EQ(run("write 0x1006 0 -d da200"), 0) << all();
+  EXPECT_EQ(run("write 0x1006 1000 -d da200"), 0) << all();
+}
+
+TEST_F(NodeTruth, ATypeForRemoteFramesIsRefusedWhereBit30ForbidsThem) {
+  use("sim:gsd600@1", "1");
+  EXPECT_EQ(run("pdo map TPDO1 0x6041 --type 253 -y -d gsd600"), 2) << all();
+  EXPECT_TRUE(says("which bit 30 of its COB-ID forbids")) << all();
+  use("sim:ts@1", "1");
+  EXPECT_EQ(run("pdo map TPDO1 0x6041 --type 253 -y -d ts"), 0) << all();
+  EXPECT_EQ(run("nmt start"), 0) << all();
+  EXPECT_EQ(run("pdo watch TPDO1 --for 100ms -d ts"), 0) << all();
+  EXPECT_TRUE(says("come when somebody asks for them by a remote frame")) << all();
 }
 
 TEST_F(NodeTruth, ANodeThatWasStoppedIsConfirmedByItsHeartbeat) {

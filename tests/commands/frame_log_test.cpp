@@ -143,5 +143,32 @@ TEST(FrameLog, WritesNamesThatNeedCareAsTheyAre) {
       R"({"time":1700000005.105151,"service":"alarm","node":2,"event":"heartbeat-lost","text":"ALARM \"quoted\""})");
 }
 
+/// What is said of the last of these frames.
+std::string last_text(std::initializer_list<std::string_view> frames) {
+  drive::Profile profile;
+  FrameDecoder::Options options;
+  options.profile = &profile;
+  FrameDecoder decoder(options);
+  std::string out;
+  for (const auto text : frames) out = decoder.decode(*can::parse_frame(text)).text;
+  return out;
+}
+
+TEST(FrameLog, FindsEmergenciesUnderThe1014hThatWasReadOrWritten) {
+  const auto* plain = "0F1#1082110000000000";
+  EXPECT_EQ(last_text({plain}).substr(0, 11), "EMCY 0x8210");  // By its number that of node 113.
+  EXPECT_EQ(last_text({"281#1082110000000000"}).substr(0, 5), "TPDO2");
+  EXPECT_EQ(last_text({"601#4014100000000000", "581#4314100081020000", "281#1082110000000000"}).substr(0, 11),
+            "EMCY 0x8210");
+  EXPECT_EQ(last_text({"601#2314100081020000", "581#6014100000000000", "281#1082110000000000"}).substr(0, 11),
+            "EMCY 0x8210");
+  EXPECT_EQ(last_text({"601#2314100081020000", "581#8014100030000906", "281#1082110000000000"}).substr(0, 5),
+            "TPDO2")
+      << "it was refused";
+  EXPECT_EQ(
+      last_text({"601#4014100000000000", "581#4314100081020020", "00000281#1082110000000000"}).substr(0, 11),
+      "EMCY 0x8210");
+}
+
 }  // namespace
 }  // namespace servoctl::commands
