@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cctype>
-#include <set>
 
 #include "base/printable.hpp"
 #include "base/text.hpp"
@@ -9,21 +8,11 @@
 #include "commands/backup_formats.hpp"
 #include "commands/comparison.hpp"
 #include "commands/reading.hpp"
+#include "session/pdo_change.hpp"
 #include "session/write_plan.hpp"
 
 namespace servoctl::commands {
 namespace {
-
-constexpr std::uint64_t kInvalid = 0x8000'0000;
-
-bool is_cob_id(ObjectAddress object) {
-  return object.sub == 1 && ((object.index >= 0x1400 && object.index <= 0x15FF) ||
-                             (object.index >= 0x1800 && object.index <= 0x19FF));
-}
-bool is_mapping(ObjectAddress object) {
-  return (object.index >= 0x1600 && object.index <= 0x17FF) ||
-         (object.index >= 0x1A00 && object.index <= 0x1BFF);
-}
 
 std::string in_quotes(std::string_view word) {
   std::string out = "\"";
@@ -128,29 +117,12 @@ class Lines {
     return range.empty() ? range : fmt::format("the drive's own value, outside of the limits {}", range);
   }
 
-  /// Nothing is known of the drive the lines will meet: all is planned as if it differed.
+  /// Nothing is known of the drive the lines will meet.
   void add_writes(const session::Values& wanted) {
-    session::Values present;
-    for (const auto& [object, data] : wanted) present.emplace(object, before(wanted, object, data));
-    const auto plan = session::plan_writes(profile_, present, wanted);
-    std::set<ObjectAddress> planned;
-    for (const auto& step : plan) planned.insert(step.object);
-    for (const auto& [object, data] : wanted)
-      if (is_cob_id(object) && planned.count(object) == 0) add(object, data);
+    const auto plan = session::plan_writes_for_any_drive(wanted);
+    if (session::needs_pre_operational(profile_, plan))
+      out_ += "nmt preop  # Its PDOs change outside operational alone; `nmt start` goes back\n";
     for (const auto& step : plan) add(step.object, step.data);
-  }
-
-  /// What stands for the value from before: another one, but for a COB-ID (the PDO is valid, and so made
-  /// invalid first) and for mapping entries that the count leaves unused.
-  static Bytes before(const session::Values& wanted, ObjectAddress object, const Bytes& data) {
-    if (is_cob_id(object)) return store_le(load_le(data) & ~kInvalid, data.size());
-    const auto count = wanted.find({object.index, 0});
-    if (is_mapping(object) && object.sub > 0 && count != wanted.end() && load_le(count->second) < object.sub)
-      return data;
-    auto out = data;
-    for (auto& byte : out) byte = static_cast<std::uint8_t>(~byte);
-    if (out.empty()) out.push_back(0);  // Any text but the empty one.
-    return out;
   }
 
   std::string line(ObjectAddress object, const Bytes& data) const {

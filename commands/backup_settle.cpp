@@ -4,14 +4,15 @@
 
 #include "commands/backup_formats.hpp"
 #include "commands/change.hpp"
+#include "session/communication_order.hpp"
 
 namespace servoctl::commands {
 namespace {
 
 /// What is written twice in a procedure: the records of PDOs, and what assigns fixed ones (invalid or count 0
-/// first, the entries, then what is to be).
-bool is_pdo(ObjectAddress object) {
-  return (object.index >= 0x1400 && object.index <= 0x1BFF) ||
+/// first, the entries, then what is to be), and communication objects that are cleared first.
+bool is_of_procedure(ObjectAddress object) {
+  return session::is_written_in_steps(object) || (object.index >= 0x1400 && object.index <= 0x1BFF) ||
          (object.index >= 0x1C10 && object.index <= 0x1C2F);
 }
 
@@ -68,7 +69,7 @@ void settle(Backup& backup, const std::string& file, const drive::Profile& profi
     if (target.entry == nullptr && target.parameter == nullptr)
       return refuse(file, entry, fmt::format("is unknown to {}", profile.family),
                     "is it a file of this drive family? remove the entry when it is");
-    if (!procedure || !is_pdo(entry.object))
+    if (!procedure || !is_of_procedure(entry.object))
       if (const auto first = entries.find(entry.object); first != entries.end())
         return refuse(file, entry, fmt::format("stands here again, first in {}", first->second.line),
                       "remove one of them");

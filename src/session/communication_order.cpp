@@ -46,30 +46,57 @@ std::optional<Bytes> cleared(const PlannedWrite& write, const Bytes& present,
   return store_le(*now, present.size());
 }
 
-/// The period is 0 while the counter changes, and gets its value behind it.
-void hold_period(std::vector<PlannedWrite>& writes, std::vector<PlannedWrite>& first, const Values& present) {
+/// The period is 0 while the counter changes, and gets its value behind it. `now`: what it is; empty where
+/// that is not known.
+void hold_period(std::vector<PlannedWrite>& writes, std::vector<PlannedWrite>& first,
+                 const std::optional<Bytes>& now) {
   const auto at = [&](ObjectAddress object) {
     return std::find_if(writes.begin(), writes.end(), [&](const auto& w) { return w.object == object; });
   };
-  const auto now = present.find(objects::kSyncPeriod);
-  if (at(objects::kSyncOverflow) == writes.end() || now == present.end()) return;
-  auto period = now->second;
-  if (const auto planned = at(objects::kSyncPeriod); planned != writes.end()) {
-    period = planned->data;
-    writes.erase(planned);
-  }
-  if (number(now->second) != 0) first.push_back({objects::kSyncPeriod, Bytes(now->second.size(), 0)});
+  const auto planned = at(objects::kSyncPeriod);
+  if (at(objects::kSyncOverflow) == writes.end() || (!now && planned == writes.end())) return;
+  const auto period = planned != writes.end() ? planned->data : *now;
+  if (planned != writes.end()) writes.erase(planned);
+  if (!now || number(*now) != 0) first.push_back({objects::kSyncPeriod, Bytes(period.size(), 0)});
   if (number(period) != 0) writes.insert(at(objects::kSyncOverflow) + 1, {objects::kSyncPeriod, period});
+}
+
+/// No entry of 1016h watches anybody before the first is written.
+void clear_consumers(std::vector<PlannedWrite>& writes, std::vector<PlannedWrite>& first) {
+  const auto watches = [](const PlannedWrite& write) {
+    return is_consumer(write.object) && canopen::watched_node(number(write.data)) != 0;
+  };
+  if (std::none_of(writes.begin(), writes.end(), watches)) return;
+  for (const auto& write : writes)
+    if (is_consumer(write.object)) first.push_back({write.object, Bytes(write.data.size(), 0)});
+  std::erase_if(writes, [](const auto& w) { return is_consumer(w.object) && number(w.data) == 0; });
 }
 
 }  // namespace
 
 std::vector<PlannedWrite> in_allowed_order(std::vector<PlannedWrite> writes, const Values& present) {
   std::vector<PlannedWrite> out;
-  hold_period(writes, out, present);
+  const auto period = present.find(objects::kSyncPeriod);
+  if (period != present.end()) hold_period(writes, out, period->second);
   for (const auto& write : writes)
     if (const auto now = present.find(write.object); now != present.end())
       if (auto data = cleared(write, now->second, writes)) out.push_back({write.object, std::move(*data)});
+  out.insert(out.end(), writes.begin(), writes.end());
+  return out;
+}
+
+bool is_written_in_steps(ObjectAddress object) {
+  return is_consumer(object) || object == objects::kSyncCobId || object == objects::kSyncPeriod ||
+         object == objects::kTimeCobId || object == objects::kEmergencyCobId;
+}
+
+std::vector<PlannedWrite> in_order_for_any_drive(std::vector<PlannedWrite> writes) {
+  std::vector<PlannedWrite> out;
+  hold_period(writes, out, std::nullopt);
+  clear_consumers(writes, out);
+  for (const auto& write : writes)
+    if (const auto off = switched_off(write.object, number(write.data)))
+      out.push_back({write.object, store_le(*off, write.data.size())});
   out.insert(out.end(), writes.begin(), writes.end());
   return out;
 }

@@ -12,4 +12,11 @@ namespace servoctl::session {
 /// SYNC, TIME or EMCY in use is switched off before it gets another CAN-ID. Other writes keep their places.
 std::vector<PlannedWrite> in_allowed_order(std::vector<PlannedWrite> writes, const Values& present);
 
+/// Whether such an order may write an object twice: cleared or switched off first.
+bool is_written_in_steps(ObjectAddress object);
+
+/// The same for a drive of which nothing is known: what may be in the way is cleared or switched off first,
+/// whether it is there or not.
+std::vector<PlannedWrite> in_order_for_any_drive(std::vector<PlannedWrite> writes);
+
 }  // namespace servoctl::session

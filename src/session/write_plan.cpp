@@ -25,8 +25,9 @@ std::optional<std::uint16_t> block_of(std::uint16_t index) {
 /// The writes of one PDO, or of one assignment.
 class BlockPlan {
  public:
-  BlockPlan(const drive::Profile* profile, const Values& present, const Values& wanted, std::uint16_t block)
-      : by_count_(profile != nullptr && profile->rules.pdo.disable_by_count),
+  /// `by_count`: a mapping is opened by its count, and the COB-ID stays as it is where it does not change.
+  BlockPlan(bool by_count, const Values& present, const Values& wanted, std::uint16_t block)
+      : by_count_(by_count),
         present_(&present),
         wanted_(&wanted),
         cob_id_{block, 1},
@@ -92,10 +93,10 @@ void add_blocks(const std::vector<BlockPlan>& blocks, std::vector<PlannedWrite>&
   for (const auto& block : blocks) block.add_switching_on(out);
 }
 
-}  // namespace
-
-std::vector<PlannedWrite> plan_writes(const drive::Profile* profile, const Values& present,
-                                      const Values& wanted) {
+/// `in_order` puts the writes of communication objects in theirs.
+template <class InOrder>
+std::vector<PlannedWrite> plan(bool by_count, const Values& present, const Values& wanted,
+                               const InOrder& in_order) {
   std::vector<PlannedWrite> before;
   std::vector<PlannedWrite> after;
   std::set<std::uint16_t> blocks;
@@ -107,12 +108,43 @@ std::vector<PlannedWrite> plan_writes(const drive::Profile* profile, const Value
     else
       (blocks.empty() ? before : after).push_back({object, data});
   }
-  before = in_allowed_order(std::move(before), present);
+  before = in_order(std::move(before));
   std::vector<BlockPlan> plans;
-  for (const auto block : blocks) plans.emplace_back(profile, present, wanted, block);
+  for (const auto block : blocks) plans.emplace_back(by_count, present, wanted, block);
   add_blocks(plans, before);
   before.insert(before.end(), after.begin(), after.end());
   return before;
+}
+
+/// What stands for a value from before: another one, but for a COB-ID (the PDO is valid, and so made invalid
+/// first) and for mapping entries that the count leaves unused.
+Bytes any_before(const Values& wanted, ObjectAddress object, const Bytes& data) {
+  const auto place = canopen::pdo_at(object.index);
+  if (place && !place->mapping && object.sub == 1)
+    return store_le(load_le(data) & ~std::uint64_t{canopen::kPdoInvalid}, data.size());
+  const auto count = wanted.find({object.index, 0});
+  if (place && place->mapping && object.sub > 0 && count != wanted.end() &&
+      load_le(count->second) < object.sub)
+    return data;
+  auto out = data;
+  for (auto& byte : out) byte = static_cast<std::uint8_t>(~byte);
+  if (out.empty()) out.push_back(0);  // Any text but the empty one.
+  return out;
+}
+
+}  // namespace
+
+std::vector<PlannedWrite> plan_writes(const drive::Profile* profile, const Values& present,
+                                      const Values& wanted) {
+  const bool by_count = profile != nullptr && profile->rules.pdo.disable_by_count;
+  return plan(by_count, present, wanted,
+              [&](auto writes) { return in_allowed_order(std::move(writes), present); });
+}
+
+std::vector<PlannedWrite> plan_writes_for_any_drive(const Values& wanted) {
+  Values present;
+  for (const auto& [object, data] : wanted) present.emplace(object, any_before(wanted, object, data));
+  return plan(false, present, wanted, [](auto writes) { return in_order_for_any_drive(std::move(writes)); });
 }
 
 std::set<ObjectAddress> touched_by(const std::vector<PlannedWrite>& plan, const Values& present) {

@@ -28,6 +28,10 @@ struct PlannedWrite {
 std::vector<PlannedWrite> plan_writes(const drive::Profile* profile, const Values& present,
                                       const Values& wanted);
 
+/// The writes that lead to `wanted` from whatever a drive holds: as if everything differed and every PDO,
+/// every heartbeat consumer and every COB-ID were in use. Entries of a mapping behind its count are left out.
+std::vector<PlannedWrite> plan_writes_for_any_drive(const Values& wanted);
+
 /// What these writes may change: the objects written, and with a list (mapping, assignment) all its entries,
 /// which a count of 0 may clear. Only what is in `present`.
 std::set<ObjectAddress> touched_by(const std::vector<PlannedWrite>& plan, const Values& present);
