@@ -89,15 +89,6 @@ const DecodedFrame& FrameDecoder::decode(const can::Frame& frame) {
     const auto report = can::parse_report(frame);
     out_.service = "controller";
     out_.text = report ? can::text(*report) : "error frame, or report of the controller";
-  } else if (frame.extended) {
-    const auto* pdo = frame.remote ? nullptr : pdos_.find(canopen::can_id_of(frame));
-    const auto emergency = pdo == nullptr ? emergency_ids_.parse(frame) : std::nullopt;
-    if (pdo != nullptr)
-      decode_pdo(frame, pdo->node, pdo);
-    else if (emergency)
-      decode_emergency(*emergency);
-    else
-      out_.text = "29-bit identifier";
   } else {
     decode_service(frame);
   }
@@ -106,13 +97,17 @@ const DecodedFrame& FrameDecoder::decode(const can::Frame& frame) {
 
 void FrameDecoder::decode_service(const can::Frame& frame) {
   const auto node = static_cast<std::uint8_t>(frame.id & canopen::kLastNode);
-  // PDOs first: on a bus at work most frames are.
-  const auto* pdo = frame.remote ? nullptr : pdos_.find(frame.id);
+  if (const auto emergency = emergency_ids_.parse(frame)) return decode_emergency(*emergency);
+  // Then PDOs: on a bus at work most frames are.
+  const auto* pdo = frame.remote ? nullptr : pdos_.find(canopen::can_id_of(frame));
   if (pdo != nullptr) return decode_pdo(frame, pdo->node, pdo);
+  if (frame.extended) {
+    out_.text = "29-bit identifier";
+    return;
+  }
   if (frame.id == canopen::kNmt) return decode_nmt(frame);
   if (frame.id == canopen::kSync) return decode_sync(frame);
   if (frame.id == kTime) return decode_time(frame);
-  if (const auto emergency = emergency_ids_.parse(frame)) return decode_emergency(*emergency);
   if (node_of(frame, canopen::kSdoAnswer) || node_of(frame, canopen::kSdoRequest)) return decode_sdo(frame);
   if (node_of(frame, canopen::kErrorControl)) return decode_error_control(frame);
   if (frame.id > kFirstPdo && frame.id < canopen::kSdoAnswer && node != 0)
