@@ -80,6 +80,8 @@ std::uint32_t SimDrive::write(ObjectAddress object, ByteSpan data) {
   if (misbehaviour_.feigned.contains(object.index)) return 0;
   if (object == objects::kErrorHistory && data.size() == 1 && data[0] != 0) return abort::kRange;
   auto code = values_.check_write(object, data, node_);
+  // A count beyond the entries is no value of the wrong range, whatever limit its entry has.
+  if (code == abort::kTooHigh && PdoGuard::is_mapping(object) && object.sub == 0) code = abort::kPdoLength;
   if (code == 0) code = check_state(object, data);
   if (code != 0) {
     raise_access_alarm(object, code);
