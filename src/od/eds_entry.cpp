@@ -158,6 +158,16 @@ void check_can_id(const IniSection& section, const Entry& entry, Findings& findi
   }
 }
 
+/// `HighLimit 0xFF (-1)`: as the file writes it, and what that is in the entry's type where it reads
+/// otherwise.
+std::string shown_limit(const IniSection& section, std::string_view name, const NodeValue& value) {
+  const auto* key = section.find(name);
+  const auto number = to_string(value.value);
+  if (key == nullptr || key->value.empty()) return fmt::format("{} {}", name, number);
+  if (value.plus_node_id || key->value == number) return fmt::format("{} {}", name, shown(key->value));
+  return fmt::format("{} {} ({})", name, shown(key->value), number);
+}
+
 void check_order(const IniSection& section, Entry& entry, Findings& findings) {
   const auto tell = [&](std::string_view rule, const std::string& message) {
     findings.add(Severity::warning, section.line, 1, std::string(rule),
@@ -168,11 +178,18 @@ void check_order(const IniSection& section, Entry& entry, Findings& findings) {
     return a && b && compare_numbers(a->for_node(1), b->for_node(1)) > 0;
   };
   if (above(entry.low, entry.high)) {
-    tell("limits-crossed", "LowLimit is above HighLimit; neither is used");
+    tell("limits-crossed",
+         fmt::format("{} is above {} in {}; neither is used", shown_limit(section, "LowLimit", *entry.low),
+                     shown_limit(section, "HighLimit", *entry.high), name(entry.type)));
     entry.low = entry.high = std::nullopt;
   }
-  if (above(entry.low, entry.default_value) || above(entry.default_value, entry.high))
-    tell("default-out-of-limits", "DefaultValue is not within the limits");
+  const bool below = above(entry.low, entry.default_value);
+  if (below || above(entry.default_value, entry.high))
+    tell("default-out-of-limits",
+         fmt::format("{} is {} {}", shown_limit(section, "DefaultValue", *entry.default_value),
+                     below ? "below" : "above",
+                     below ? shown_limit(section, "LowLimit", *entry.low)
+                           : shown_limit(section, "HighLimit", *entry.high)));
 }
 
 }  // namespace

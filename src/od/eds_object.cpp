@@ -89,6 +89,13 @@ void tell_too_high(const IniSection& section, Findings& findings) {
 void check_sub_number(const IniSection& section, const ObjectSections& sections, Findings& findings) {
   const auto* key = section.find("SubNumber");
   const auto count = sections.subs.size();
+  if (count == 0) {
+    findings.add(
+        Severity::warning, section.line, 1, "no-sub-indexes",
+        fmt::format("[{}] has neither sub-indexes nor CompactSubObj; nothing of it is taken", section.name),
+        "add the sections of its sub-indexes, or write ObjectType=0x7 when it is one value");
+    return;
+  }
   if (key == nullptr || key->value.empty()) {
     findings.add(Severity::warning, section.line, 1, "missing-sub-number",
                  fmt::format("[{}] has no SubNumber", section.name), fmt::format("add SubNumber={}", count));

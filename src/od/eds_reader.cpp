@@ -260,6 +260,9 @@ Result<EdsFile> read_eds(std::string_view text, std::string_view file) {
   const auto decoded = to_utf8(text);
   auto out = Reader(decoded.text(text), findings_of(decoded)).read();
   if (!out.dictionary.empty()) return out;
+  if (starts_with_nocase(trim(decoded.text(text)), "<"))
+    return refuse(file, "this is XML, not an EDS or DCF file",
+                  "device descriptions in XML (XDD and XDC, CiA 311) are not read: take the device's EDS");
   const auto& all = out.diagnostics;
   const auto why = std::find_if(
       all.begin(), all.end(), [](const Diagnostic& finding) { return finding.severity == Severity::error; });

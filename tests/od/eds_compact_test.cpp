@@ -37,8 +37,8 @@ TEST(EdsCompact, MakesTheCountAndEveryEntry) {
 }
 
 TEST(EdsCompact, IsNoneWithoutANumberAboveZero) {
-  EXPECT_EQ(findings(read(compact("0") + kGood)), Rules{"1:1 missing-sub-number"});
-  EXPECT_EQ(findings(read(compact("") + kGood)), Rules{"1:1 missing-sub-number"});
+  EXPECT_EQ(findings(read(compact("0") + kGood)), Rules{"1:1 no-sub-indexes"});
+  EXPECT_EQ(findings(read(compact("") + kGood)), Rules{"1:1 no-sub-indexes"});
   EXPECT_EQ(default_of(read(compact("1")), {0x2000, 1}), "9");
 }
 

@@ -85,6 +85,15 @@ TEST(EdsEntry, KnowsItsLineAndItsName) {
             (Rules{"1:1 missing-name", "5:15 duplicate-key"}));
 }
 
+TEST(EdsLimits, ThatTheDefaultIsOutOfAreNamedAsTheyAreWritten) {
+  const auto said = [](const char* keys) {
+    return read(variable("2000", "5", keys)).diagnostics.front().message;
+  };
+  EXPECT_EQ(said("HighLimit=0x04\nDefaultValue=0x05"),
+            "[2000]: DefaultValue 0x05 (5) is above HighLimit 0x04 (4)");
+  EXPECT_EQ(said("LowLimit=4\nDefaultValue=3"), "[2000]: DefaultValue 3 is below LowLimit 4");
+}
+
 TEST(EdsLimits, MayMeetEachOtherAndTheDefault) {
   EXPECT_EQ(findings(read(variable("2000", "2", "LowLimit=-1\nHighLimit=-1\nDefaultValue=-1"))), Rules{});
   EXPECT_EQ(findings(read(variable("2000", "7", "LowLimit=$NODEID\nHighLimit=1"))), Rules{});

@@ -183,6 +183,16 @@ TEST(Eds, WithoutAnyObjectIsRefused) {
   }
 }
 
+TEST(Eds, InXmlIsNamedAsThat) {
+  for (const auto* text :
+       {"\xEF\xBB\xBF<?xml version=\"1.0\"?>\n<ISO15745ProfileContainer/>\n", "\n <Device/>"}) {
+    const auto file = read_eds(text, "x.xdd");
+    ASSERT_FALSE(file) << text;
+    EXPECT_EQ(file.error().message, "x.xdd: this is XML, not an EDS or DCF file");
+    EXPECT_NE(file.error().hint.find("CiA 311"), std::string::npos);
+  }
+}
+
 TEST(Diagnostic, IsShownAsCompilersDo) {
   EXPECT_EQ(to_string({Severity::error, 12, 9, "bad-value", "no good", "mend it"}, "x.eds"),
             "x.eds:12:9: error: no good [bad-value]");

@@ -77,6 +77,8 @@ TEST(EdsValue, InHexadecimalMayHaveLeadingZeros) {
 TEST(EdsLimits, ThatCrossAreNotUsed) {
   const auto file = read(variable("2000", "2", "LowLimit=0\nHighLimit=0xFF\nDefaultValue=1"));
   EXPECT_EQ(findings(file), Rules{"1:1 limits-crossed"});
+  EXPECT_EQ(file.diagnostics.front().message,
+            "[2000]: LowLimit 0 is above HighLimit 0xFF (-1) in i8; neither is used");
   EXPECT_FALSE(file.dictionary.find({0x2000, 0})->low);
   EXPECT_FALSE(file.dictionary.find({0x2000, 0})->high);
 }
