@@ -64,7 +64,7 @@ std::string missing(const drive::Profile& profile, const Backup& backup, const B
   return fmt::format("{} {} {} ({}): use JSON to keep it", to_string(entry.object), entry.name,
                      range.empty() ? std::string("cannot stand in a DCF as the drive holds it")
                                    : fmt::format("is outside of its limits {} and not in the DCF", range),
-                     to_hex(*entry.bytes));
+                     entry.bytes->empty() ? std::string("\"\"") : to_hex(*entry.bytes));
 }
 
 }  // namespace

@@ -24,7 +24,9 @@ Shown show(const drive::Profile* profile, const Side& side, ObjectAddress object
   const auto decoded = decode_value(reading, found->second);
   // COB-IDs, mappings and heartbeat entries are made of fields: decimal says nothing.
   const bool fields = object.index < 0x2000 && found->second.size() == 4 && decoded.unit.empty();
-  auto text = fields ? fmt::format("0x{:08X}", load_le(found->second)) : decoded.text;
+  auto text = fields                  ? fmt::format("0x{:08X}", load_le(found->second))
+              : found->second.empty() ? std::string("\"\"")
+                                      : decoded.text;
   if (const auto* label = std::get_if<std::string>(&decoded.label.data())) text += " " + *label;
   return {std::move(text), Record{{"value", decoded.value},
                                   {"raw", decoded.raw},

@@ -191,7 +191,7 @@ void DuplicateWatch::on_boot_up(std::uint8_t id, TimePoint now) {
   const auto gap = node.boot ? now - *node.boot : Duration::max();
   if (!explained && gap < kBootWindow && gap > kDoubledFrame)
     notice(id,
-           fmt::format("two boot-ups within {} ms",
+           fmt::format("two boot-ups within {} ms, unless it is one that starts over and over",
                        std::chrono::duration_cast<std::chrono::milliseconds>(gap).count()),
            now);
   node = Node{.open = {},

@@ -49,7 +49,12 @@ void NodeWatch::on_error_control(const ErrorControl& message, TimePoint now) {
     node.intervals = 0;
     node.lost = false;
     node.emergencies.clear();
-    events_.push_back({now, message.node, NodeEvent::BootUp{}});
+    const auto told = std::find_if(events_.rbegin(), events_.rend(),
+                                   [&](const NodeEvent& event) { return event.node == message.node; });
+    if (told != events_.rend() && std::holds_alternative<NodeEvent::BootUp>(told->what))
+      ++told->times;
+    else
+      events_.push_back({now, message.node, NodeEvent::BootUp{}});
     return;
   }
   if (node.last)

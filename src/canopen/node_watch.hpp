@@ -38,7 +38,7 @@ struct NodeEvent {
   TimePoint time;
   std::uint8_t node = 0;
   std::variant<BootUp, StateChange, HeartbeatLost, Emergency, GuardingLost, GuardingBack, Doubled> what;
-  std::uint32_t times = 1;  ///< How often in succession the node told the same emergency.
+  std::uint32_t times = 1;  ///< How often in succession the node told the same emergency, or a boot-up.
 };
 
 /// Listens to boot-up, heartbeat and emergency messages of all nodes. Sees every frame, whatever a command

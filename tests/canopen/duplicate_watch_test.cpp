@@ -145,7 +145,7 @@ TEST_F(DuplicateWatchTest, LeavesBlockTransfersOut) {
 
 TEST_F(DuplicateWatchTest, NoticesTwoBootUpsThatNobodyAskedFor) {
   play({"< 701#00", "+ 100ms", "< 701#00"});
-  EXPECT_EQ(noticed(), "two boot-ups within 101 ms");
+  EXPECT_EQ(noticed(), "two boot-ups within 101 ms, unless it is one that starts over and over");
 }
 
 TEST_F(DuplicateWatchTest, TakesResetsDoubledFramesAndSlowRestartsForOneNode) {
@@ -158,7 +158,7 @@ TEST_F(DuplicateWatchTest, TakesResetsDoubledFramesAndSlowRestartsForOneNode) {
 
 TEST_F(DuplicateWatchTest, NoticesTwoBootUpsAfterOneReset) {
   play({"> 000#8201", "+ 100ms", "< 701#00", "+ 30ms", "< 701#00"});
-  EXPECT_EQ(noticed(), "two boot-ups within 31 ms");
+  EXPECT_EQ(noticed(), "two boot-ups within 31 ms, unless it is one that starts over and over");
 }
 
 TEST_F(DuplicateWatchTest, KnowsItOfTheNodeAloneUntilItIsToForget) {

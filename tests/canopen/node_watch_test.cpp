@@ -32,6 +32,20 @@ TEST_F(NodeWatchTest, TellsBootUpAndCountsIt) {
   EXPECT_EQ(watch.state(6), std::nullopt);
 }
 
+TEST_F(NodeWatchTest, TellsBootUpsInSuccessionInOneEvent) {
+  for (int i = 0; i < 20; ++i) hear("705#00", 100ms);
+  const auto event = watch.take_event();
+  ASSERT_TRUE(event);
+  EXPECT_EQ(event->times, 20U);
+  EXPECT_EQ(kinds(), std::vector<std::size_t>{});
+  EXPECT_EQ(watch.boots(5), 20U);
+  hear("705#00", 1ms);
+  hear("706#00", 1ms);
+  hear("705#05", 1ms);
+  hear("705#00", 1ms);
+  EXPECT_EQ(kinds(), (std::vector<std::size_t>{kBootUp, kBootUp, kChange, kBootUp}));
+}
+
 TEST_F(NodeWatchTest, TellsAChangeOfStateButNotTheFirstOneHeard) {
   hear("705#7F", 1ms);
   EXPECT_EQ(kinds(), std::vector<std::size_t>{});

@@ -51,5 +51,14 @@ TEST_F(BackupTest, GivesTheLinesThatLeadFromOneToAnother) {
   EXPECT_EQ(run("diff node:1 node:2"), 0) << console.out_text;
 }
 
+TEST_F(BackupTest, WithAnEmptyTextShowsItAsOne) {
+  spill("t.eds", "[2000]\nParameterName=Label\nObjectType=7\nDataType=9\nAccessType=rw\nDefaultValue=abc\n");
+  use("sim:t@1", "t");
+  ASSERT_EQ(run("write 0x2000 \"\""), 0) << console.err_text;
+  EXPECT_EQ(run("diff factory node:1"), 1);
+  EXPECT_NE(console.out_text.find("factory  node:1"), std::string::npos) << console.out_text;
+  EXPECT_NE(console.out_text.find("abc      \"\""), std::string::npos) << console.out_text;
+}
+
 }  // namespace
 }  // namespace servoctl::cli
