@@ -76,7 +76,7 @@ void add_bridge(Context& context, std::uint8_t node, const drive::Target& target
   const session::MeasureQuestion question[] = {{node, *meaning.measure}};
   const auto measure = session::read_measures(*context.session, *context.profile, question).front();
   if (!measure) return;
-  meaning.bridge = drive::bridge(meaning.unit, target.address, *measure);
+  meaning.bridge = drive::bridge(meaning.unit, target.address, measure->value);
   warn_of_gear(context, node, question[0].measure);
 }
 

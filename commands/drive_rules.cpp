@@ -63,16 +63,11 @@ std::string product(const std::vector<Quotient::Factor>& factors) {
 std::string quotient_text(const Quotient& quotient) {
   auto out = product(quotient.multiply);
   for (const auto object : quotient.power_of_two) out += fmt::format(" × 2^{}", to_string(object));
+  if (quotient.learned) out = quotient.multiply.empty() ? "measured" : "measured × " + out;
   if (!quotient.divide.empty()) out += " / (" + product(quotient.divide) + ")";
   for (const auto& condition : quotient.when)
     out += fmt::format(", when {} is {}", to_string(condition.object), condition.value);
   return out + (quotient.assumed ? " (assumed)" : "");
-}
-
-std::string ways_text(const drive::Quotients& ways) {
-  std::string out;
-  for (const auto& way : ways) append(out, quotient_text(way), "; ");
-  return out;
 }
 
 Value units(const Rules& rules) {
@@ -84,6 +79,8 @@ Value units(const Rules& rules) {
   for (const auto& [measure, name] : names)
     if (const auto found = rules.units.find(measure); found != rules.units.end())
       out.push_back({name, ways_text(found->second)});
+  if (!rules.learn.speed.empty())
+    out.push_back({"measured", fmt::format("by `units learn`, against {}", rules.learn.speed)});
   return out.empty() ? Value() : Value(std::move(out));
 }
 
@@ -217,6 +214,12 @@ Value caution_text(const Rules& rules, bool chinese) {
 }
 
 }  // namespace
+
+std::string ways_text(const drive::Quotients& ways) {
+  std::string out;
+  for (const auto& way : ways) append(out, quotient_text(way), "; ");
+  return out;
+}
 
 Record rules_record(const drive::Profile& profile, bool chinese) {
   const auto& rules = profile.rules;

@@ -5,6 +5,7 @@
 #include "base/file.hpp"
 #include "base/number.hpp"
 #include "canopen/cob_id.hpp"
+#include "commands/kept_turn.hpp"
 #include "commands/motion_result.hpp"
 #include "commands/planned_messages.hpp"
 #include "drive/standard_objects.hpp"
@@ -124,6 +125,7 @@ Result<void> check_motion(const Context& context, const Arguments& arguments,
   if (!node) return tl::unexpected<Error>(node.error());
   auto options = motion_options(context, arguments);
   if (!options) return tl::unexpected<Error>(options.error());
+  if (!options->turn) options->learned = find_turn(context, *node).counts;
   session::Motion motion(*context.session, *context.profile, *node, std::move(*options));
   auto ready = motion.prepare();
   if (ready)
@@ -141,11 +143,15 @@ Result<Value> run_motion(Context& context, const Arguments& arguments, const Mot
   const std::string csv(arguments.text("--csv"));
   if (!csv.empty() && !context.dry_run)
     if (const auto possible = check_writable(csv); !possible) return tl::unexpected<Error>(possible.error());
+  if (run.in_counts) options->turn.reset();
+  const auto known = options->turn || run.in_counts ? KnownTurn{} : find_turn(context, *node);
+  options->learned = known.counts;
   std::function<void(const session::MotionSample&)> display;
   options->on_sample = [&display](const session::MotionSample& sample) { display(sample); };
   session::Motion motion(*context.session, *context.profile, *node, std::move(*options));
   display = Display(context, motion);
   if (const auto ready = motion.prepare(); !ready) return tl::unexpected<Error>(ready.error());
+  tell_turn(context, motion.units(), known);
   const auto plan = run.plan(motion);
   if (!plan) return tl::unexpected<Error>(plan.error());
   const auto items = motion.look(context.chinese);

@@ -52,6 +52,7 @@ Result<std::uint8_t> one_node(const Context& context);
 struct MotionRun {
   std::function<Result<session::MotionPlan>(session::Motion&)> plan;
   std::function<session::MotionReport(session::Motion&, const session::MotionPlan&)> run;
+  bool in_counts = false;  ///< In the drive's own counts, whatever is known of a turn.
 };
 
 /// One of the motions of session/motion_kinds.hpp; `kind` must outlive it.

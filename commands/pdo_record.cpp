@@ -2,36 +2,18 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <cctype>
 #include <utility>
 
 #include "base/bytes.hpp"
 #include "base/text.hpp"
 #include "commands/backup_file.hpp"
-#include "session/open_bus.hpp"
+#include "commands/bus_name.hpp"
 
 namespace servoctl::commands {
 namespace {
 
 namespace fs = std::filesystem;
 using session::Identity;
-
-/// Tells names apart that are the same without their punctuation (FNV-1a).
-std::uint32_t hash_of(std::string_view text) {
-  std::uint32_t out = 0x811C9DC5;
-  for (const char c : text) out = (out ^ static_cast<unsigned char>(c)) * 0x01000193;
-  return out;
-}
-
-/// A bus as a part of a file's name: the same for every way to write it, and for no other bus.
-std::string name_of_bus(std::string_view url) {
-  constexpr std::size_t kMost = 100;
-  const auto bus = session::canonical_url(url);
-  auto out = bus.substr(0, kMost);
-  for (auto& c : out)
-    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '-';
-  return out == bus ? out : fmt::format("{}-{:08x}", out, hash_of(bus));
-}
 
 std::string name_of_drive(const Identity& drive) {
   std::string out;
@@ -81,7 +63,7 @@ std::string text_of(const Identity& drive) {
 PdoRecord::PdoRecord(const Context& context, std::uint8_t node)
     : context_(&context),
       node_(node),
-      name_(fmt::format("pdos-before-{}-node-{}", name_of_bus(context.session->url()), node)) {}
+      name_(fmt::format("pdos-before-{}-node-{}", bus_name(context.session->url()), node)) {}
 
 /// Of any drive that has been this node. The journal is written last and removed first.
 std::vector<fs::path> PdoRecord::found() const {

@@ -45,7 +45,7 @@ void add_bridges(session::Session& session, const drive::Profile& profile, std::
     const auto place = std::find(questions.begin(), questions.end(), *question) - questions.begin();
     const auto& measure = measures[static_cast<std::size_t>(place)];
     const auto unit = drive::meaning(reading.target, reading.node).unit;
-    if (measure) reading.bridge = drive::bridge(unit, reading.target.address, *measure);
+    if (measure) reading.bridge = drive::bridge(unit, reading.target.address, measure->value);
   }
 }
 

@@ -36,6 +36,9 @@ extern const Command kJog;
 extern const Command kMove;
 extern const Command kHome;
 extern const Command kTorque;
+extern const Command kUnitsShow;
+extern const Command kUnitsLearn;
+extern const Command kUnitsForget;
 extern const Command kNmtStart;
 extern const Command kNmtStop;
 extern const Command kNmtPreop;
@@ -148,6 +151,9 @@ std::span<const Command* const> registry() {
       &kMove,
       &kHome,
       &kTorque,
+      &kUnitsShow,
+      &kUnitsLearn,
+      &kUnitsForget,
       &kNmtStart,
       &kNmtStop,
       &kNmtPreop,

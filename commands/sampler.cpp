@@ -32,7 +32,7 @@ void add_bridges(Context& context, std::vector<Channel>& channels) {
   const auto measures = session::read_measures(*context.session, *context.profile, questions);
   for (std::size_t i = 0; i < asking.size(); ++i) {
     const auto unit = drive::meaning(asking[i]->target, asking[i]->node).unit;
-    if (measures[i]) asking[i]->bridge = drive::bridge(unit, asking[i]->target.address, *measures[i]);
+    if (measures[i]) asking[i]->bridge = drive::bridge(unit, asking[i]->target.address, measures[i]->value);
   }
 }
 

@@ -134,6 +134,12 @@ struct StoreRules {
   std::string clear_alarms_at_start;  ///< Parameter: 1 clears the alarm records at the next start.
 };
 
+/// How the counts in a turn of the motor are measured where no object tells them.
+struct LearnRules {
+  std::string speed;  ///< Parameter or object that shows the speed of the motor in rpm; empty: there is none.
+  double least = 0;   ///< The drive has no fewer counts in a turn: how fast it may be told to turn at first.
+};
+
 /// How the drive is moved. Modes are numbers of 6060h; empty where it has none.
 struct MotionRules {
   std::optional<std::int8_t> position;
@@ -225,6 +231,7 @@ struct Rules {
 
   std::vector<Numbering> numbering;
   std::map<Measure, Quotients> units;
+  LearnRules learn;
   SdoRules sdo;
   NmtRules nmt;
   PdoRules pdo;

@@ -96,6 +96,7 @@ bool get(const toml::node& node, Quotient& out) {
                                  .read({{"multiply", list_into(out.multiply)},
                                         {"divide", list_into(out.divide)},
                                         {"power_of_two", into(out.power_of_two)},
+                                        {"learned", into(out.learned)},
                                         {"when", list_into(out.when)},
                                         {"assumed", into(out.assumed)}})
                                  .has_value();
@@ -132,13 +133,23 @@ Result<void> read_numbering(const TableReader& reader, Numbering& out) {
 }
 
 Result<void> read_units(const TableReader& reader, Rules& rules) {
+  const auto learn = [&](const toml::node& node) {
+    const auto least = [&](const toml::node& n) {
+      rules.learn.least = n.value<double>().value_or(0);
+      return rules.learn.least >= 1;
+    };
+    return has_only(node, {"speed", "least"}) &&
+           TableReader(*node.as_table(), "")
+               .read({{"speed", into(rules.learn.speed)}, {"least", least}})
+               .has_value();
+  };
   return reader.read(
       {{"increments_per_turn",
         [&](const auto& n) { return quotients_into(rules.units[Measure::increments_per_turn])(n); }},
        {"pulses_per_turn",
         [&](const auto& n) { return quotients_into(rules.units[Measure::pulses_per_turn])(n); }},
-       {"rated_torque",
-        [&](const auto& n) { return quotients_into(rules.units[Measure::rated_torque])(n); }}});
+       {"rated_torque", [&](const auto& n) { return quotients_into(rules.units[Measure::rated_torque])(n); }},
+       {"learn", learn}});
 }
 
 Result<void> read_sdo(const TableReader& reader, Rules& rules) {

@@ -37,9 +37,12 @@ class Evaluation {
   void add(ObjectAddress object, const Result<Bytes>& answer) { answers_.emplace(object, &answer); }
 
   /// By the first way whose conditions hold.
-  std::optional<double> of(const drive::Quotients& ways) const {
+  std::optional<Measured> of(const drive::Quotients& ways, std::optional<double> learned) const {
     const auto way = std::find_if(ways.begin(), ways.end(), [&](const auto& w) { return holds(w); });
-    return way == ways.end() ? std::nullopt : of(*way);
+    if (way == ways.end() || (way->learned && !learned)) return std::nullopt;
+    const auto value = of(*way);
+    if (!value) return std::nullopt;
+    return Measured{way->learned ? *value * *learned : *value, way->learned};
   }
 
  private:
@@ -79,8 +82,8 @@ class Evaluation {
 
 }  // namespace
 
-std::vector<std::optional<double>> read_measures(Session& session, const drive::Profile& profile,
-                                                 std::span<const MeasureQuestion> questions) {
+std::vector<std::optional<Measured>> read_measures(Session& session, const drive::Profile& profile,
+                                                   std::span<const MeasureQuestion> questions) {
   const auto& known = profile.rules.units;
   const auto ways_of = [&](const MeasureQuestion& question) {
     const auto found = known.find(question.measure);
@@ -92,7 +95,7 @@ std::vector<std::optional<double>> read_measures(Session& session, const drive::
       for (const auto object : objects_of(*ways))
         requests.push_back({.node = question.node, .object = object});
   const auto answers = session.transfer(requests);
-  std::vector<std::optional<double>> out;
+  std::vector<std::optional<Measured>> out;
   std::size_t next = 0;
   for (const auto& question : questions) {
     const auto* ways = ways_of(question);
@@ -102,7 +105,7 @@ std::vector<std::optional<double>> read_measures(Session& session, const drive::
     }
     Evaluation evaluation(profile);
     for (const auto object : objects_of(*ways)) evaluation.add(object, answers[next++]);
-    out.push_back(evaluation.of(*ways));
+    out.push_back(evaluation.of(*ways, question.learned));
   }
   return out;
 }

@@ -14,14 +14,21 @@ namespace servoctl::session {
 struct MeasureQuestion {
   std::uint8_t node = 0;
   drive::Measure measure = drive::Measure::increments_per_turn;
+  /// The number that no object of this drive tells (drive::Quotient::learned), where it is known.
+  std::optional<double> learned = {};
 
   bool operator==(const MeasureQuestion&) const = default;
 };
 
+struct Measured {
+  double value = 0;
+  bool learned = false;  ///< MeasureQuestion::learned went into it.
+};
+
 /// Reads gear, encoder and rating objects of drives, as the family's rules say (`[units]`): increments in one
 /// turn of the motor, rated torque in Nm. Empty where the rules do not know the measure, or the drive does
-/// not answer an object of it.
-std::vector<std::optional<double>> read_measures(Session& session, const drive::Profile& profile,
-                                                 std::span<const MeasureQuestion> questions);
+/// not answer an object of it, or nobody knows the number that it does not tell.
+std::vector<std::optional<Measured>> read_measures(Session& session, const drive::Profile& profile,
+                                                   std::span<const MeasureQuestion> questions);
 
 }  // namespace servoctl::session

@@ -36,7 +36,8 @@ Motion::Motion(Session& session, const drive::Profile& profile, std::uint8_t nod
 
 Result<void> Motion::prepare() {
   if (const auto alive = power_.statusword(); !alive) return tl::unexpected<Error>(alive.error());
-  units_ = std::make_unique<MotionUnits>(*session_, *profile_, node_, options_.turn, options_.encoder);
+  units_ = std::make_unique<MotionUnits>(*session_, *profile_, node_, options_.turn, options_.encoder,
+                                         options_.learned);
   monitor_ = std::make_unique<MotionMonitor>(*session_, *units_, node_);
   if (const auto done = read_limits(); !done) return done;
   speed_cap_ = find_speed_cap();
@@ -207,6 +208,7 @@ Result<bool> Motion::supervise(const std::function<Result<bool>(const MotionSamp
     const auto sample = monitor_->sample();
     if (!monitor_->samples().empty() && options_.on_sample) options_.on_sample(monitor_->samples().back());
     if (!sample) return tl::unexpected<Error>(sample.error());
+    if (const auto fits = check_learned(*sample); !fits) return tl::unexpected<Error>(fits.error());
     if (options_.unheard && options_.unheard())
       return fail(error(Errc::interrupted, "nobody reads the output any more; the motion was ended"));
     const auto enough = done(*sample);

@@ -18,6 +18,7 @@ namespace servoctl::session {
 struct MotionOptions {
   std::optional<std::uint8_t> producer;  ///< servoctl's own node-ID for the watchdog.
   std::optional<double> turn;            ///< Increments in one turn, where the drive does not tell.
+  std::optional<double> learned;         ///< What MotionUnits knows by that name.
   std::optional<double> encoder;         ///< Encoder counts in one turn, where the drive does not tell.
   std::string speed_limit;               ///< Of 60FFh.
   std::string acceleration;              ///< Of 6083h.
@@ -82,6 +83,9 @@ class Motion {
   /// The speed in the unit of 60FFh that must not be exceeded: the user's, else a safe one. Errc::usage when
   /// none is known; Errc::refused when the user's is above the drive's own maximum.
   Result<double> speed_cap() const { return speed_cap_; }
+  /// The greatest speed that the drive allows (607Fh, 6080h), in the unit of 60FFh; empty where it does not
+  /// tell it in that unit.
+  std::optional<double> fastest() const;
   /// Errc::refused when the speed is above speed_cap().
   Result<void> check_speed(double speed) const;
   /// Stops the motion above this speed, in the unit of 60FFh. False where the drive tells its speed in
@@ -127,6 +131,7 @@ class Motion {
 
  private:
   Result<bool> supervise(const std::function<Result<bool>(const MotionSample&)>& done, Duration longest);
+  Result<void> check_learned(const MotionSample& sample);
   Result<void> look_again();
   Result<void> make_ready(MotionGuard& guard, std::int8_t mode, const std::vector<MotionSetting>& settings,
                           std::optional<ObjectAddress> kept_target, Rehearsal& rehearsal);
@@ -148,6 +153,7 @@ class Motion {
   WatchdogPlan watchdog_;
   Result<double> speed_cap_ = 0.0;
   double standstill_ = 0;
+  int odd_looks_ = 0;  ///< In a row, at which the monitor of the speed contradicted the counts of a turn.
 };
 
 }  // namespace servoctl::session

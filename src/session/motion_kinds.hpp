@@ -3,8 +3,9 @@
 #include <algorithm>
 
 #include "session/motion.hpp"
+#include "session/turn_estimate.hpp"
 
-/// The four ways in which servoctl moves a motor. Each checks what it is asked before anything is written
+/// The ways in which servoctl moves a motor. Each checks what it is asked before anything is written
 /// (plan_…: only reads), and then runs to its verified end (run_…). A plan belongs to the Motion it was made
 /// with.
 namespace servoctl::session {
@@ -47,6 +48,28 @@ struct Torque {
   Duration length{};
 };
 
+/// Measuring how many counts a turn of the motor has, where no object tells it.
+struct Learn {
+  /// Of the motor, by the drive's own monitor; the sign is the direction. Were a monitor's scale ten times
+  /// what the data says, it would still be the speed that needs no --limit.
+  double rpm = 30;
+  Duration length = std::chrono::seconds(6);  ///< Of the measurement, at that speed.
+  ObjectAddress monitor;                      ///< Shows the speed of the motor in rpm.
+  std::string monitor_name;
+  double least = 0;  ///< drive::LearnRules::least
+  double gear = 1;   ///< Increments of 6064h in one of the counts that are measured.
+  TurnExpectation expected;
+};
+inline constexpr double kLeastLearnRpm = 15;
+inline constexpr double kMostLearnRpm = 30;
+
+/// What came of it.
+struct LearnReport {
+  MotionReport motion;
+  std::optional<TurnMeasurement> measured;
+  std::optional<TurnCounts> counts;  ///< Empty unless all went well, the end of the motion included.
+};
+
 /// What a motion will do: the mode, what is written before it is enabled, and numbers for the message.
 struct MotionPlan {
   std::int8_t mode = 0;
@@ -79,6 +102,9 @@ MotionReport run_move(Motion& motion, const Move& move, const MotionPlan& plan);
 
 Result<MotionPlan> plan_home(Motion& motion, const Home& home);
 MotionReport run_home(Motion& motion, const Home& home, const MotionPlan& plan);
+
+Result<MotionPlan> plan_learn(Motion& motion, const Learn& learn);
+LearnReport run_learn(Motion& motion, const Learn& learn, const MotionPlan& plan);
 
 Result<MotionPlan> plan_torque(Motion& motion, const Torque& torque);
 MotionReport run_torque(Motion& motion, const Torque& torque, const MotionPlan& plan);

@@ -5,6 +5,7 @@
 
 #include "base/number.hpp"
 #include "drive/standard_objects.hpp"
+#include "session/hurry.hpp"
 #include "session/motion.hpp"
 
 namespace servoctl::session {
@@ -12,6 +13,12 @@ namespace {
 
 /// What conversions of units may add to a number.
 constexpr double kRounding = 1 + 1e-6;
+/// From so many rpm on, the monitor of the speed and 606Ch must not differ by more than this factor.
+constexpr double kComparedRpm = 10;
+constexpr double kMostContradiction = 1.5;
+constexpr int kOddLooks = 2;
+/// Longest wait for one answer of a drive that moves.
+constexpr Duration kPatience = std::chrono::milliseconds(200);
 /// A torque in per cent is one of the rated torque.
 constexpr double kRatedTorque = 100;
 
@@ -69,12 +76,42 @@ std::optional<double> Motion::read_as(ObjectAddress as, ObjectAddress object) co
   return value && value->value > 0 ? std::optional(value->value) : std::nullopt;
 }
 
-Result<double> Motion::find_speed_cap() {
-  const auto unit = units_->unit(objects::kTargetVelocity);
+/// Counts of a turn that were measured once may be those of another motor: what they make of 606Ch is held
+/// against the drive's own monitor, in every look.
+Result<void> Motion::check_learned(const MotionSample& sample) {
+  const auto speed = sample[Channel::velocity];
+  const auto& name = profile_->rules.learn.speed;
+  const auto monitor = units_->uses_learned() ? units_->object(name) : std::nullopt;
+  if (!monitor || !speed || units_->unit(objects::kVelocityActual) != "rpm") return {};
+  const Hurry hurry(*session_, kPatience, 1);
+  const auto answer = session_->upload(node_, *monitor);
+  if (!answer) return tl::unexpected<Error>(answer.error());
+  const auto shown = units_->physical(*monitor, *answer);
+  if (!shown) return {};
+  const double one = std::abs(*speed);
+  const double other = std::abs(shown->value);
+  const bool odd = std::max(one, other) >= kComparedRpm &&
+                   std::max(one, other) > kMostContradiction * std::min(one, other);
+  odd_looks_ = odd ? odd_looks_ + 1 : 0;
+  if (odd_looks_ < kOddLooks) return {};
+  return fail(error(Errc::negative,
+                    fmt::format("turns at {} rpm by {}, and at {} rpm by the kept counts of a turn",
+                                number_text(shown->value), name, number_text(*speed)),
+                    "is it another motor or drive? `units learn` measures it, `units forget` drops what is "
+                    "kept"));
+}
+
+std::optional<double> Motion::fastest() const {
   std::optional<double> most;
   for (const auto object : {objects::kMaxProfileVelocity, objects::kMaxMotorSpeed})
     if (const auto speed = read_as(objects::kTargetVelocity, object))
       most = std::min(*speed, most.value_or(*speed));
+  return most;
+}
+
+Result<double> Motion::find_speed_cap() {
+  const auto unit = units_->unit(objects::kTargetVelocity);
+  auto most = fastest();
   if (!options_.speed_limit.empty()) {
     const auto asked = parse_limit(objects::kTargetVelocity, "--limit", options_.speed_limit);
     if (asked && most && *asked > *most) {

@@ -21,14 +21,18 @@ constexpr double kMostSteps = 9.0e15;
 }  // namespace
 
 MotionUnits::MotionUnits(Session& session, const drive::Profile& profile, std::uint8_t node,
-                         std::optional<double> turn, std::optional<double> encoder)
+                         std::optional<double> turn, std::optional<double> encoder,
+                         std::optional<double> learned)
     : profile_(&profile), node_(node) {
-  const MeasureQuestion questions[] = {{node, drive::Measure::increments_per_turn},
+  const MeasureQuestion questions[] = {{node, drive::Measure::increments_per_turn, learned},
                                        {node, drive::Measure::pulses_per_turn},
                                        {node, drive::Measure::rated_torque}};
   const auto answers = read_measures(session, profile, questions);
-  for (std::size_t i = 0; i < answers.size(); ++i)
-    if (answers[i]) measures_[questions[i].measure] = *answers[i];
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    if (!answers[i]) continue;
+    measures_[questions[i].measure] = answers[i]->value;
+    uses_learned_ = uses_learned_ || (answers[i]->learned && !turn);
+  }
   if (turn) measures_[drive::Measure::increments_per_turn] = *turn;
   if (encoder) measures_[drive::Measure::pulses_per_turn] = *encoder;
 }
@@ -43,10 +47,16 @@ drive::Meaning MotionUnits::meaning(ObjectAddress object) const {
   return out;
 }
 
+std::optional<double> MotionUnits::turn() const {
+  const auto known = measures_.find(drive::Measure::increments_per_turn);
+  return known == measures_.end() ? std::nullopt : std::optional(known->second);
+}
+
 Error MotionUnits::unknown_turn(ObjectAddress object, Error error) const {
   const auto what = meaning(object);
   if (what.measure == drive::Measure::increments_per_turn && !what.bridge)
-    error.hint += "; --turn COUNTS says it";
+    error.hint += profile_->rules.learn.speed.empty() ? "; --turn COUNTS says it"
+                                                      : "; --turn COUNTS says it, `units learn` measures it";
   return error;
 }
 

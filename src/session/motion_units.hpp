@@ -28,9 +28,10 @@ struct Setpoint {
 class MotionUnits {
  public:
   /// `turn`: increments in one turn of the motor, `encoder`: counts of its encoder, where the user tells them
-  /// and the drive does not.
+  /// and the drive does not. `learned`: the number that no object tells, measured earlier
+  /// (drive::Quotient::learned).
   MotionUnits(Session& session, const drive::Profile& profile, std::uint8_t node, std::optional<double> turn,
-              std::optional<double> encoder = {});
+              std::optional<double> encoder = {}, std::optional<double> learned = {});
 
   bool has(ObjectAddress object) const;
   drive::Meaning meaning(ObjectAddress object) const;
@@ -46,9 +47,15 @@ class MotionUnits {
   std::optional<Bytes> bytes(ObjectAddress object, double value) const;
   std::string unit(ObjectAddress object) const;
 
+  /// Increments in one turn of the motor, by whoever told it; empty when nobody has.
+  std::optional<double> turn() const;
+  /// Whether they come from the number that was measured earlier.
+  bool uses_learned() const { return uses_learned_; }
+
   /// The object behind a name of the family's rules (`0x6080`, `Fn_95`); empty for none.
   std::optional<ObjectAddress> object(std::string_view name) const;
   const drive::Profile& profile() const { return *profile_; }
+  std::uint8_t node() const { return node_; }
 
  private:
   /// The error, with what to do where nobody has told how many counts a turn has.
@@ -57,6 +64,7 @@ class MotionUnits {
   const drive::Profile* profile_;
   std::uint8_t node_;
   std::map<drive::Measure, double> measures_;
+  bool uses_learned_ = false;
 };
 
 }  // namespace servoctl::session

@@ -24,7 +24,9 @@ constexpr std::int8_t kCyclicPositionMode = 8;
 void Axis::reset(TimePoint now) {
   const auto faults = faults_;
   const auto track = track_;
+  const auto own_counts = own_counts_;
   *this = Axis(*profile_, *values_);
+  own_counts_ = own_counts;
   faults_ = faults;
   track_ = track;
   time_ = now;

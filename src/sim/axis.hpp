@@ -26,7 +26,10 @@ struct AxisFaults {
 class Axis {
  public:
   Axis(const drive::Profile& profile, ObjectValues& values)
-      : profile_(&profile), values_(&values), encoder_(find_encoder()) {}
+      : profile_(&profile),
+        values_(&values),
+        encoder_(find_encoder()),
+        speed_monitor_(find_speed_monitor()) {}
 
   /// Power-on: at rest, nothing homed, no set-point.
   void reset(TimePoint now);
@@ -45,6 +48,8 @@ class Axis {
   bool has_following_error() const { return following_error_; }
   void clear_error() { following_error_ = false; }
   AxisFaults& faults() { return faults_; }
+  /// Counts of its own in a turn, which no object tells: where the family's rules say `learned`.
+  double& own_counts() { return own_counts_; }
   Track& track() { return track_; }
 
  private:
@@ -81,6 +86,7 @@ class Axis {
   /// Where the axis stands on its track.
   double place() const { return (position_ - origin_) / units_per_turn(); }
   ObjectAddress find_encoder() const;
+  std::optional<ObjectAddress> find_speed_monitor() const;
   double per_turn(drive::Measure measure) const;
   double units_per_turn() const;
   double fastest_by_torque() const;                 ///< What the family's limits leave in torque mode.
@@ -98,6 +104,7 @@ class Axis {
   const drive::Profile* profile_;
   ObjectValues* values_;
   ObjectAddress encoder_;
+  std::optional<ObjectAddress> speed_monitor_;  ///< Shows the speed of the motor in rpm.
   TimePoint time_{};
   std::uint16_t controlword_ = 0;
   double position_ = 0;
@@ -117,6 +124,7 @@ class Axis {
   bool following_error_ = false;
   AxisFaults faults_;
   Track track_;
+  double own_counts_ = 131072;
 };
 
 }  // namespace servoctl::sim

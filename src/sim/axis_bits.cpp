@@ -87,6 +87,7 @@ void Axis::publish() {
     if (track_.is_pressed(input, here)) inputs ^= 1U << motion.inputs[static_cast<std::size_t>(input)];
   values_->set_number(objects::kDigitalInputs, inputs);
   write(objects::kVelocityActual, turning() / speed_factor(objects::kVelocityActual));
+  if (speed_monitor_) write(*speed_monitor_, turning() / units_per_turn() * 60);
   write(objects::kTorqueActual, torque_);
   write(objects::kFollowingError, behind_ + turning() * faults_.lag);
 }

@@ -60,6 +60,12 @@ ObjectAddress Axis::find_encoder() const {
   return target ? target->address : objects::kInternalPosition;
 }
 
+std::optional<ObjectAddress> Axis::find_speed_monitor() const {
+  const auto& name = profile_->rules.learn.speed;
+  const auto target = drive::resolve(profile_, name);
+  return !name.empty() && target ? std::optional(target->address) : std::nullopt;
+}
+
 double Axis::units_per_turn() const {
   if (drive::meaning(drive::target_at(profile_, objects::kPositionActual), 0).unit == "rad") return 2 * kPi;
   return per_turn(drive::Measure::increments_per_turn);
@@ -76,7 +82,7 @@ double Axis::per_turn(drive::Measure measure) const {
   };
   const auto found = std::find_if(ways.begin(), ways.end(), holds);
   const auto& way = found == ways.end() ? ways.front() : *found;
-  double out = 1;
+  double out = way.learned ? own_counts_ : 1;
   const auto factor = [&](const drive::Quotient::Factor& f) {
     const auto* object = std::get_if<ObjectAddress>(&f);
     return object != nullptr ? read(*object) : std::get<double>(f);

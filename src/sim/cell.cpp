@@ -78,9 +78,16 @@ Result<void> apply_option(Cell& cell, std::string_view option, TimePoint now) {
   const auto value = equals == std::string_view::npos ? std::string_view() : option.substr(equals + 1);
   if (key == "state") return {};
   if (key == "fault") return plan_fault(cell, value, now);
+  if (key == "counts") {
+    const auto counts = parse_digits(value, 10);
+    if (!counts || *counts < 2)
+      return bad_spec(fmt::format("'counts={}' is no number of counts in a turn", value));
+    for (const auto& drive : cell.drives) drive->own_counts() = static_cast<double>(*counts);
+    return {};
+  }
   const auto time = read_duration(value);
   if (key != "silent" && key != "delay") {
-    const std::string keys[] = {"state", "fault", "silent", "delay"};
+    const std::string keys[] = {"state", "fault", "silent", "delay", "counts"};
     return bad_spec(fmt::format("'{}' is no option of a simulated bus: there are {}", key, one_of(keys)));
   }
   if (!time) return bad_spec(fmt::format("{}: {}; {}", key, time.error().message, time.error().hint));

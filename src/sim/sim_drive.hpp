@@ -70,6 +70,8 @@ class SimDrive final : public Device, private canopen::ObjectStore {
   void set_torque_off(bool off) { power_.set_torque_off(off); }
   AxisFaults& axis_faults() { return axis_.faults(); }
   Track& track() { return axis_.track(); }
+  /// As Axis::own_counts().
+  double& own_counts() { return axis_.own_counts(); }
 
   const drive::Profile& profile() const { return *profile_; }
   std::uint8_t node() const { return node_; }

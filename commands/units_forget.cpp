@@ -1,0 +1,48 @@
+#include <fmt/format.h>
+
+#include "commands/kept_turn.hpp"
+#include "commands/records.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using report::Show;
+using report::Value;
+
+Result<Value> run(Context& context, const Arguments& /*unused*/) {
+  report::Table table;
+  table.columns = {{"node"}, {"text", "kept counts of a turn", Show::text}, {"forgotten", "", Show::json}};
+  for (const auto node : context.nodes) {
+    const TurnFile file(context, node);
+    std::error_code error;
+    const bool there = !file.path().empty() && std::filesystem::exists(file.path(), error);
+    const auto removed = context.dry_run ? Result<bool>(false) : file.remove();
+    if (!removed) context.errors.push_back(removed.error());
+    const bool gone = removed && *removed;
+    table.rows.push_back({node,
+                          gone                       ? "forgotten"
+                          : there && context.dry_run ? "would be forgotten"
+                          : there                    ? "still there"
+                                                     : "none were kept",
+                          gone});
+  }
+  return Value(std::move(table));
+}
+
+}  // namespace
+
+extern const Command kUnitsForget;
+const Command kUnitsForget{
+    .path = "units forget",
+    .summary = "Drop the counts of a turn that `units learn` kept",
+    .details =
+        "Of these nodes on this bus, whatever drive stands there now. Nothing is read from the drive and "
+        "nothing "
+        "changed in it. Example: `units forget -n 1`.",
+    .parameters = {},
+    .needs = Needs::node,
+    .effect = Effect::none,
+    .run = run,
+};
+
+}  // namespace servoctl::commands

@@ -1,0 +1,267 @@
+#include <fmt/format.h>
+#include <cmath>
+
+#include "base/calendar.hpp"
+#include "base/file.hpp"
+#include "base/number.hpp"
+#include "base/text.hpp"
+#include "commands/drive_rules.hpp"
+#include "commands/kept_turn.hpp"
+#include "commands/motion_options.hpp"
+#include "session/measure.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using report::Record;
+using report::Value;
+using session::Learn;
+
+constexpr Duration kShortest = std::chrono::seconds(2);
+constexpr Duration kLongest = std::chrono::seconds(60);
+
+constexpr Parameter kParameters[] = {
+    {.name = "--speed",
+     .help = "of the motor: 15rpm to 30rpm (default 30rpm); the sign is the direction",
+     .kind = Kind::value},
+    {.name = "--for", .help = "how long it is measured (default 6s)", .kind = Kind::duration},
+    {.name = "--turn",
+     .help = "counts that the nameplate says, to be held against the measurement",
+     .kind = Kind::number},
+    {.name = "--max-torque", .help = "stop above this torque", .kind = Kind::value},
+    {.name = "--max-following-error", .help = "stop above this following error", .kind = Kind::value},
+    {.name = "--window", .help = "stop when it has moved farther than this", .kind = Kind::value},
+    {.name = "--master-node", .help = "servoctl's own node-ID for the watchdog", .kind = Kind::number},
+    {.name = "--plot", .help = "draw the samples over time at the end", .kind = Kind::flag},
+    kCsvOption,
+};
+
+Result<double> speed_of(const Arguments& arguments) {
+  if (!arguments.has("--speed")) return Learn{}.rpm;
+  auto text = arguments.text("--speed");
+  const auto unit = lower(text).rfind("rpm");
+  if (unit != std::string::npos && unit + 3 == text.size()) text = text.substr(0, unit);
+  const auto rpm = parse_real(text);
+  if (rpm && std::abs(*rpm) >= session::kLeastLearnRpm && std::abs(*rpm) <= session::kMostLearnRpm)
+    return *rpm;
+  return fail(
+      Errc::usage,
+      fmt::format("--speed: '{}' is not 15rpm to 30rpm, one way or the other", arguments.text("--speed")),
+      "slower is not exact enough, faster is not safe before the counts are known");
+}
+
+Result<Duration> length_of(const Arguments& arguments) {
+  const auto length = duration_option(arguments, "--for");
+  if (!length) return tl::unexpected<Error>(length.error());
+  if (!*length) return Learn{}.length;
+  if (**length >= kShortest && **length <= kLongest) return **length;
+  return fail(Errc::usage, "--for: it is measured for 2 s to 60 s", "--for 6s");
+}
+
+/// What keeps the number from being measured: conditions of the rules that do not hold.
+std::string unmet(Context& context, std::uint8_t node) {
+  std::string out;
+  const auto ways = context.profile->rules.units.find(drive::Measure::increments_per_turn);
+  if (ways == context.profile->rules.units.end()) return out;
+  for (const auto& way : ways->second) {
+    if (!way.learned) continue;
+    for (const auto& condition : way.when) {
+      const auto present = context.session->upload(node, condition.object);
+      if (present && load_le(*present) == condition.value) continue;
+      const auto target = drive::target_at(context.profile, condition.object);
+      const auto name = target.parameter != nullptr ? target.parameter->id : to_string(condition.object);
+      out += (out.empty() ? "" : ", ") +
+             (present ? fmt::format("{} is {}, not {}", name, load_le(*present), condition.value)
+                      : fmt::format("{} cannot be read", name));
+    }
+  }
+  return out;
+}
+
+tl::unexpected<Error> refused(std::uint8_t node, std::string message, std::string hint) {
+  return fail(session::drive_error(Errc::refused, node, std::move(message), std::move(hint)));
+}
+
+/// Increments of 6064h in one of the counts that are measured. Errc::refused where there is nothing to
+/// measure, or nothing to measure by.
+Result<double> read_gear(Context& context, std::uint8_t node) {
+  const session::MeasureQuestion question[] = {{node, drive::Measure::increments_per_turn, 1.0}};
+  const auto known = session::read_measures(*context.session, *context.profile, question).front();
+  if (known && known->learned && known->value > 0) return known->value;
+  if (known)
+    return refused(
+        node,
+        fmt::format("its own parameters tell that a turn has {} increments: nothing is to be learned",
+                    plain_number(known->value, 12)),
+        "`units show` tells by which");
+  const auto why = unmet(context, node);
+  return refused(node,
+                 "the counts of a turn cannot be measured as it is set" + (why.empty() ? why : ": " + why),
+                 "--turn COUNTS of each motion says them");
+}
+
+Result<Learn> learn_of(Context& context, const Arguments& arguments, std::uint8_t node) {
+  const auto& rules = context.profile->rules;
+  if (rules.learn.speed.empty()) {
+    const auto ways = rules.units.find(drive::Measure::increments_per_turn);
+    const auto told = ways == rules.units.end() ? std::string() : ways_text(ways->second);
+    return fail(
+        Errc::refused,
+        told.empty()
+            ? fmt::format("{} has nothing to measure the counts of a turn by", context.profile->family)
+            : fmt::format("{} tells the counts of a turn itself: {}", context.profile->family, told),
+        told.empty() ? "--turn COUNTS of each motion says them" : "`units show` reads them");
+  }
+  const auto monitor = drive::resolve(context.profile, rules.learn.speed);
+  if (!monitor) return tl::unexpected<Error>(monitor.error());
+  const auto gear = read_gear(context, node);
+  if (!gear) return tl::unexpected<Error>(gear.error());
+  const auto rpm = speed_of(arguments);
+  if (!rpm) return tl::unexpected<Error>(rpm.error());
+  const auto length = length_of(arguments);
+  if (!length) return tl::unexpected<Error>(length.error());
+  const auto options = motion_options(context, arguments);
+  if (!options) return tl::unexpected<Error>(options.error());
+  Learn out;
+  out.rpm = *rpm;
+  out.length = *length;
+  out.monitor = monitor->address;
+  out.monitor_name = rules.learn.speed;
+  out.least = rules.learn.least;
+  out.gear = *gear;
+  out.expected.told = options->turn;
+  out.expected.disputed = monitor->parameter != nullptr &&
+                          std::any_of(monitor->parameter->doubts.contradicted.begin(),
+                                      monitor->parameter->doubts.contradicted.end(),
+                                      [](const od::Mark& mark) { return mark.field == "scale"; });
+  return out;
+}
+
+/// What takes effect by a restart may be set and not in force.
+std::string restart_note(const Context& context) {
+  std::string out;
+  for (const auto& way : context.profile->rules.units.at(drive::Measure::increments_per_turn))
+    for (const auto& condition : way.when) {
+      const auto target = drive::target_at(context.profile, condition.object);
+      if (!way.learned || target.parameter == nullptr ||
+          drive::meaning(target, 0).effect != od::Effect::restart)
+        continue;
+      out += (out.empty() ? "" : ", ") + target.parameter->id;
+    }
+  if (out.empty()) return out;
+  return fmt::format("{} take effect when the drive is restarted: restart it first if one was changed since",
+                     out);
+}
+
+Result<void> keep(Context& context, std::uint8_t node, const session::LearnReport& done, double gear) {
+  // What was measured holds for these settings of this drive.
+  const auto now = read_gear(context, node);
+  if (!now || *now != gear)
+    return refused(node, "its gear was changed while it was measured: nothing is kept", "measure again");
+  const auto identity = read_turn_identity(*context.session, node);
+  if (!identity) return tl::unexpected<Error>(identity.error());
+  KeptTurn turn;
+  turn.counts = static_cast<std::uint64_t>(std::llround(done.counts->counts));
+  turn.measured = static_cast<std::uint64_t>(std::llround(done.measured->increments / gear));
+  turn.uncertainty_ppm = static_cast<std::uint64_t>(std::llround(done.measured->uncertainty * 1e6));
+  turn.reason = done.counts->reason;
+  turn.time = utc_now_text();
+  turn.family = context.profile->family;
+  turn.identity = *identity;
+  auto written = TurnFile(context, node).write(turn);
+  if (written) return written;
+  auto error = written.error();
+  error.message =
+      fmt::format("the {} counts that were measured are not kept: {}", turn.counts, error.message);
+  return tl::unexpected<Error>(std::move(error));
+}
+
+void add_measurement(Value& answer, const session::LearnReport& done, double gear, bool kept) {
+  auto* record = std::get_if<Record>(&answer.data());
+  if (record == nullptr) return;
+  Record found;
+  if (done.counts) {
+    found.push_back({"counts", std::llround(done.counts->counts), report::Show::everywhere, "counts a turn"});
+    found.push_back({"why", done.counts->reason});
+  }
+  if (done.measured) {
+    const auto& measured = *done.measured;
+    found.push_back({"measured", std::llround(measured.increments / gear)});
+    found.push_back({"uncertainty", parse_real(plain_number(measured.uncertainty * 100, 3)).value_or(0),
+                     report::Show::everywhere, "give or take %"});
+    found.push_back({"gear", gear, report::Show::everywhere, "increments a count"});
+    found.push_back({"rpm", parse_real(plain_number(measured.rpm, 4)).value_or(0)});
+    found.push_back({"turns", parse_real(plain_number(measured.turns, 4)).value_or(0)});
+    found.push_back({"looks", std::uint64_t{measured.looks}, report::Show::json});
+  }
+  found.push_back({"kept", kept});
+  // Behind what was done, before how the drive was left.
+  const auto at = std::min<std::size_t>(3, record->size());
+  record->insert(record->begin() + static_cast<std::ptrdiff_t>(at), found.begin(), found.end());
+}
+
+Result<Value> run(Context& context, const Arguments& arguments) {
+  const auto node = one_node(context);
+  if (!node) return tl::unexpected<Error>(node.error());
+  const auto learn = learn_of(context, arguments, *node);
+  if (!learn) return tl::unexpected<Error>(learn.error());
+  const TurnFile file(context, *node);
+  if (file.path().empty())
+    return fail(Errc::refused, "there is no folder to keep in what is measured",
+                "set HOME or XDG_STATE_HOME");
+  if (!context.dry_run)
+    if (const auto possible = check_writable(file.path()); !possible)
+      return tl::unexpected<Error>(possible.error());
+  session::LearnReport done;
+  bool moved = false;
+  MotionRun motion;
+  motion.in_counts = true;
+  motion.plan = [&](session::Motion& m) {
+    auto plan = session::plan_learn(m, *learn);
+    if (plan) plan->tell(restart_note(context));
+    return plan;
+  };
+  motion.run = [&](session::Motion& m, const session::MotionPlan& plan) {
+    done = session::run_learn(m, *learn, plan);
+    moved = true;
+    return done.motion;
+  };
+  auto answer = run_motion(context, arguments, motion);
+  if (!answer || !moved) return answer;
+  bool kept = false;
+  if (done.counts) {
+    const auto written = keep(context, *node, done, learn->gear);
+    kept = written.has_value();
+    if (!written) context.errors.push_back(written.error());
+  }
+  add_measurement(*answer, done, learn->gear, kept);
+  return answer;
+}
+
+}  // namespace
+
+extern const Command kUnitsLearn;
+const Command kUnitsLearn{
+    .path = "units learn",
+    .summary = "Turn a motor slowly to measure how many counts a turn has, and keep that",
+    .details =
+        "For drives that do not tell it (gsd600 with Pn0456 = 2). Looks, asks, moves and ends as `jog` does: "
+        "faster and faster until the drive's own monitor shows 30 rpm, then 6 s at that speed, about 6 turns "
+        "in "
+        "all. The way of 6064h over the integral of the monitor is the measurement, 606Ch has to agree; the "
+        "gear "
+        "6091h is taken out. It is refused when it may be more than 1 % off, and when the monitor shows "
+        "nothing or does not go with the way. Taken is the power of two within 1 %, else a round decimal "
+        "number (not where the manual prints two scales for the monitor: then --turn COUNTS of the nameplate "
+        "is held against the measurement). It is kept for this bus, node and identity (1000h, 1008h, 1018h) "
+        "and "
+        "used by every motion without --turn, with a notice; what the drive's own parameters tell goes "
+        "before it. "
+        "Example: `units learn -n 1`.",
+    .parameters = kParameters,
+    .needs = Needs::node | Needs::dictionary,
+    .effect = Effect::moves,
+    .run = run,
+};
+
+}  // namespace servoctl::commands

@@ -1,0 +1,125 @@
+#include <fmt/format.h>
+
+#include "base/number.hpp"
+#include "commands/drive_rules.hpp"
+#include "commands/identity.hpp"
+#include "commands/kept_turn.hpp"
+#include "commands/motion_options.hpp"
+#include "session/measure.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using drive::Measure;
+using report::List;
+using report::Record;
+using report::Show;
+using report::Value;
+
+constexpr Parameter kParameters[] = {kTurnOption};
+
+constexpr std::pair<Measure, std::string_view> kMeasures[] = {
+    {Measure::increments_per_turn, "increments_per_turn"},
+    {Measure::pulses_per_turn, "pulses_per_turn"},
+    {Measure::rated_torque, "rated_torque"}};
+
+std::string_view unit_of(Measure measure) {
+  switch (measure) {
+    case Measure::increments_per_turn: return "inc";
+    case Measure::pulses_per_turn: return "pulse";
+    case Measure::rated_torque: return "Nm";
+  }
+  return {};
+}
+
+Value kept_record(const KnownTurn& known) {
+  if (!known.kept) return {};
+  const auto& kept = *known.kept;
+  return Record{{"counts", kept.counts},
+                {"measured", kept.measured},
+                {"uncertainty", static_cast<double>(kept.uncertainty_ppm) / 10000},
+                {"why", kept.reason},
+                {"time", kept.time},
+                {"family", kept.family},
+                {"identity", identity_record(kept.identity)},
+                {"unused", report::text_or_null(known.unused)}};
+}
+
+std::string kept_text(const KnownTurn& known) {
+  return fmt::format("kept: {} counts ({}), measured at {}", known.kept->counts, known.kept->reason,
+                     known.kept->time);
+}
+
+/// One measure of one node: what it is, and who tells it.
+List row(const Context& context, std::uint8_t node, Measure measure, std::string_view name,
+         std::optional<double> turn, const KnownTurn& known) {
+  const auto ways = context.profile->rules.units.find(measure);
+  const bool of_turn = measure == Measure::increments_per_turn;
+  const session::MeasureQuestion question[] = {
+      {node, measure, of_turn ? known.counts : std::optional<double>()}};
+  const auto told = session::read_measures(*context.session, *context.profile, question).front();
+  std::optional<double> value;
+  std::string_view source;
+  std::string from = "nobody";
+  if (of_turn && turn) {
+    value = turn;
+    source = "--turn";
+    from = "--turn";
+  } else if (told) {
+    value = told->value;
+    source = told->learned ? "kept" : "drive";
+    from = told->learned ? kept_text(known) : "the drive: " + ways_text(ways->second);
+  } else if (of_turn) {
+    from += context.profile->rules.learn.speed.empty() ? ": --turn COUNTS says it"
+                                                       : ": `units learn` measures it, --turn COUNTS says it";
+  }
+  return {node,
+          name,
+          value ? Value(parse_real(plain_number(*value, 12)).value_or(*value)) : Value(),
+          unit_of(measure),
+          report::text_or_null(std::string(source)),
+          from,
+          of_turn ? kept_record(known) : Value()};
+}
+
+Result<Value> run(Context& context, const Arguments& arguments) {
+  const auto options = motion_options(context, arguments);
+  if (!options) return tl::unexpected<Error>(options.error());
+  report::Table table;
+  table.columns = {{"node"},
+                   {"measure"},
+                   {"value"},
+                   {"unit"},
+                   {"source", "", Show::json},
+                   {"from", "", Show::text},
+                   {"kept", "", Show::json}};
+  for (const auto node : context.nodes) {
+    const auto known = find_turn(context, node);
+    if (!known.unused.empty())
+      context.notices.push_back(
+          fmt::format("node {}: the counts of a turn that are kept are not used: {}", node, known.unused));
+    for (const auto& [measure, name] : kMeasures)
+      if (measure == Measure::increments_per_turn || context.profile->rules.units.count(measure) > 0)
+        table.rows.push_back(row(context, node, measure, name, options->turn, known));
+  }
+  return Value(std::move(table));
+}
+
+}  // namespace
+
+extern const Command kUnitsShow;
+const Command kUnitsShow{
+    .path = "units show",
+    .summary = "Show what is known of a turn of the motor and of its torque, and from where",
+    .details =
+        "Increments (6064h) and encoder pulses in a turn, rated torque, as far as the family's rules know "
+        "how to "
+        "get them: from the drive's own parameters, from what `units learn` kept, or from --turn. In JSON "
+        "`source` is drive, kept, --turn or null. What is kept and not used is told with the reason.",
+    .parameters = kParameters,
+    .needs = Needs::node | Needs::dictionary,
+    .effect = Effect::reads,
+    .run = run,
+};
+
+}  // namespace servoctl::commands
