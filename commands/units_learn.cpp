@@ -245,8 +245,8 @@ const Command kUnitsLearn{
     .path = "units learn",
     .summary = "Turn a motor slowly to measure how many counts a turn has, and keep that",
     .details =
-        "For drives that do not tell it (gsd600 with Pn0456 = 2). Looks, asks, moves and ends as `jog` does: "
-        "faster and faster until the drive's own monitor shows 30 rpm, then 6 s at that speed, about 6 turns "
+        "For drives that do not tell it. Looks, asks, moves and ends as `jog` does: "
+        "faster and faster until the drive's own monitor shows 30 rpm, then 6 s at that speed, about 4 turns "
         "in "
         "all. The way of 6064h over the integral of the monitor is the measurement, 606Ch has to agree; the "
         "gear "

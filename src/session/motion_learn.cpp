@@ -14,14 +14,15 @@ namespace {
 /// From a new speed until the motor turns evenly at it: the ramp, and what a drive may add to it.
 constexpr Duration kSettling = std::chrono::milliseconds(800);
 /// The end of that time, by which the speed is judged.
-constexpr Duration kJudged = std::chrono::milliseconds(200);
+constexpr Duration kJudged = std::chrono::milliseconds(250);
 constexpr Duration kRest = std::chrono::milliseconds(1500);
 /// Longest wait for one answer of a drive that moves.
 constexpr Duration kPatience = std::chrono::milliseconds(200);
 constexpr double kRestRpm = 3;        ///< That a monitor may show at rest.
 constexpr double kNoise = 5;          ///< rpm that a monitor may show beyond what was asked.
 constexpr double kTooFast = 1.5;      ///< Of the speed that was asked.
-constexpr double kSteps = 5;          ///< Steps of the monitor that show a speed well enough to go by.
+constexpr double kSteps = 5;          ///< Steps of the monitor that show a speed well enough to go by,
+constexpr double kErrors = 4;         ///< and standard errors of what it showed.
 constexpr double kSpeedUp = 4;        ///< From one speed to the next.
 constexpr double kBlind = 10;         ///< Of the first speed, while the monitor shows nothing.
 constexpr double kNearEnough = 0.1;   ///< Of the speed that was asked.
@@ -72,7 +73,7 @@ class Learning {
     for (int i = 0; i < kMostSpeeds; ++i) {
       if (const auto turned = turn(speed); !turned) return turned;
       const double rpm = std::abs(shown_);
-      if (rpm < kSteps * step_) {
+      if (rpm < std::max(kSteps * step_, kErrors * error_)) {
         const double next = limited(std::min(speed * kSpeedUp, first_ * kBlind));
         if (next <= speed) return fail(shows_nothing(speed));
         speed = next;
@@ -154,15 +155,18 @@ class Learning {
   Result<void> judge() {
     const auto since = motion_->session().now() - kJudged;
     double rpm = 0;
+    double squares = 0;
     double speed = 0;
     int count = 0;
     for (const auto& one : looks_) {
       if (one.time < since && &one != &looks_.back()) continue;
       rpm += one.rpm;
+      squares += one.rpm * one.rpm;
       speed += one.speed.value_or(wanted_);
       ++count;
     }
     shown_ = rpm / count;
+    error_ = std::sqrt(std::max(squares / count - shown_ * shown_, 0.0) / count);
     if (std::abs(speed / count) >= std::abs(wanted_) * kTurns) return {};
     return fail(motion_->error(Errc::negative, "does not turn although it was told to",
                                "is it blocked, is the brake on, or does a limit hold it back?"));
@@ -205,7 +209,8 @@ class Learning {
   double step_;  ///< Of the monitor, in rpm.
   double wanted_ = 0;
   double last_wanted_ = 0;
-  double shown_ = 0;  ///< By the monitor, at the last speed.
+  double shown_ = 0;  ///< By the monitor, at the last speed,
+  double error_ = 0;  ///< with this standard error.
   bool keeps_ = false;
   int wrong_looks_ = 0;
   std::vector<TurnLook> looks_;

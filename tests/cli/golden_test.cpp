@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
+#include <unistd.h>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -86,6 +87,10 @@ Played play(const Case& c, bool json) {
   options.drive_folders = {kSource / "eds", kSource / "tests/cli/data/drives"};
   options.clock = sim::SimBus::Clock::virtual_time;
   options.defaults.bus = "sim:gsd600@1";
+  // Cases of what is kept begin with nothing kept.
+  const bool keeps = c.name.starts_with("units-") || c.name.starts_with("bad-units-");
+  const auto state = fs::temp_directory_path() / fmt::format("servoctl-golden-{}-{}", ::getpid(), c.name);
+  if (keeps) fs::create_directories(options.state_folder = state);
   Shell shell(console, std::move(options));
   LineRunner runner(shell);
   Played out;
@@ -98,6 +103,7 @@ Played play(const Case& c, bool json) {
     if (!console.err_text.empty()) out.said += "[stderr]\n" + console.err_text;
     out.said += fmt::format("[exit {}]\n\n", out.exit);
   }
+  fs::remove_all(state);
   return out;
 }
 
