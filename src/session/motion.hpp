@@ -114,8 +114,8 @@ class Motion {
   /// Whether the ramps are those of the user, whose length is not known.
   bool has_own_ramps() const { return !options_.acceleration.empty(); }
 
-  /// Whether the user has said how many counts a turn has.
-  bool is_told_turn() const { return options_.turn.has_value(); }
+  /// Whether the user has said how many counts a turn has, or has it from a measurement.
+  bool is_told_turn() const { return options_.turn.has_value() || units_->uses_learned(); }
 
   const MotionUnits& units() const { return *units_; }
   MotionMonitor& monitor() { return *monitor_; }
