@@ -14,7 +14,7 @@ _servoctl_scan() {
       *)
         case $command in
           '') command=$word ;;
-          param|fault|nmt|pdo|test|sync|eds) command="$command $word" ;;
+          param|fault|units|nmt|pdo|test|sync|eds) command="$command $word" ;;
         esac ;;
     esac
   done
@@ -77,9 +77,10 @@ _servoctl_scan() {
     return
   fi
   case $command in
-    '') source='=scan info status read write objects param backup diff verify restore clone store defaults fault enable disable quick-stop mode jog move home torque nmt pdo test report sync watch scope monitor decode replay drives eds run sim help completion' ;;
+    '') source='=scan info status read write objects param backup diff verify restore clone store defaults fault enable disable quick-stop mode jog move home torque units nmt pdo test report sync watch scope monitor decode replay drives eds run sim help completion' ;;
     param) source='=list get set search explain' ;;
     fault) source='=show list reset clear-history' ;;
+    units) source='=show learn forget' ;;
     nmt) source='=start stop preop reset reset-comm watch' ;;
     pdo) source='=show map enable disable clear preset apply save watch send' ;;
     test) source='=comm io jog home all' ;;
@@ -126,7 +127,7 @@ _servoctl_scan() {
     'eds check') source='files' ;;
     'run') source='files' ;;
     'sim') source='none' ;;
-    'help') source='=scan info status read write objects param backup diff verify restore clone store defaults fault enable disable quick-stop mode jog move home torque nmt pdo test report sync watch scope monitor decode replay drives eds run sim help completion' ;;
+    'help') source='=scan info status read write objects param backup diff verify restore clone store defaults fault enable disable quick-stop mode jog move home torque units nmt pdo test report sync watch scope monitor decode replay drives eds run sim help completion' ;;
     'completion') source='=bash zsh fish objects parameters families' ;;
   esac
   case $command in
@@ -143,6 +144,8 @@ _servoctl_scan() {
     'move') options+=' --relative --speed --accel --csv --limit --max-torque --max-following-error --window --turn --master-node --plot' ;;
     'home') options+=' --speed --search --offset --within --csv --limit --max-torque --max-following-error --window --turn --master-node --plot' ;;
     'torque') options+=' --for --csv --limit --max-torque --max-following-error --window --turn --master-node --plot' ;;
+    'units show') options+=' --turn' ;;
+    'units learn') options+=' --speed --for --turn --max-torque --max-following-error --window --master-node --plot --csv' ;;
     'nmt start') options+=' --wait' ;;
     'nmt stop') options+=' --wait' ;;
     'nmt preop') options+=' --wait' ;;

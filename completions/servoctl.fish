@@ -180,6 +180,19 @@ complete -c servoctl -n '__servoctl_in torque' -l window -x -d 'stop when it has
 complete -c servoctl -n '__servoctl_in torque' -l turn -x -d 'counts in one turn of the motor, if the drive does not tell'
 complete -c servoctl -n '__servoctl_in torque' -l master-node -x -d 'servoctl'\''s own node-ID for the watchdog'
 complete -c servoctl -n '__servoctl_in torque' -l plot -d 'draw the samples over time at the end'
+complete -c servoctl -n '__servoctl_at units' -a show -d 'Show what is known of a turn of the motor and of its torque, and from where'
+complete -c servoctl -n '__servoctl_in units show' -l turn -x -d 'counts in one turn of the motor, if the drive does not tell'
+complete -c servoctl -n '__servoctl_at units' -a learn -d 'Turn a motor slowly to measure how many counts a turn has, and keep that'
+complete -c servoctl -n '__servoctl_in units learn' -l speed -x -d 'of the motor: 15rpm to 30rpm (default 30rpm); the sign is the direction'
+complete -c servoctl -n '__servoctl_in units learn' -l for -x -d 'how long it is measured (default 6s)'
+complete -c servoctl -n '__servoctl_in units learn' -l turn -x -d 'counts that the nameplate says, to be held against the measurement'
+complete -c servoctl -n '__servoctl_in units learn' -l max-torque -x -d 'stop above this torque'
+complete -c servoctl -n '__servoctl_in units learn' -l max-following-error -x -d 'stop above this following error'
+complete -c servoctl -n '__servoctl_in units learn' -l window -x -d 'stop when it has moved farther than this'
+complete -c servoctl -n '__servoctl_in units learn' -l master-node -x -d 'servoctl'\''s own node-ID for the watchdog'
+complete -c servoctl -n '__servoctl_in units learn' -l plot -d 'draw the samples over time at the end'
+complete -c servoctl -n '__servoctl_in units learn' -l csv -r -F -d 'write the samples to this file'
+complete -c servoctl -n '__servoctl_at units' -a forget -d 'Drop the counts of a turn that `units learn` kept'
 complete -c servoctl -n '__servoctl_at nmt' -a start -d 'Put nodes into operational: PDOs flow'
 complete -c servoctl -n '__servoctl_in nmt start' -l wait -d 'wait until a heartbeat or the boot-up message confirms it'
 complete -c servoctl -n '__servoctl_at nmt' -a stop -d 'Put nodes into stopped: neither PDO nor SDO'
@@ -331,11 +344,12 @@ complete -c servoctl -n '__servoctl_in run' -l frames -d 'with --dry-run: the fr
 complete -c servoctl -n '__servoctl_in run' -l check -d 'check all lines without a bus, run none'
 complete -c servoctl -n __servoctl_at -a sim -d 'Put simulated drives on a bus until Ctrl-C'
 complete -c servoctl -n __servoctl_at -a help -d 'Show the commands, or how one is used'
-complete -c servoctl -n '__servoctl_in help' -x -a 'scan info status read write objects param backup diff verify restore clone store defaults fault enable disable quick-stop mode jog move home torque nmt pdo test report sync watch scope monitor decode replay drives eds run sim help completion'
+complete -c servoctl -n '__servoctl_in help' -x -a 'scan info status read write objects param backup diff verify restore clone store defaults fault enable disable quick-stop mode jog move home torque units nmt pdo test report sync watch scope monitor decode replay drives eds run sim help completion'
 complete -c servoctl -n __servoctl_at -a completion -d 'Print the completion script of a shell'
 complete -c servoctl -n '__servoctl_in completion' -x -a 'bash zsh fish objects parameters families'
 complete -c servoctl -n __servoctl_at -a param
 complete -c servoctl -n __servoctl_at -a fault
+complete -c servoctl -n __servoctl_at -a units
 complete -c servoctl -n __servoctl_at -a nmt
 complete -c servoctl -n __servoctl_at -a pdo
 complete -c servoctl -n __servoctl_at -a test
