@@ -5,6 +5,7 @@
 #include "commands/identity.hpp"
 #include "commands/kept_turn.hpp"
 #include "commands/motion_options.hpp"
+#include "drive/standard_objects.hpp"
 #include "session/measure.hpp"
 
 namespace servoctl::commands {
@@ -50,6 +51,10 @@ std::string kept_text(const KnownTurn& known) {
                      known.kept->time);
 }
 
+std::string_view position_unit(const drive::Profile& profile) {
+  return drive::meaning(drive::target_at(&profile, objects::kPositionActual), 0).unit;
+}
+
 /// One measure of one node: what it is, and who tells it.
 List row(const Context& context, std::uint8_t node, Measure measure, std::string_view name,
          std::optional<double> turn, const KnownTurn& known) {
@@ -69,6 +74,8 @@ List row(const Context& context, std::uint8_t node, Measure measure, std::string
     value = told->value;
     source = told->learned ? "kept" : "drive";
     from = told->learned ? kept_text(known) : "the drive: " + ways_text(ways->second);
+  } else if (const auto unit = position_unit(*context.profile); of_turn && unit != "inc") {
+    from = "not needed: its positions are in " + std::string(unit);
   } else if (of_turn) {
     from += context.profile->rules.learn.speed.empty() ? ": --turn COUNTS says it"
                                                        : ": `units learn` measures it, --turn COUNTS says it";
