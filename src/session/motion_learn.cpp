@@ -5,8 +5,8 @@
 #include "base/duration.hpp"
 #include "base/number.hpp"
 #include "drive/standard_objects.hpp"
-#include "session/hurry.hpp"
 #include "session/motion_kinds.hpp"
+#include "session/option_scope.hpp"
 
 namespace servoctl::session {
 namespace {
