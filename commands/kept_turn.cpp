@@ -1,7 +1,6 @@
 #include "commands/kept_turn.hpp"
 
 #include <fmt/format.h>
-#include <algorithm>
 
 #include "base/file.hpp"
 #include "commands/backup_file.hpp"
@@ -9,6 +8,7 @@
 #include "commands/field_reader.hpp"
 #include "commands/identity.hpp"
 #include "drive/standard_objects.hpp"
+#include "session/answer.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -149,11 +149,10 @@ Result<Identity> read_turn_identity(session::Session& session, std::uint8_t node
   for (std::size_t i = 0; i < answers.size(); ++i) {
     const auto& answer = answers[i];
     if (!answer && answer.error().code != Errc::sdo_abort) return tl::unexpected<Error>(answer.error());
-    if (!answer) continue;
-    if (i < std::size(places) && !answer->empty() && answer->size() <= 4)
-      *places[i] = static_cast<std::uint32_t>(load_le(*answer));
-    if (i == std::size(places))
-      out.device_name.assign(answer->begin(), std::find(answer->begin(), answer->end(), std::uint8_t{0}));
+    if (i < std::size(places))
+      *places[i] = session::u32_in(answer);
+    else
+      out.device_name = session::text_in(answer);
   }
   return out;
 }
