@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <map>
 
+#include "base/pdo_index.hpp"
 #include "commands/backup_formats.hpp"
 #include "commands/change.hpp"
 #include "session/communication_order.hpp"
@@ -12,7 +13,7 @@ namespace {
 /// What is written twice in a procedure: the records of PDOs, and what assigns fixed ones (invalid or count 0
 /// first, the entries, then what is to be), and communication objects that are cleared first.
 bool is_of_procedure(ObjectAddress object) {
-  return session::is_written_in_steps(object) || (object.index >= 0x1400 && object.index <= 0x1BFF) ||
+  return session::is_written_in_steps(object) || pdo_at(object.index).has_value() ||
          (object.index >= 0x1C10 && object.index <= 0x1C2F);
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/pdo_index.hpp"
 #include "commands/reading.hpp"
 #include "drive/naming.hpp"
 
@@ -37,10 +38,9 @@ Shown show(const drive::Profile* profile, const Side& side, ObjectAddress object
 
 /// Whether a mapping entry is above the count of its PDO: it is nothing, whatever it holds.
 bool is_unused(const Side& side, ObjectAddress object) {
-  const bool mapping = (object.index >= 0x1600 && object.index <= 0x17FF) ||
-                       (object.index >= 0x1A00 && object.index <= 0x1BFF);
   const auto count = side.values.find({object.index, 0});
-  return mapping && object.sub > 0 && count != side.values.end() && load_le(count->second) < object.sub;
+  return is_pdo_mapping(object.index) && object.sub > 0 && count != side.values.end() &&
+         load_le(count->second) < object.sub;
 }
 
 }  // namespace

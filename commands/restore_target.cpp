@@ -19,8 +19,6 @@ namespace {
 
 using canopen::Pdo;
 
-bool is_pdo_parameter(ObjectAddress object) { return object.index >= 0x1400 && object.index < 0x1C00; }
-
 /// As `pdo map` and its kin would take it: `all` are the PDOs of the drive as they will be.
 Result<void> check_pdo(const drive::Profile& profile, const Pdo& present, const Pdo& wanted,
                        std::span<const Pdo> all) {
@@ -195,7 +193,7 @@ Result<void> RestoreTarget::check_values() {
 Result<void> RestoreTarget::check_pdos() {
   if (backup_->proven) return {};
   const auto changes = [this](const auto& value) {
-    return is_pdo_parameter(value.first) && present_.at(value.first) != value.second;
+    return pdo_at(value.first.index) && present_.at(value.first) != value.second;
   };
   if (std::none_of(wanted_.begin(), wanted_.end(), changes)) return {};
   const std::uint8_t nodes[] = {node_};
@@ -203,7 +201,7 @@ Result<void> RestoreTarget::check_pdos() {
   if (!values) return tl::unexpected<Error>(values.error());
   const auto present = session::pdos_of(*values);
   for (const auto& [object, data] : wanted_)
-    if (is_pdo_parameter(object)) values->insert_or_assign(object, data);
+    if (pdo_at(object.index)) values->insert_or_assign(object, data);
   const auto wanted = session::pdos_of(*values);
   for (const auto& was : present) {
     const auto same = [&](const Pdo& pdo) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "base/pdo_index.hpp"
 #include "base/text.hpp"
 
 namespace servoctl::commands {
@@ -11,8 +12,7 @@ namespace servoctl::commands {
 Result<Selection> selection_of(const drive::Profile& profile, std::string_view word) {
   if (word.empty()) return Selection{};
   if (word == "communication") return Selection{[](ObjectAddress object) { return object.index < 0x2000; }};
-  if (word == "pdo")
-    return Selection{[](ObjectAddress object) { return object.index >= 0x1400 && object.index <= 0x1BFF; }};
+  if (word == "pdo") return Selection{[](ObjectAddress object) { return pdo_at(object.index).has_value(); }};
   if (word == "params")
     return Selection{[&profile](ObjectAddress object) { return profile.parameter(object) != nullptr; }};
   std::set<std::string> groups;

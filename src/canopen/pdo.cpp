@@ -9,9 +9,6 @@
 namespace servoctl::canopen {
 namespace {
 
-constexpr std::uint16_t kFirstReceive = 0x1400;
-constexpr std::uint16_t kFirstTransmit = 0x1800;
-constexpr std::uint16_t kMappingOffset = 0x200;
 constexpr std::uint16_t kMostPdos = 512;
 
 bool bit_at(ByteSpan data, std::size_t bit) {
@@ -40,15 +37,8 @@ std::uint32_t mapping_of(PdoEntry entry) {
          static_cast<std::uint32_t>(entry.object.sub) << 8U | entry.bits;
 }
 
-std::uint16_t Pdo::communication_index() const {
-  const auto first = direction == PdoDirection::receive ? kFirstReceive : kFirstTransmit;
-  return static_cast<std::uint16_t>(first + number - 1);
-}
-
-std::uint16_t Pdo::mapping_index() const {
-  return static_cast<std::uint16_t>(communication_index() + kMappingOffset);
-}
-
+std::uint16_t Pdo::communication_index() const { return index_of({direction, number, false}); }
+std::uint16_t Pdo::mapping_index() const { return index_of({direction, number, true}); }
 std::size_t Pdo::bits() const { return bits_of(entries); }
 
 std::string name(PdoDirection direction, std::uint16_t number) {
@@ -61,13 +51,6 @@ std::optional<Pdo> parse_pdo_name(std::string_view text) {
   const auto number = parse_digits(text.substr(4), 10);
   if (!number || *number == 0 || *number > kMostPdos) return std::nullopt;
   return Pdo{receive ? PdoDirection::receive : PdoDirection::transmit, static_cast<std::uint16_t>(*number)};
-}
-
-std::optional<PdoPlace> pdo_at(std::uint16_t index) {
-  if (index < kFirstReceive || index >= kFirstTransmit + 2 * kMappingOffset) return std::nullopt;
-  const auto offset = static_cast<std::uint16_t>(index - kFirstReceive);
-  return PdoPlace{index < kFirstTransmit ? PdoDirection::receive : PdoDirection::transmit,
-                  static_cast<std::uint16_t>(offset % kMappingOffset + 1), offset / kMappingOffset % 2 == 1};
 }
 
 std::string_view service_of(std::uint32_t can_id) {

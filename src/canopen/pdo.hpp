@@ -10,12 +10,14 @@
 
 #include "base/bytes.hpp"
 #include "base/object_address.hpp"
+#include "base/pdo_index.hpp"
 #include "can/frame.hpp"
 
 namespace servoctl::canopen {
 
-/// Seen from the drive: it receives an RPDO and transmits a TPDO.
-enum class PdoDirection : std::uint8_t { receive, transmit };
+using servoctl::pdo_at;
+using servoctl::PdoDirection;
+using servoctl::PdoPlace;
 
 /// Bits of the COB-ID entry, sub-index 1 of the communication record (CiA 301, tables 67 and 72).
 inline constexpr std::uint32_t kPdoInvalid = 0x8000'0000;
@@ -64,15 +66,6 @@ std::string name(PdoDirection direction, std::uint16_t number);
 
 /// The PDO of this name, in any case, with nothing of it known yet; empty when the text names none.
 std::optional<Pdo> parse_pdo_name(std::string_view text);
-
-/// Whose record stands at an index.
-struct PdoPlace {
-  PdoDirection direction = PdoDirection::receive;
-  std::uint16_t number = 1;
-  bool mapping = false;  ///< The mapping record, not the communication record.
-};
-/// Empty for indexes other than 1400h to 1BFFh.
-std::optional<PdoPlace> pdo_at(std::uint16_t index);
 
 /// As Pdo::can_id() has it: with kPdoExtended for a frame of 29 bits.
 inline std::uint32_t can_id_of(const can::Frame& frame) {

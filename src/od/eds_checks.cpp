@@ -5,15 +5,13 @@
 #include <optional>
 #include <utility>
 
+#include "base/pdo_index.hpp"
+
 namespace servoctl::od {
 namespace {
 
 constexpr std::uint64_t kMostBits = 64;
 constexpr std::uint64_t kMostEntries = 64;  // Above are the marks of multiplexed PDOs.
-
-bool is_mapping(std::uint16_t index) {
-  return (index >= 0x1600 && index <= 0x17FF) || (index >= 0x1A00 && index <= 0x1BFF);
-}
 
 std::optional<std::uint64_t> number_in(const std::optional<NodeValue>& value) {
   const auto* number = value && !value->plus_node_id ? std::get_if<std::uint64_t>(&value->value) : nullptr;
@@ -99,7 +97,7 @@ void check_mandatory_objects(const PresentObjects& present, Findings& findings) 
 
 void check_mappings(const Dictionary& dictionary, Findings& findings) {
   for (const auto& object : dictionary.objects()) {
-    if (!is_mapping(object.index)) continue;
+    if (!is_pdo_mapping(object.index)) continue;
     Mapping mapping(dictionary, object, findings);
     mapping.check(&Entry::default_value, "DefaultValue");
     mapping.check(&Entry::configured, "ParameterValue");

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/number.hpp"
+#include "base/pdo_index.hpp"
 #include "base/text.hpp"
 #include "od/complex_type.hpp"
 #include "od/eds_value.hpp"
@@ -134,10 +135,9 @@ void read_access(const IniSection& section, Entry& entry, Findings& findings) {
 }
 
 bool is_can_id(ObjectAddress object) {
-  const bool pdo = (object.index >= 0x1400 && object.index <= 0x15FF) ||
-                   (object.index >= 0x1800 && object.index <= 0x19FF);
   const bool sdo = object.index >= 0x1200 && object.index <= 0x12FF;
-  return (pdo && object.sub == 1) || (sdo && (object.sub == 1 || object.sub == 2)) ||
+  return (is_pdo_communication(object.index) && object.sub == 1) ||
+         (sdo && (object.sub == 1 || object.sub == 2)) ||
          (object.sub == 0 && (object.index == 0x1005 || object.index == 0x1012 || object.index == 0x1014));
 }
 

@@ -8,6 +8,7 @@
 #include <unordered_set>
 
 #include "base/number.hpp"
+#include "base/pdo_index.hpp"
 #include "base/text.hpp"
 #include "od/eds_entry.hpp"
 #include "od/eds_value.hpp"
@@ -108,15 +109,11 @@ void check_sub_number(const IniSection& section, const ObjectSections& sections,
                   fmt::format("write SubNumber={}", count));
 }
 
-bool is_mapping(std::uint16_t index) {
-  return (index >= 0x1600 && index <= 0x17FF) || (index >= 0x1A00 && index <= 0x1BFF);
-}
-
 /// Whether sub 0 may say more than there is: multiplexed PDOs are marked so, the communication record of a
 /// PDO has six places of which few are used (CiA 301, 7.5.2.33), 1029h counts classes of errors.
 bool may_say_more(std::uint16_t index, double said) {
-  const bool communication = (index >= 0x1400 && index <= 0x15FF) || (index >= 0x1800 && index <= 0x19FF);
-  return (is_mapping(index) && said >= 0xFE) || (communication && said <= 6) || index == 0x1029;
+  return (is_pdo_mapping(index) && said >= 0xFE) || (is_pdo_communication(index) && said <= 6) ||
+         index == 0x1029;
 }
 
 void check_sub_0(const Object& object, const IniSection& main, const ObjectSections& sections,
@@ -147,7 +144,7 @@ void check_sub_0(const Object& object, const IniSection& main, const ObjectSecti
   if (!entry.default_value || entry.default_value->plus_node_id || !is_integer(entry.type)) return;
   const auto said = to_double(entry.default_value->value);
   // A list that is filled at run time, or by the user, begins with less than it has room for.
-  const bool fixed = !writable(entry.access) && object.index != 0x1003 && !is_mapping(object.index);
+  const bool fixed = !writable(entry.access) && object.index != 0x1003 && !is_pdo_mapping(object.index);
   if ((said > highest && !may_say_more(object.index, said)) || (fixed && said < highest))
     tell("DefaultValue", "sub-0-value",
          fmt::format("[{}] says the highest sub-index is {}; it is {}", section.name,

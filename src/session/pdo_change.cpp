@@ -14,15 +14,10 @@ namespace {
 using canopen::Pdo;
 using drive::PdoRules;
 
-bool is_mapping(std::uint16_t index) {
-  const auto place = canopen::pdo_at(index);
-  return place && place->mapping;
-}
-
 /// An entry of a mapping behind its count: whatever it holds means nothing.
 bool is_unused(ObjectAddress object, const Values& values) {
   const auto count = values.find({object.index, 0});
-  return is_mapping(object.index) && object.sub > 0 && count != values.end() &&
+  return is_pdo_mapping(object.index) && object.sub > 0 && count != values.end() &&
          object.sub > load_le(count->second);
 }
 
@@ -182,7 +177,7 @@ Result<void> complete(Session& session, std::uint8_t node, Values& present, cons
   const auto answers = session.transfer(questions);
   for (std::size_t i = 0; i < answers.size(); ++i) {
     const auto object = questions[i].object;
-    const bool entry = is_mapping(object.index) && object.sub > 0;
+    const bool entry = is_pdo_mapping(object.index) && object.sub > 0;
     if (!answers[i] && !(entry && answers[i].error().code == Errc::sdo_abort))
       return tl::unexpected<Error>(answers[i].error());
     present.emplace(object, answers[i] ? *answers[i] : Bytes(wanted.at(object).size(), 0));

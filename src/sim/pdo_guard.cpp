@@ -13,20 +13,12 @@ using drive::PdoRules;
 
 namespace {
 
-bool in(std::uint16_t index, std::uint16_t first, std::uint16_t last) {
-  return index >= first && index <= last;
-}
-bool is_communication(std::uint16_t index) { return in(index, 0x1400, 0x15FF) || in(index, 0x1800, 0x19FF); }
 bool is_transmit(std::uint16_t index) { return index >= 0x1800; }
 
 /// 1600h belongs to 1400h, 1A00h to 1800h.
 std::uint16_t communication_of(std::uint16_t mapping) { return static_cast<std::uint16_t>(mapping - 0x200); }
 
 }  // namespace
-
-bool PdoGuard::is_mapping(ObjectAddress object) {
-  return in(object.index, 0x1600, 0x17FF) || in(object.index, 0x1A00, 0x1BFF);
-}
 
 bool PdoGuard::is_valid(std::uint16_t communication_index) const {
   return (values_->number({communication_index, 1}) & canopen::kPdoInvalid) == 0;
@@ -44,7 +36,7 @@ bool PdoGuard::allowed(PdoRules::When when, std::uint16_t communication_index, b
 std::uint32_t PdoGuard::check(ObjectAddress object, ByteSpan data, bool operational) const {
   const auto& rules = profile_->rules.pdo;
   const auto value = load_le(data);
-  if (is_communication(object.index)) {
+  if (is_pdo_communication(object.index)) {
     if (object.sub == 1) {
       if (rules.parameters == PdoRules::When::not_operational && operational) return abort::kDeviceState;
       return check_cob_id(object, static_cast<std::uint32_t>(value));
@@ -52,7 +44,7 @@ std::uint32_t PdoGuard::check(ObjectAddress object, ByteSpan data, bool operatio
     if (!allowed(rules.parameters, object.index, operational)) return abort::kDeviceState;
     return object.sub == 2 && !knows_type(object.index, static_cast<std::uint8_t>(value)) ? abort::kRange : 0;
   }
-  if (!is_mapping(object)) return 0;
+  if (!is_pdo_mapping(object.index)) return 0;
   if (!allowed(rules.mapping, communication_of(object.index), operational)) return abort::kDeviceState;
   return check_mapping(object, value);
 }

@@ -19,9 +19,6 @@ class PdoGuard {
   /// Abort code, or 0 for objects that are no PDO parameters and for writes that are allowed.
   std::uint32_t check(ObjectAddress object, ByteSpan data, bool operational) const;
 
-  /// Whether the abort was for a change of mapping in a state that does not allow it.
-  static bool is_mapping(ObjectAddress object);
-
  private:
   std::uint32_t check_cob_id(ObjectAddress object, std::uint32_t cob_id) const;
   bool knows_type(std::uint16_t index, std::uint8_t type) const;

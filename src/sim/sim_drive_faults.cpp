@@ -84,7 +84,7 @@ void SimDrive::raise_access_alarm(ObjectAddress object, std::uint32_t code) {
     panel = rules.length_alarm;
   if (code == abort::kTooHigh || code == abort::kTooLow || code == abort::kRange) panel = rules.range_alarm;
   if (code == abort::kReadOnly) panel = rules.access_alarm;
-  if (code == abort::kDeviceState && PdoGuard::is_mapping(object)) panel = rules.mapping_alarm;
+  if (code == abort::kDeviceState && is_pdo_mapping(object.index)) panel = rules.mapping_alarm;
   (void)raise_alarm(panel);
 }
 

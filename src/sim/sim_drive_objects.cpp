@@ -81,7 +81,7 @@ std::uint32_t SimDrive::write(ObjectAddress object, ByteSpan data) {
   if (object == objects::kErrorHistory && data.size() == 1 && data[0] != 0) return abort::kRange;
   auto code = values_.check_write(object, data, node_);
   // A count beyond the entries is no value of the wrong range, whatever limit its entry has.
-  if (code == abort::kTooHigh && PdoGuard::is_mapping(object) && object.sub == 0) code = abort::kPdoLength;
+  if (code == abort::kTooHigh && is_pdo_mapping(object.index) && object.sub == 0) code = abort::kPdoLength;
   if (code == 0) code = check_state(object, data);
   if (code != 0) {
     raise_access_alarm(object, code);
@@ -144,7 +144,7 @@ void SimDrive::after_write(ObjectAddress object, ByteSpan data) {
     ++flash_writes_;
     (void)memory_->save();
   }
-  if (profile_->rules.pdo.clears_entries && PdoGuard::is_mapping(object) && object.sub == 0 &&
+  if (profile_->rules.pdo.clears_entries && is_pdo_mapping(object.index) && object.sub == 0 &&
       load_le(data) == 0)
     if (const auto* mapping = profile_->dictionary.object(object.index))
       for (const auto& entry : mapping->entries) values_.set_number(entry.address, 0);
