@@ -24,27 +24,6 @@ std::string upper(std::string_view text) {
   return out;
 }
 
-/// Text broken at blanks, every line indented.
-std::string wrapped(std::string_view text, std::size_t indent, std::size_t width) {
-  std::string out;
-  std::size_t used = indent;
-  for (const auto word : split(text, ' ')) {
-    if (used > indent && used + 1 + display_width(word) > width) {
-      out += '\n';
-      used = indent;
-    }
-    if (used == indent)
-      out += out.empty() || out.back() == '\n' ? std::string(out.empty() ? 0 : indent, ' ') : "";
-    else {
-      out += ' ';
-      ++used;
-    }
-    out += word;
-    used += display_width(word);
-  }
-  return out;
-}
-
 std::string option_words(const Parameter& parameter) {
   std::string out =
       parameter.short_name.empty() ? std::string("    ") : std::string(parameter.short_name) + ", ";

@@ -35,6 +35,10 @@ std::string pad_left(std::string_view text, std::size_t width);
 /// At most `width` columns of `text`; where something is cut, the last column is `…`.
 std::string clip(std::string_view text, std::size_t width);
 
+/// `text` broken at spaces so that no line is wider than `width` columns (0: not broken); lines after the
+/// first are indented.
+std::string wrapped(std::string_view text, std::size_t indent, std::size_t width);
+
 /// Levenshtein distance with transpositions, ASCII case ignored.
 std::size_t edit_distance(std::string_view a, std::string_view b);
 

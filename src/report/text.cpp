@@ -69,26 +69,6 @@ bool is_block(const Value& value) {
          std::holds_alternative<Plot>(value.data());
 }
 
-/// Breaks at spaces so that no line is longer than `width`; lines after the first are indented.
-std::string wrapped(const std::string& text, std::size_t indent, std::size_t width) {
-  std::string out;
-  std::size_t used = 0;
-  for (const auto word : split(text, ' ')) {
-    const auto size = display_width(word);
-    if (used > 0 && width > 0 && indent + used + 1 + size > width) {
-      out += '\n' + std::string(indent, ' ');
-      used = 0;
-    }
-    if (used > 0) {
-      out += ' ';
-      ++used;
-    }
-    out += word;
-    used += size;
-  }
-  return out;
-}
-
 class TableText {
  public:
   TableText(const Table& table, std::size_t width) {
