@@ -79,12 +79,17 @@ class Difference {
   }
 
  private:
-  /// The family named on the line, else that of a file, where its data is at hand.
+  bool are_files() const { return operands_[0].source && operands_[1].source; }
+
+  /// The family named on the line, else that of a file, where its data is at hand; a DCF describes its own
+  /// drive.
   Result<void> find_family() {
     profile_ = context_->profile;
     for (const auto& operand : operands_) {
       if (profile_ != nullptr || !operand.source) continue;
-      const auto name = family_of(*context_, *operand.source);
+      auto name = family_of(*context_, *operand.source);
+      if (name.empty() && operand.source->format == BackupFormat::dcf && are_files())
+        name = operand.source->file;
       const auto found = name.empty() ? Result<const drive::Profile*>(nullptr) : context_->family(name);
       if (found) profile_ = *found;
     }
