@@ -79,12 +79,12 @@ Result<Message> make_message(Context& context, const PdoView& view, std::span<co
 }
 
 Result<void> check_operational(Context& context, const PdoView& view) {
-  const auto state = session::ask_nmt_state(*context.session, view.node);
+  const auto state = session::ask_nmt_state(*context.session, view.node, !context.dry_run);
   if (!state) return tl::unexpected<Error>(state.error());
   if (!*state) {
-    context.notices.push_back(
-        fmt::format("node {} does not tell whether it is operational (no heartbeat); if not, it ignores PDOs",
-                    view.node));
+    context.notices.push_back(fmt::format(
+        "node {} does not tell whether it is operational (no heartbeat{}); if not, it ignores PDOs",
+        view.node, context.dry_run ? ", and a dry run does not guard it" : ""));
     return {};
   }
   if (**state == NmtState::operational) return {};
@@ -116,9 +116,9 @@ Result<Value> run(Context& context, const Arguments& arguments) {
                         {"frame", can::to_string(message->frame)},
                         {"values", message->text, report::Show::text},
                         {"values", written_values(view, message->frame), report::Show::json}};
-  if (context.dry_run) return Value(std::move(answer));
   if (const auto ready = check_operational(context, view); !ready)
     return tl::unexpected<Error>(ready.error());
+  if (context.dry_run) return Value(std::move(answer));
   if (const auto sure = context.confirm(
           fmt::format("Send {} to node {}: {}? The motor may move.", view.name, view.node, message->text));
       !sure)

@@ -24,7 +24,7 @@ Result<void> tell(Session& session, std::uint8_t node, NmtCommand command) {
 
 }  // namespace
 
-Result<std::optional<NmtState>> ask_nmt_state(Session& session, std::uint8_t node) {
+Result<std::optional<NmtState>> ask_nmt_state(Session& session, std::uint8_t node, bool by_guarding) {
   const SdoRequest questions[] = {{.node = node, .object = objects::kProducerHeartbeat, .size = 2},
                                   {.node = node, .object = objects::kGuardTime, .size = 2},
                                   {.node = node, .object = objects::kLifeTimeFactor, .size = 1}};
@@ -34,7 +34,8 @@ Result<std::optional<NmtState>> ask_nmt_state(Session& session, std::uint8_t nod
   const auto period = std::chrono::milliseconds(number_in(answers[0]).value_or(0) & 0xFFFFU);
   auto patience = std::min<Duration>(period * 3 / 2, kMostPatience);
   if (period == Duration::zero()) {
-    if (number_in(answers[1]).value_or(0) != 0 && number_in(answers[2]).value_or(0) != 0) return std::nullopt;
+    const bool is_guarded = number_in(answers[1]).value_or(0) != 0 && number_in(answers[2]).value_or(0) != 0;
+    if (!by_guarding || is_guarded) return std::nullopt;
     if (const auto sent = session.send(canopen::guarding_request(node)); !sent)
       return tl::unexpected<Error>(sent.error());
     patience = session.options().timeout;

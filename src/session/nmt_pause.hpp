@@ -11,8 +11,10 @@
 namespace servoctl::session {
 
 /// The NMT state of a node, by its next heartbeat, or by node guarding where asking once sets nothing off (no
-/// life time is set); empty when neither tells it. Errors of the bus, and Errc::interrupted.
-Result<std::optional<canopen::NmtState>> ask_nmt_state(Session& session, std::uint8_t node);
+/// life time is set) unless `by_guarding` forbids that remote frame; empty when neither tells it. Errors of
+/// the bus, and Errc::interrupted.
+Result<std::optional<canopen::NmtState>> ask_nmt_state(Session& session, std::uint8_t node,
+                                                       bool by_guarding = true);
 
 /// Takes one node out of Operational and puts it back.
 class NmtPause {
