@@ -203,6 +203,7 @@ void FrameDecoder::decode_error_control(const can::Frame& frame) {
     out_.service = "boot-up";
     out_.text = "boot-up";
     pdos_.forget(*out_.node);
+    emergency_ids_.on_boot_up(*out_.node);
     return;
   }
   const bool toggle = (frame.data[0] & 0x80U) != 0;

@@ -16,7 +16,17 @@ void EmergencyIds::learn(std::uint8_t node, std::uint32_t cob_id) {
   std::erase_if(changed_, [&](const Changed& entry) { return entry.node == node; });
   const auto can_id = cob_id & (kPdoExtended | kPdoCobIdMask);
   const bool usable = (cob_id & kNone) == 0 && can_id != 0 && cob_id_conflict(kCobId, cob_id, 0).empty();
-  if (usable && can_id != kEmergency + node) changed_.push_back({node, can_id});
+  if (!usable) return;
+  if (can_id == kEmergency + node)
+    std::erase_if(changed_, [&](const Changed& entry) { return entry.can_id == can_id; });
+  else
+    changed_.push_back({node, can_id});
+}
+
+void EmergencyIds::on_boot_up(std::uint8_t node) {
+  std::erase_if(changed_, [&](const Changed& entry) {
+    return entry.node == node && entry.can_id > kEmergency && entry.can_id <= kEmergency + kLastNode;
+  });
 }
 
 std::optional<Emergency> EmergencyIds::parse(const can::Frame& frame) const {

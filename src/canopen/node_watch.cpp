@@ -44,6 +44,7 @@ void NodeWatch::on_error_control(const ErrorControl& message, TimePoint now) {
   auto& node = nodes_[message.node];
   if (message.boot_up) {
     ++node.boots;
+    emergency_ids_.on_boot_up(message.node);
     node.state = NmtState::pre_operational;  // CiA 301, 7.3.2.2.1: a node enters it by itself after boot-up.
     node.last.reset();
     node.intervals = 0;

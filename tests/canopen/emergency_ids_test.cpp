@@ -38,6 +38,23 @@ TEST(EmergencyIds, MayBeThatOfAnotherNodeAndHave29Bits) {
   EXPECT_EQ(ids.parse(frame("085#3081"))->node, 3);
 }
 
+TEST(EmergencyIds, BelongToTheNodeOfThatNumberOnceItsOwn1014hSaysSo) {
+  EmergencyIds ids;
+  ids.learn(3, 0x85);
+  ids.learn(5, 0x85);
+  EXPECT_EQ(ids.parse(frame("085#3081"))->node, 5);
+}
+
+TEST(EmergencyIds, OfAnotherNodeAreForgottenAtABootUp) {
+  EmergencyIds ids;
+  ids.learn(3, 0x85);
+  ids.learn(4, 0x281);
+  ids.on_boot_up(3);
+  ids.on_boot_up(4);
+  EXPECT_EQ(ids.parse(frame("085#3081"))->node, 5);
+  EXPECT_EQ(ids.parse(frame("281#3081"))->node, 4) << "it may be stored";
+}
+
 TEST(EmergencyIds, AreNotTakenFromOtherServicesNorWhenTheyAreSwitchedOff) {
   EmergencyIds ids;
   for (const std::uint32_t cob_id :
