@@ -144,7 +144,16 @@ std::vector<PlannedWrite> plan_writes(const drive::Profile* profile, const Value
 std::vector<PlannedWrite> plan_writes_for_any_drive(const Values& wanted) {
   Values present;
   for (const auto& [object, data] : wanted) present.emplace(object, any_before(wanted, object, data));
-  return plan(false, present, wanted, [](auto writes) { return in_order_for_any_drive(std::move(writes)); });
+  auto out =
+      plan(false, present, wanted, [](auto writes) { return in_order_for_any_drive(std::move(writes)); });
+  // A COB-ID that stands alone belongs to no procedure.
+  for (const auto& [object, data] : wanted) {
+    const auto planned = [&object = object](const PlannedWrite& write) { return write.object == object; };
+    if (is_pdo_communication(object.index) && object.sub == 1 &&
+        std::none_of(out.begin(), out.end(), planned))
+      out.push_back({object, data});
+  }
+  return out;
 }
 
 std::set<ObjectAddress> touched_by(const std::vector<PlannedWrite>& plan, const Values& present) {

@@ -97,5 +97,13 @@ TEST(PlanOfWrites, LeavesAloneWhatTheDriveDoesNotHave) {
   EXPECT_TRUE(plan_writes(nullptr, kPresent, wanted).empty());
 }
 
+TEST(WritesForAnyDrive, HoldACobIdThatStandsAlone) {
+  const Values wanted{{{0x1400, 1}, store_le(0x201, 4)}};
+  const auto writes = plan_writes_for_any_drive(wanted);
+  ASSERT_EQ(writes.size(), 1U);
+  EXPECT_EQ(writes.front().object, (ObjectAddress{0x1400, 1}));
+  EXPECT_EQ(load_le(writes.front().data), 0x201U);
+}
+
 }  // namespace
 }  // namespace servoctl::session
