@@ -151,7 +151,7 @@ void PowerDown::poll_again(State state, TimePoint now) {
 /// An answer may be lost, so it is asked again. Then the node may be one that was sent NMT "stop": it answers
 /// no SDO. What is dead at last has been sent the commands all the same.
 void PowerDown::on_silence(const Error& error, TimePoint now) {
-  const bool cutting = state_ >= State::switch_off;
+  const bool cutting = state_ >= State::switch_off && plan_.aim != PowerAim::stop;
   if (state_ == State::stopping) state_ = State::quick_stop;
   if (state_ == State::cutting) state_ = State::cut;
   if (++silences_ == 1) return;
