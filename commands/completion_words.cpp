@@ -1,5 +1,6 @@
 #include "commands/completion_words.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 
 #include "base/printable.hpp"

@@ -61,9 +61,9 @@ std::string product(const std::vector<Quotient::Factor>& factors) {
 }
 
 std::string quotient_text(const Quotient& quotient) {
-  auto out = product(quotient.multiply);
-  for (const auto object : quotient.power_of_two) out += fmt::format(" × 2^{}", to_string(object));
-  if (quotient.learned) out = quotient.multiply.empty() ? "measured" : "measured × " + out;
+  std::string out = quotient.learned ? "measured" : "";
+  if (!quotient.learned || !quotient.multiply.empty()) append(out, product(quotient.multiply), " × ");
+  for (const auto object : quotient.power_of_two) append(out, fmt::format("2^{}", to_string(object)), " × ");
   if (!quotient.divide.empty()) out += " / (" + product(quotient.divide) + ")";
   for (const auto& condition : quotient.when)
     out += fmt::format(", when {} is {}", to_string(condition.object), condition.value);
