@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/file.hpp"
+#include "base/number.hpp"
 #include "commands/backup_file.hpp"
 #include "commands/bus_name.hpp"
 #include "commands/field_reader.hpp"
@@ -169,21 +170,21 @@ KnownTurn find_turn(const Context& context, std::uint8_t node) {
   return out;
 }
 
-void tell_turn(Context& context, const session::MotionUnits& units, const KnownTurn& known) {
-  const auto node = static_cast<int>(units.node());
+std::vector<std::string> turn_notes(const session::MotionUnits& units, const KnownTurn& known) {
+  std::vector<std::string> out;
   if (units.uses_learned() && known.kept)
-    context.notices.push_back(fmt::format(
-        "node {}: its encoder has {} counts a turn ({}), measured at {} and kept for this drive; --turn "
-        "COUNTS "
-        "says another number{}",
-        node, known.kept->counts, known.kept->reason, known.kept->time,
+    out.push_back(fmt::format(
+        "a turn is {} increments of 6064h, by the {} counts of its encoder ({}) that were measured at {} and "
+        "kept "
+        "for this drive; --turn says another number{}",
+        plain_number(units.turn().value_or(0), 12), known.kept->counts, known.kept->reason, known.kept->time,
         known.kept->identity.serial.value_or(0) == 0
             ? "; it has no serial number (1018h:04): another drive or motor would not be noticed by it"
             : ""));
   if (!known.unused.empty() && !units.turn())
-    context.notices.push_back(fmt::format(
-        "node {}: the counts of a turn that are kept are not used: {}; `units learn` measures anew", node,
-        known.unused));
+    out.push_back(fmt::format(
+        "the counts of a turn that are kept are not used: {}; `units learn` measures anew", known.unused));
+  return out;
 }
 
 }  // namespace servoctl::commands

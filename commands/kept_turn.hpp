@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "commands/command.hpp"
 #include "session/identity.hpp"
@@ -53,8 +54,8 @@ struct KnownTurn {
 /// What is kept for this node, held against family and identity. Asks the drive only where something is kept.
 KnownTurn find_turn(const Context& context, std::uint8_t node);
 
-/// Tells by a notice where the counts of a turn come from when they are kept ones, and why they are not used
-/// where nothing else tells them.
-void tell_turn(Context& context, const session::MotionUnits& units, const KnownTurn& known);
+/// Where the counts of a turn come from when they are kept ones, and why they are not used where nothing else
+/// tells them: to be told before a motion, and with its result.
+std::vector<std::string> turn_notes(const session::MotionUnits& units, const KnownTurn& known);
 
 }  // namespace servoctl::commands

@@ -73,10 +73,10 @@ Result<Value> planned(const Context& context, session::Motion& motion, const ses
 }
 
 Result<void> ask(Context& context, std::uint8_t node, const session::MotionPlan& plan,
-                 const std::vector<session::PreflightItem>& items) {
+                 const std::vector<session::PreflightItem>& items, const std::vector<std::string>& notes) {
   if (context.tell) {
     context.tell(preflight_text(items));
-    for (const auto& note : plan.notes) context.tell(fmt::format("note     {}\n", note));
+    for (const auto& note : notes) context.tell(fmt::format("note     {}\n", note));
   }
   return context.confirm(
       fmt::format("The motor of node {} will move: {}. Is the machine clear?", node, plan.summary));
@@ -151,12 +151,13 @@ Result<Value> run_motion(Context& context, const Arguments& arguments, const Mot
   session::Motion motion(*context.session, *context.profile, *node, std::move(*options));
   display = Display(context, motion);
   if (const auto ready = motion.prepare(); !ready) return tl::unexpected<Error>(ready.error());
-  tell_turn(context, motion.units(), known);
+  auto notes = turn_notes(motion.units(), known);
   const auto plan = run.plan(motion);
   if (!plan) return tl::unexpected<Error>(plan.error());
   const auto items = motion.look(context.chinese);
   if (!items) return tl::unexpected<Error>(items.error());
-  for (const auto& note : plan->notes) context.notices.push_back(fmt::format("node {}: {}", *node, note));
+  notes.insert(notes.end(), plan->notes.begin(), plan->notes.end());
+  for (const auto& note : notes) context.notices.push_back(fmt::format("node {}: {}", *node, note));
   auto possible = session::check_preflight(*items, *node);
   if (possible) possible = session::check_mode(*context.session, *context.profile, *node, plan->mode);
   if (context.dry_run && possible) return planned(context, motion, *plan, *items);
@@ -165,7 +166,7 @@ Result<Value> run_motion(Context& context, const Arguments& arguments, const Mot
     return Value(Record{{"node", *node}, {"motion", plan->summary}, {"preflight", preflight_table(*items)}});
   }
   if (!possible) return tl::unexpected<Error>(possible.error());
-  if (const auto answer = ask(context, *node, *plan, *items); !answer)
+  if (const auto answer = ask(context, *node, *plan, *items, notes); !answer)
     return tl::unexpected<Error>(answer.error());
   const auto done = run.run(motion, *plan);
   if (!done.begun && !done.outcome) return tl::unexpected<Error>(done.outcome.error());

@@ -12,9 +12,10 @@ namespace servoctl::commands {
 
 inline constexpr Parameter kAccelerationOption{
     .name = "--accel", .help = "ramps (6083h, 6084h) instead of half a second", .kind = Kind::value};
-inline constexpr Parameter kTurnOption{.name = "--turn",
-                                       .help = "counts in one turn of the motor, if the drive does not tell",
-                                       .kind = Kind::number};
+inline constexpr Parameter kTurnOption{
+    .name = "--turn",
+    .help = "increments of 6064h in one turn of the motor, if the drive does not tell",
+    .kind = Kind::number};
 /// What every motion takes.
 inline constexpr std::array kMotionOptions{
     Parameter{

@@ -25,8 +25,8 @@ constexpr Parameter kParameters[] = {
      .help = "of the motor: 15rpm to 30rpm (default 30rpm); the sign is the direction",
      .kind = Kind::value},
     {.name = "--for", .help = "how long it is measured (default 6s)", .kind = Kind::duration},
-    {.name = "--turn",
-     .help = "counts that the nameplate says, to be held against the measurement",
+    {.name = "--nameplate",
+     .help = "counts a turn of the encoder by its nameplate, held against the measurement",
      .kind = Kind::number},
     {.name = "--max-torque", .help = "stop above this torque", .kind = Kind::value},
     {.name = "--max-following-error", .help = "stop above this following error", .kind = Kind::value},
@@ -48,6 +48,16 @@ Result<double> speed_of(const Arguments& arguments) {
       Errc::usage,
       fmt::format("--speed: '{}' is not 15rpm to 30rpm, one way or the other", arguments.text("--speed")),
       "slower is not exact enough, faster is not safe before the counts are known");
+}
+
+Result<std::optional<double>> nameplate_of(const Arguments& arguments) {
+  if (!arguments.has("--nameplate")) return std::optional<double>();
+  const auto counts = parse_integer(arguments.text("--nameplate"));
+  if (counts && !counts->negative && counts->magnitude > 0)
+    return std::optional(static_cast<double>(counts->magnitude));
+  return fail(Errc::usage,
+              fmt::format("--nameplate: '{}' is no number of counts", arguments.text("--nameplate")),
+              "such as 131072 for 17 bits");
 }
 
 Result<Duration> length_of(const Arguments& arguments) {
@@ -97,7 +107,7 @@ Result<double> read_gear(Context& context, std::uint8_t node) {
   const auto why = unmet(context, node);
   return refused(node,
                  "the counts of a turn cannot be measured as it is set" + (why.empty() ? why : ": " + why),
-                 "--turn COUNTS of each motion says them");
+                 std::string(session::kOtherWay));
 }
 
 Result<Learn> learn_of(Context& context, const Arguments& arguments, std::uint8_t node) {
@@ -110,7 +120,7 @@ Result<Learn> learn_of(Context& context, const Arguments& arguments, std::uint8_
         told.empty()
             ? fmt::format("{} has nothing to measure the counts of a turn by", context.profile->family)
             : fmt::format("{} tells the counts of a turn itself: {}", context.profile->family, told),
-        told.empty() ? "--turn COUNTS of each motion says them" : "`units show` reads them");
+        told.empty() ? std::string(session::kOtherWay) : "`units show` reads them");
   }
   const auto monitor = drive::resolve(context.profile, rules.learn.speed);
   if (!monitor) return tl::unexpected<Error>(monitor.error());
@@ -120,8 +130,6 @@ Result<Learn> learn_of(Context& context, const Arguments& arguments, std::uint8_
   if (!rpm) return tl::unexpected<Error>(rpm.error());
   const auto length = length_of(arguments);
   if (!length) return tl::unexpected<Error>(length.error());
-  const auto options = motion_options(context, arguments);
-  if (!options) return tl::unexpected<Error>(options.error());
   Learn out;
   out.rpm = *rpm;
   out.length = *length;
@@ -129,7 +137,9 @@ Result<Learn> learn_of(Context& context, const Arguments& arguments, std::uint8_
   out.monitor_name = rules.learn.speed;
   out.least = rules.learn.least;
   out.gear = *gear;
-  out.expected.told = options->turn;
+  const auto nameplate = nameplate_of(arguments);
+  if (!nameplate) return tl::unexpected<Error>(nameplate.error());
+  out.expected.told = *nameplate;
   out.expected.disputed = monitor->parameter != nullptr &&
                           std::any_of(monitor->parameter->doubts.contradicted.begin(),
                                       monitor->parameter->doubts.contradicted.end(),
@@ -252,7 +262,7 @@ const Command kUnitsLearn{
         "gear "
         "6091h is taken out. It is refused when it may be more than 1 % off, and when the monitor shows "
         "nothing or does not go with the way. Taken is the power of two within 1 %, else a round decimal "
-        "number (not where the manual prints two scales for the monitor: then --turn COUNTS of the nameplate "
+        "number (not where the manual prints two scales for the monitor: then --nameplate COUNTS "
         "is held against the measurement). It is kept for this bus, node and identity (1000h, 1008h, 1018h) "
         "and "
         "used by every motion without --turn, with a notice; what the drive's own parameters tell goes "

@@ -77,8 +77,8 @@ List row(const Context& context, std::uint8_t node, Measure measure, std::string
   } else if (const auto unit = position_unit(*context.profile); of_turn && unit != "inc") {
     from = "not needed: its positions are in " + std::string(unit);
   } else if (of_turn) {
-    from += context.profile->rules.learn.speed.empty() ? ": --turn COUNTS says it"
-                                                       : ": `units learn` measures it, --turn COUNTS says it";
+    from += context.profile->rules.learn.speed.empty() ? ": --turn says it"
+                                                       : ": `units learn` measures it, --turn says it";
   }
   return {node,
           name,
@@ -126,6 +126,7 @@ const Command kUnitsShow{
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::reads,
+    .family = FamilyCheck::always,
     .run = run,
 };
 

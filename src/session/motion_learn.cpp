@@ -129,14 +129,14 @@ class Learning {
           Errc::negative,
           fmt::format("turns too fast: {} shows {} rpm, and {} were wanted", learn_->monitor_name,
                       number_text(*rpm), number_text(std::abs(learn_->rpm))),
-          "has its encoder fewer counts than the family's data says? --turn COUNTS of each motion says it"));
+          "has its encoder fewer counts than the family's data says? " + std::string(kOtherWay)));
     const auto position = sample[Channel::position];
     if (!position)
       return fail(motion_->error(Errc::negative, "does not tell its position (6064h) while it moves"));
-    looks_.push_back({sample.time, *position, sample[Channel::velocity], *rpm});
     const auto speed = sample[Channel::velocity];
-    const bool wrong =
-        speed && !keeps_ && *speed * wanted_ < 0 && std::abs(*speed) > std::abs(wanted_) * kTurns;
+    if (!speed) return fail(motion_->error(Errc::negative, "does not tell its speed (606Ch) while it moves"));
+    looks_.push_back({sample.time, *position, speed, *rpm});
+    const bool wrong = !keeps_ && *speed * wanted_ < 0 && std::abs(*speed) > std::abs(wanted_) * kTurns;
     wrong_looks_ = wrong ? wrong_looks_ + 1 : 0;
     if (wrong_looks_ >= kWrongLooks)
       return fail(motion_->error(Errc::negative, "turns the wrong way",
@@ -177,8 +177,7 @@ class Learning {
         Errc::negative,
         fmt::format("turns at {} inc/s by 606Ch, and {} shows {} rpm: nothing to measure by",
                     number_text(speed), learn_->monitor_name, number_text(shown_)),
-        fastest_ && speed >= *fastest_ ? "607Fh holds it back; --turn COUNTS of each motion says it"
-                                       : "--turn COUNTS of each motion says it");
+        (fastest_ && speed >= *fastest_ ? "607Fh holds it back; " : "") + std::string(kOtherWay));
   }
   Error lies(double speed) const {
     return motion_->error(
@@ -186,7 +185,7 @@ class Learning {
         fmt::format("turns at {} inc/s by 606Ch, and {} shows {} rpm, which does not go with what it showed "
                     "at other speeds",
                     number_text(speed), learn_->monitor_name, number_text(shown_)),
-        "--turn COUNTS of each motion says it");
+        std::string(kOtherWay));
   }
 
   Result<void> rest() {
@@ -237,7 +236,7 @@ Result<MotionPlan> plan_learn(Motion& motion, const Learn& learn) {
     return fail(motion.error(Errc::refused,
                              fmt::format("does not show the speed of its motor: {} ({}) cannot be read",
                                          learn.monitor_name, to_string(learn.monitor)),
-                             "--turn COUNTS of each motion says how many counts a turn has"));
+                             std::string(kOtherWay)));
   } else if (const auto rpm = motion.units().physical(learn.monitor, *shown);
              rpm && std::abs(rpm->value) > kRestRpm) {
     return fail(motion.error(

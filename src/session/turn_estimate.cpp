@@ -17,7 +17,6 @@ constexpr double kMostSpread = 0.05;    ///< Of the parts, as their standard dev
 constexpr double kMostQuarrel = 0.02;   ///< Between 606Ch and the way.
 constexpr double kWrap = 4294967296.0;  ///< 6064h has 32 bits.
 constexpr std::array kRound{1.0, 2.0, 2.5, 3.6, 4.0, 5.0, 8.0};
-constexpr std::string_view kOtherWay = "--turn COUNTS of each motion says it instead";
 
 tl::unexpected<Error> no_number(std::string message, std::string hint) {
   return fail(Errc::negative, std::move(message), std::move(hint));
@@ -111,21 +110,24 @@ Result<TurnMeasurement> measure_turn(std::span<const TurnLook> looks, double ste
   const double spread = standard_deviation(parts) / out.increments;
   if (!(spread <= kMostSpread)) {
     const auto [least, most] = std::minmax_element(parts.begin(), parts.end());
-    return no_number(fmt::format("shows a speed in rpm that does not go with its way: {} to {} counts a turn "
-                                 "in parts of the measurement",
-                                 std::llround(*least), std::llround(*most)),
-                     std::string("does the motor turn evenly? ") + std::string(kOtherWay));
+    return no_number(
+        fmt::format("shows a speed in rpm that does not go with its way: {} to {} increments a turn "
+                    "in parts of the measurement",
+                    std::llround(*least), std::llround(*most)),
+        std::string("does the motor turn evenly? ") + std::string(kOtherWay));
   }
   out.by_speed = by_speed(looks, out.rpm);
   if (out.by_speed && std::abs(*out.by_speed / out.increments - 1) > kMostQuarrel)
-    return no_number(fmt::format("tells two speeds: by 606Ch a turn has {} counts, by the way of 6064h {}",
-                                 std::llround(*out.by_speed), std::llround(out.increments)),
-                     std::string(kOtherWay));
+    return no_number(
+        fmt::format("tells two speeds: by 606Ch a turn has {} increments, by the way of 6064h {}",
+                    std::llround(*out.by_speed), std::llround(out.increments)),
+        std::string(kOtherWay));
   out.uncertainty = step / out.rpm + 2 * spread / std::sqrt(static_cast<double>(kParts));
   if (out.uncertainty > kTurnTolerance)
-    return no_number(fmt::format("has about {} counts a turn, but that may be {} % off, and 1 % is allowed",
-                                 std::llround(out.increments), percent(out.uncertainty)),
-                     fmt::format("measure for longer (--for 20s), or faster (--speed 30rpm); {}", kOtherWay));
+    return no_number(
+        fmt::format("has about {} increments a turn, but that may be {} % off, and 1 % is allowed",
+                    std::llround(out.increments), percent(out.uncertainty)),
+        fmt::format("measure for longer (--for 20s), or faster (--speed 30rpm); {}", kOtherWay));
   return out;
 }
 
@@ -134,10 +136,10 @@ Result<TurnCounts> counts_behind(double measured, double uncertainty, const Turn
     const auto told = std::llround(*expected.told);
     if (is_near(measured, *expected.told))
       return TurnCounts{*expected.told,
-                        fmt::format("said by --turn, {}", distance(measured, *expected.told))};
-    return no_number(fmt::format("has {} counts a turn as measured (± {} %), not the {} of --turn",
+                        fmt::format("said by --nameplate, {}", distance(measured, *expected.told))};
+    return no_number(fmt::format("has {} counts a turn as measured (± {} %), not the {} of --nameplate",
                                  std::llround(measured), percent(uncertainty), told),
-                     "leave --turn out, or look at the nameplate of the motor");
+                     "leave --nameplate out, or look at the nameplate of the motor");
   }
   const int bits = static_cast<int>(std::lround(std::log2(measured)));
   if (const double power = std::ldexp(1, bits); is_near(measured, power))
@@ -147,7 +149,7 @@ Result<TurnCounts> counts_behind(double measured, double uncertainty, const Turn
       fmt::format("has {} counts a turn as measured (± {} %)", std::llround(measured), percent(uncertainty));
   if (!is_near(measured, decimal))
     return no_number(said + ": neither a power of two nor a round decimal number is within 1 % of it",
-                     "look at the nameplate of the motor; `units learn --turn COUNTS` holds its number "
+                     "look at the nameplate of the motor; `units learn --nameplate COUNTS` holds its number "
                      "against the measurement and keeps it");
   if (expected.disputed)
     return no_number(
@@ -155,8 +157,9 @@ Result<TurnCounts> counts_behind(double measured, double uncertainty, const Turn
             "{}: {} is near, but the manual prints two scales for the monitor of the speed, and by the "
             "other it would be {}",
             said, std::llround(decimal), plain_number(decimal / 10, 12)),
-        fmt::format("look at the nameplate of the motor; when it says so, `units learn --turn {}` keeps it",
-                    std::llround(decimal)));
+        fmt::format(
+            "look at the nameplate of the motor; when it says so, `units learn --nameplate {}` keeps it",
+            std::llround(decimal)));
   return TurnCounts{decimal, fmt::format("a round decimal number, {}; no power of two is near",
                                          distance(measured, decimal))};
 }

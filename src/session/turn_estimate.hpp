@@ -4,12 +4,17 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "base/result.hpp"
 #include "base/time.hpp"
 
 /// How many counts a turn of a motor has, from what its drive showed while it turned evenly.
 namespace servoctl::session {
+
+/// For those who cannot or do not measure.
+inline constexpr std::string_view kOtherWay =
+    "--turn of each motion says how many increments of 6064h a turn has";
 
 /// A measurement that may be this far off (relative) is of no use, and a number that is farther away from
 /// what was measured was not measured.

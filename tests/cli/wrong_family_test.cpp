@@ -79,15 +79,18 @@ const std::map<std::string, std::string, std::less<>> kLines{
     {"verify", "verify factory"},
     {"watch", "watch 0x6041 --for 20ms"},
     {"write", "write 0x6060 1"},
+    {"units learn", "units learn"},
+    {"units show", "units show"},
 };
 
 /// Commands that send nothing to a drive.
-const std::set<std::string_view> kQuiet{"objects",    "param list", "param search", "param explain",
-                                        "fault list", "decode",     "drives",       "eds check",
-                                        "run",        "sim",        "help",         "completion"};
+const std::set<std::string_view> kQuiet{
+    "objects",   "param list", "param search", "param explain", "fault list", "decode",      "drives",
+    "eds check", "run",        "sim",          "help",          "completion", "units forget"};
 
 /// Refused on a read already: the answer would make sense for the family alone.
-const std::set<std::string_view> kAnswers{"backup", "diff", "info", "report", "scope", "test io", "verify"};
+const std::set<std::string_view> kAnswers{"backup", "diff",    "info",       "report",
+                                          "scope",  "test io", "units show", "verify"};
 const std::set<std::string_view> kWaysOut{"disable", "quick-stop"};
 
 class WrongFamily : public testing::Test {

@@ -111,7 +111,7 @@ TEST_F(Units, AreUsedByTheMotionsOfTheDriveThatWasMeasured) {
   EXPECT_FALSE(jog()) << "nobody knows what 60rpm is";
   ASSERT_TRUE(learn()) << error;
   ASSERT_TRUE(jog()) << error;
-  EXPECT_NE(notices.find("its encoder has 8388608 counts a turn (2^23"), std::string::npos) << notices;
+  EXPECT_NE(notices.find("by the 8388608 counts of its encoder (2^23"), std::string::npos) << notices;
   EXPECT_NE(notices.find("it has no serial number"), std::string::npos) << notices;
   EXPECT_EQ(cell(run("units show"), "source"), "\"kept\"");
   ASSERT_TRUE(run("units forget"));
@@ -177,8 +177,8 @@ TEST_F(Units, KeepNothingInADryRunNorWhenTheMeasurementFails) {
   ASSERT_TRUE(run("units learn")) << error;
   EXPECT_TRUE(file().empty());
   dry_run = false;
-  EXPECT_FALSE(run("units learn", {{"--turn", "131072"}}) && error.empty());
-  EXPECT_NE(error.find("not the 131072 of --turn"), std::string::npos) << error;
+  EXPECT_FALSE(run("units learn", {{"--nameplate", "131072"}}) && error.empty());
+  EXPECT_NE(error.find("not the 131072 of --nameplate"), std::string::npos) << error;
   EXPECT_TRUE(file().empty());
   ASSERT_TRUE(learn()) << error;
   dry_run = true;

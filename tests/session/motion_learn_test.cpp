@@ -131,7 +131,7 @@ TEST(Learn, TakesADecimalNumberOnlyWhereTheScaleOfTheMonitorIsCertainOrSomebodyK
 
   LearnBench other(100000);
   other.how.expected = {131072, true};
-  expect_refused(other, other.learn(), "not the 131072 of --turn");
+  expect_refused(other, other.learn(), "not the 131072 of --nameplate");
 }
 
 TEST(Learn, RefusesANumberThatIsNoneOfThese) {
