@@ -9,7 +9,7 @@ _servoctl_scan() {
       continue
     fi
     case $word in
-      --bus|-b|--node|-n|--drive|-d|--timeout|--retries|--output|-o|--lang|--trace|--type|--to|--transfer|--from|--format|--only|--turn|--for|--turns|--accel|--csv|--limit|--max-torque|--max-following-error|--window|--master-node|--speed|--search|--offset|--within|--guard|--life|--inhibit|--event|--cob-id|--sync-start|--count|--longest|--junit|--expect|--tolerance|--stop-within|--repeat|--spread|--encoder|--title|--tests|--period|--counter|--every|--svg|--service|--object|--bitrate|--var) skip=$word ;;
+      --bus|-b|--node|-n|--drive|-d|--timeout|--retries|--output|-o|--lang|--trace|--type|--to|--transfer|--from|--format|--only|--turn|--for|--turns|--accel|--csv|--limit|--max-torque|--max-following-error|--window|--master-node|--speed|--search|--offset|--within|--nameplate|--guard|--life|--inhibit|--event|--cob-id|--sync-start|--count|--longest|--junit|--expect|--tolerance|--stop-within|--repeat|--spread|--encoder|--title|--tests|--period|--counter|--every|--svg|--service|--object|--bitrate|--var) skip=$word ;;
       -*) ;;
       *)
         case $command in
@@ -48,6 +48,7 @@ _servoctl_scan() {
       --search) source='none' ;;
       --offset) source='none' ;;
       --within) source='none' ;;
+      --nameplate) source='none' ;;
       --guard) source='none' ;;
       --life) source='none' ;;
       --inhibit) source='none' ;;
@@ -145,7 +146,7 @@ _servoctl_scan() {
     'home') options+=' --speed --search --offset --within --csv --limit --max-torque --max-following-error --window --turn --master-node --plot' ;;
     'torque') options+=' --for --csv --limit --max-torque --max-following-error --window --turn --master-node --plot' ;;
     'units show') options+=' --turn' ;;
-    'units learn') options+=' --speed --for --turn --max-torque --max-following-error --window --master-node --plot --csv' ;;
+    'units learn') options+=' --speed --for --nameplate --max-torque --max-following-error --window --master-node --plot --csv' ;;
     'nmt start') options+=' --wait' ;;
     'nmt stop') options+=' --wait' ;;
     'nmt preop') options+=' --wait' ;;
