@@ -152,12 +152,13 @@ Result<Value> run_motion(Context& context, const Arguments& arguments, const Mot
   display = Display(context, motion);
   if (const auto ready = motion.prepare(); !ready) return tl::unexpected<Error>(ready.error());
   auto notes = turn_notes(motion.units(), known);
+  for (const auto& note : notes) context.notices.push_back(fmt::format("node {}: {}", *node, note));
   const auto plan = run.plan(motion);
   if (!plan) return tl::unexpected<Error>(plan.error());
   const auto items = motion.look(context.chinese);
   if (!items) return tl::unexpected<Error>(items.error());
+  for (const auto& note : plan->notes) context.notices.push_back(fmt::format("node {}: {}", *node, note));
   notes.insert(notes.end(), plan->notes.begin(), plan->notes.end());
-  for (const auto& note : notes) context.notices.push_back(fmt::format("node {}: {}", *node, note));
   auto possible = session::check_preflight(*items, *node);
   if (possible) possible = session::check_mode(*context.session, *context.profile, *node, plan->mode);
   if (context.dry_run && possible) return planned(context, motion, *plan, *items);
