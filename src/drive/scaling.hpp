@@ -16,7 +16,8 @@ struct Quotient {
   std::vector<Factor> multiply;
   std::vector<Factor> divide;
   std::vector<ObjectAddress> power_of_two;  ///< Objects that hold an exponent of two: also factors.
-  bool learned = false;  ///< One more factor is the number that no object tells and a turn of the motor shows.
+  bool learned =
+      false;  ///< One more factor is the number that no object tells and a turn of the motor shows.
   struct When {
     ObjectAddress object;
     std::uint64_t value = 0;
