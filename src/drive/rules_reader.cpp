@@ -10,23 +10,7 @@ namespace {
 
 using Handlers = TableReader::Handlers;
 
-/// A table with exactly these keys, in any order.
-bool has_only(const toml::node& node, std::initializer_list<std::string_view> keys) {
-  const auto* table = node.as_table();
-  if (table == nullptr || table->size() != keys.size()) return false;
-  for (const auto key : keys)
-    if (table->get(key) == nullptr) return false;
-  return true;
-}
-
-const toml::node& at(const toml::node& node, std::string_view key) { return *node.as_table()->get(key); }
-
 bool get(const toml::node& node, Condition& out) {
-  return has_only(node, {"object", "value"}) && drive::get(at(node, "object"), out.object) &&
-         get_int(at(node, "value"), out.value);
-}
-
-bool get(const toml::node& node, Quotient::When& out) {
   return has_only(node, {"object", "value"}) && drive::get(at(node, "object"), out.object) &&
          get_int(at(node, "value"), out.value);
 }
@@ -56,18 +40,6 @@ bool get(const toml::node& node, ModeBits& out) {
          get_int(at(node, "disabled"), out.disabled);
 }
 
-bool get(const toml::node& node, Quotient::Factor& out) {
-  ObjectAddress object;
-  if (drive::get(node, object)) {
-    out = object;
-    return true;
-  }
-  const auto number = node.value<double>();
-  if (!number || *number == 0) return false;
-  out = *number;
-  return true;
-}
-
 bool get(const toml::node& node, PdoRules::When& out) {
   std::string text;
   if (!drive::get(node, text)) return false;
@@ -76,8 +48,6 @@ bool get(const toml::node& node, PdoRules::When& out) {
   if (text == "not operational") out = PdoRules::When::not_operational;
   return text == "always" || text == "invalid" || text == "not operational";
 }
-
-bool get(const toml::node& node, Quotient& out);
 
 template <class T>
 TableReader::Handler list_into(std::vector<T>& out) {
@@ -88,27 +58,6 @@ TableReader::Handler list_into(std::vector<T>& out) {
 
 TableReader::Handler condition_into(std::optional<Condition>& out) {
   return [&out](const toml::node& node) { return get(node, out.emplace()); };
-}
-
-bool get(const toml::node& node, Quotient& out) {
-  const auto* table = node.as_table();
-  return table != nullptr && TableReader(*table, "")
-                                 .read({{"multiply", list_into(out.multiply)},
-                                        {"divide", list_into(out.divide)},
-                                        {"power_of_two", into(out.power_of_two)},
-                                        {"learned", into(out.learned)},
-                                        {"when", list_into(out.when)},
-                                        {"assumed", into(out.assumed)}})
-                                 .has_value();
-}
-
-/// One quotient, or a list of those that hold under different conditions.
-TableReader::Handler quotients_into(Quotients& out) {
-  return [&out](const toml::node& node) {
-    if (node.is_array()) return list_into(out)(node) && !out.empty();
-    out.assign(1, {});
-    return get(node, out.front());
-  };
 }
 
 }  // namespace
@@ -130,26 +79,6 @@ Result<void> read_numbering(const TableReader& reader, Numbering& out) {
        {"first_sub", into(out.first_sub)},
        {"unlisted", into(out.unlisted)},
        {"read_only", into(out.read_only)}});
-}
-
-Result<void> read_units(const TableReader& reader, Rules& rules) {
-  const auto learn = [&](const toml::node& node) {
-    const auto least = [&](const toml::node& n) {
-      rules.learn.least = n.value<double>().value_or(0);
-      return rules.learn.least >= 1;
-    };
-    return has_only(node, {"speed", "least"}) &&
-           TableReader(*node.as_table(), "")
-               .read({{"speed", into(rules.learn.speed)}, {"least", least}})
-               .has_value();
-  };
-  return reader.read(
-      {{"increments_per_turn",
-        [&](const auto& n) { return quotients_into(rules.units[Measure::increments_per_turn])(n); }},
-       {"pulses_per_turn",
-        [&](const auto& n) { return quotients_into(rules.units[Measure::pulses_per_turn])(n); }},
-       {"rated_torque", [&](const auto& n) { return quotients_into(rules.units[Measure::rated_torque])(n); }},
-       {"learn", learn}});
 }
 
 Result<void> read_sdo(const TableReader& reader, Rules& rules) {

@@ -83,6 +83,20 @@ bool get(const toml::node& node, std::vector<T>& out) {
   return get_list(node, out, [](const toml::node& n, T& o) { return get(n, o); });
 }
 
+/// A table with exactly these keys, in any order.
+inline bool has_only(const toml::node& node, std::initializer_list<std::string_view> keys) {
+  const auto* table = node.as_table();
+  if (table == nullptr || table->size() != keys.size()) return false;
+  for (const auto key : keys)
+    if (table->get(key) == nullptr) return false;
+  return true;
+}
+
+/// The value of a key that the table has.
+inline const toml::node& at(const toml::node& node, std::string_view key) {
+  return *node.as_table()->get(key);
+}
+
 /// Reads one table key by key; remembers the first thing that is wrong.
 class TableReader {
  public:
