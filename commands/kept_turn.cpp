@@ -8,8 +8,7 @@
 #include "commands/bus_name.hpp"
 #include "commands/field_reader.hpp"
 #include "commands/identity.hpp"
-#include "drive/standard_objects.hpp"
-#include "session/answer.hpp"
+#include "session/identify.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -96,7 +95,7 @@ std::string change_of(const Identity& before, const Identity& now) {
 std::string reason_against(const Context& context, std::uint8_t node, const KeptTurn& kept) {
   if (kept.family != context.profile->family)
     return fmt::format("they were measured with -d {}", kept.family);
-  const auto now = read_turn_identity(*context.session, node);
+  const auto now = session::read_identity(*context.session, node);
   if (!now) return now.error().message;
   const auto change = change_of(kept.identity, *now);
   return change.empty() ? change : change + " is not the one of the drive that was measured";
@@ -135,27 +134,6 @@ Result<bool> TurnFile::remove() const {
   const bool removed = std::filesystem::remove(path_, error);
   if (error) return fail(Errc::file, fmt::format("{}: {}", path_.string(), error.message()));
   return removed;
-}
-
-Result<Identity> read_turn_identity(session::Session& session, std::uint8_t node) {
-  const ObjectAddress objects[] = {objects::kDeviceType, objects::kVendorId,     objects::kProductCode,
-                                   objects::kRevision,   objects::kSerialNumber, objects::kDeviceName};
-  std::vector<session::SdoRequest> requests;
-  for (const auto object : objects) requests.push_back({node, object, {}});
-  const auto answers = session.transfer(requests);
-  Identity out;
-  out.node = node;
-  std::optional<std::uint32_t>* const places[] = {&out.device_type, &out.vendor_id, &out.product_code,
-                                                  &out.revision, &out.serial};
-  for (std::size_t i = 0; i < answers.size(); ++i) {
-    const auto& answer = answers[i];
-    if (!answer && answer.error().code != Errc::sdo_abort) return tl::unexpected<Error>(answer.error());
-    if (i < std::size(places))
-      *places[i] = session::u32_in(answer);
-    else
-      out.device_name = session::text_in(answer);
-  }
-  return out;
 }
 
 KnownTurn find_turn(const Context& context, std::uint8_t node) {

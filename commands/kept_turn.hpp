@@ -42,9 +42,6 @@ class TurnFile {
   std::filesystem::path path_;
 };
 
-/// What tells one drive from another, for a KeptTurn: 1000h, 1008h, 1018h. Errors: there is no answer.
-Result<session::Identity> read_turn_identity(session::Session& session, std::uint8_t node);
-
 /// What is known of a node before it moves.
 struct KnownTurn {
   std::optional<double> counts;

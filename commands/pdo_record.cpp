@@ -8,6 +8,7 @@
 #include "base/text.hpp"
 #include "commands/backup_file.hpp"
 #include "commands/bus_name.hpp"
+#include "session/identify.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -23,22 +24,6 @@ std::string name_of_drive(const Identity& drive) {
   add("v", drive.vendor_id);
   add("p", drive.product_code);
   add("s", drive.serial);
-  return out;
-}
-
-/// What tells one drive from another; a drive that refuses an object does not tell it. Errors: there is no
-/// answer.
-Result<Identity> read_drive(session::Session& session, std::uint8_t node) {
-  Identity out;
-  out.node = node;
-  const std::pair<std::uint8_t, std::optional<std::uint32_t>*> parts[] = {
-      {1, &out.vendor_id}, {2, &out.product_code}, {4, &out.serial}};
-  for (const auto& [sub, place] : parts) {
-    const auto answer = session.upload(node, {0x1018, sub});
-    if (!answer && answer.error().code != Errc::sdo_abort) return tl::unexpected<Error>(answer.error());
-    if (answer && !answer->empty() && answer->size() <= 4)
-      *place = static_cast<std::uint32_t>(load_le(*answer));
-  }
   return out;
 }
 
@@ -83,7 +68,7 @@ std::vector<fs::path> PdoRecord::found() const {
 
 Result<void> PdoRecord::begin(const session::Values& present, bool keep, bool unlock) {
   if (context_->state_folder.empty()) return {};
-  auto drive = read_drive(*context_->session, node_);
+  auto drive = session::read_identity(*context_->session, node_);
   if (!drive) return tl::unexpected<Error>(drive.error());
   for (const auto& older : found())
     if (const auto backup = read_backup(older); backup && !is_other_drive(backup->identity, *drive))
@@ -108,7 +93,7 @@ Result<std::optional<RestoreJournal>> PdoRecord::take_up(const fs::path& file) {
     if (!fs::equivalent(file, record, none)) continue;
     const auto backup = read_backup(record);
     if (!backup) return tl::unexpected<Error>(backup.error());
-    const auto drive = read_drive(*context_->session, node_);
+    const auto drive = session::read_identity(*context_->session, node_);
     if (!drive) return tl::unexpected<Error>(drive.error());
     if (is_other_drive(backup->identity, *drive))
       return fail(Errc::refused,
@@ -149,7 +134,7 @@ std::vector<std::string> PdoRecord::notices() const {
   const auto records = found();
   std::vector<std::string> out;
   if (records.empty()) return out;
-  const auto drive = read_drive(*context_->session, node_);
+  const auto drive = session::read_identity(*context_->session, node_);
   for (const auto& record : records)
     out.push_back(notice_of(record, drive ? std::optional(*drive) : std::nullopt));
   return out;

@@ -8,6 +8,7 @@
 #include "commands/drive_rules.hpp"
 #include "commands/kept_turn.hpp"
 #include "commands/motion_options.hpp"
+#include "session/identify.hpp"
 #include "session/measure.hpp"
 
 namespace servoctl::commands {
@@ -168,7 +169,7 @@ Result<void> keep(Context& context, std::uint8_t node, const session::LearnRepor
   const auto now = read_gear(context, node);
   if (!now || *now != gear)
     return refused(node, "its gear was changed while it was measured: nothing is kept", "measure again");
-  const auto identity = read_turn_identity(*context.session, node);
+  const auto identity = session::read_identity(*context.session, node);
   if (!identity) return tl::unexpected<Error>(identity.error());
   KeptTurn turn;
   turn.counts = static_cast<std::uint64_t>(std::llround(done.counts->counts));

@@ -75,6 +75,27 @@ std::vector<Result<Identity>> identify(Session& session, std::span<const std::ui
   return out;
 }
 
+Result<Identity> read_identity(Session& session, std::uint8_t node) {
+  const ObjectAddress objects[] = {objects::kDeviceType, objects::kVendorId,     objects::kProductCode,
+                                   objects::kRevision,   objects::kSerialNumber, objects::kDeviceName};
+  std::vector<SdoRequest> requests;
+  for (const auto object : objects) requests.push_back({node, object, {}});
+  const auto answers = session.transfer(requests);
+  Identity out;
+  out.node = node;
+  std::optional<std::uint32_t>* const places[] = {&out.device_type, &out.vendor_id, &out.product_code,
+                                                  &out.revision, &out.serial};
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    const auto& answer = answers[i];
+    if (!answer && answer.error().code != Errc::sdo_abort) return tl::unexpected<Error>(answer.error());
+    if (i < std::size(places))
+      *places[i] = u32_in(answer);
+    else
+      out.device_name = text_in(answer);
+  }
+  return out;
+}
+
 void look_for_families(Session& session, std::span<Identity> identities,
                        std::span<const drive::Family> families) {
   std::vector<SdoRequest> requests;

@@ -19,6 +19,10 @@ namespace servoctl::session {
 std::vector<Result<Identity>> identify(Session& session, std::span<const std::uint8_t> nodes,
                                        const drive::Rules& rules);
 
+/// What tells this drive from others of its kind, asked anew: 1000h, 1008h, 1018h:01 to 04; it does not tell
+/// what it refuses. Errors: there is no answer.
+Result<Identity> read_identity(Session& session, std::uint8_t node);
+
 /// Looks for the own objects of every family that the identity leaves open (Rules::identity_looks), by
 /// reading them, all at the same time: what they are is noted in the identities, and kept in the session.
 /// What is not answered stays unknown.
