@@ -218,6 +218,15 @@ Result<bool> Motion::supervise(const std::function<Result<bool>(const MotionSamp
   }
 }
 
+Result<void> Motion::wait_for_rest(Duration longest) {
+  const auto rested =
+      watch([this](const MotionSample& sample) -> Result<bool> { return stands_still(sample); }, longest);
+  if (!rested) return tl::unexpected<Error>(rested.error());
+  if (*rested) return {};
+  return fail(error(Errc::negative, "did not come to rest in time; it is stopped now",
+                    "look at its deceleration (6084h) and its load"));
+}
+
 MotionReport Motion::finish(Result<void> outcome) {
   MotionReport out;
   out.outcome = std::move(outcome);

@@ -111,6 +111,8 @@ class Motion {
   /// Below this the motor stands still, in the unit of 606Ch.
   bool stands_still(const MotionSample& sample) const;
   double standstill() const { return standstill_; }
+  /// After its target became zero. Errc::negative when it is not at rest within this time.
+  Result<void> wait_for_rest(Duration longest);
   /// Whether the ramps are those of the user, whose length is not known.
   bool has_own_ramps() const { return !options_.acceleration.empty(); }
 

@@ -122,13 +122,7 @@ class Jogging {
   Result<void> rest() {
     if (direction_ != 0)
       if (const auto told = turn(0); !told) return told;
-    const auto rested = motion_->watch(
-        [this](const MotionSample& s) -> Result<bool> { return motion_->stands_still(s); }, kSettling);
-    if (!rested) return tl::unexpected<Error>(rested.error());
-    if (!*rested)
-      return fail(motion_->error(Errc::negative, "did not come to rest in time; it is stopped now",
-                                 "look at its deceleration (6084h) and its load"));
-    return {};
+    return motion_->wait_for_rest(kSettling);
   }
 
   Motion* motion_;
@@ -150,7 +144,7 @@ class Jogging {
 Result<double> way_of(const Motion& motion, double turns) {
   if (motion.units().unit(objects::kPositionActual) == "deg") return std::abs(turns) * kDegrees;
   return fail(motion.error(Errc::usage, "does not tell how many counts a turn of its motor has",
-                           "add --turn COUNTS, or say --for TIME"));
+                           "add --turn (increments of 6064h in a turn), or say --for TIME"));
 }
 
 std::string until_text(const Jog& jog) {

@@ -135,7 +135,7 @@ class Learning {
       return fail(motion_->error(Errc::negative, "does not tell its position (6064h) while it moves"));
     const auto speed = sample[Channel::velocity];
     if (!speed) return fail(motion_->error(Errc::negative, "does not tell its speed (606Ch) while it moves"));
-    looks_.push_back({sample.time, *position, speed, *rpm});
+    looks_.push_back({sample.time, *position, *speed, *rpm});
     const bool wrong = !keeps_ && *speed * wanted_ < 0 && std::abs(*speed) > std::abs(wanted_) * kTurns;
     wrong_looks_ = wrong ? wrong_looks_ + 1 : 0;
     if (wrong_looks_ >= kWrongLooks)
@@ -162,7 +162,7 @@ class Learning {
       if (one.time < since && &one != &looks_.back()) continue;
       rpm += one.rpm;
       squares += one.rpm * one.rpm;
-      speed += one.speed.value_or(wanted_);
+      speed += one.speed;
       ++count;
     }
     shown_ = rpm / count;
@@ -192,13 +192,7 @@ class Learning {
     const auto data = motion_->units().bytes(objects::kTargetVelocity, 0);
     if (data)
       if (const auto told = motion_->write(objects::kTargetVelocity, *data); !told) return told;
-    const auto rested = motion_->watch(
-        [this](const MotionSample& s) -> Result<bool> { return motion_->stands_still(s); }, kRest);
-    if (!rested) return tl::unexpected<Error>(rested.error());
-    if (!*rested)
-      return fail(motion_->error(Errc::negative, "did not come to rest in time; it is stopped now",
-                                 "look at its deceleration (6084h) and its load"));
-    return {};
+    return motion_->wait_for_rest(kRest);
   }
 
   Motion* motion_;

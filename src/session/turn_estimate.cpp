@@ -56,13 +56,10 @@ double standard_deviation(const std::vector<double>& values) {
 
 std::string percent(double part) { return plain_number(part * 100, 2); }
 
-/// By 606Ch, as far as it is told.
-std::optional<double> by_speed(std::span<const TurnLook> looks, double rpm) {
+/// By 606Ch.
+double by_speed(std::span<const TurnLook> looks, double rpm) {
   double sum = 0;
-  for (const auto& look : looks) {
-    if (!look.speed) return std::nullopt;
-    sum += *look.speed / static_cast<double>(looks.size());
-  }
+  for (const auto& look : looks) sum += look.speed / static_cast<double>(looks.size());
   return std::abs(sum * 60 / rpm);
 }
 
@@ -117,10 +114,10 @@ Result<TurnMeasurement> measure_turn(std::span<const TurnLook> looks, double ste
         std::string("does the motor turn evenly? ") + std::string(kOtherWay));
   }
   out.by_speed = by_speed(looks, out.rpm);
-  if (out.by_speed && std::abs(*out.by_speed / out.increments - 1) > kMostQuarrel)
+  if (std::abs(out.by_speed / out.increments - 1) > kMostQuarrel)
     return no_number(
         fmt::format("tells two speeds: by 606Ch a turn has {} increments, by the way of 6064h {}",
-                    std::llround(*out.by_speed), std::llround(out.increments)),
+                    std::llround(out.by_speed), std::llround(out.increments)),
         std::string(kOtherWay));
   out.uncertainty = step / out.rpm + 2 * spread / std::sqrt(static_cast<double>(kParts));
   if (out.uncertainty > kTurnTolerance)

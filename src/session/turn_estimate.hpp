@@ -23,18 +23,18 @@ inline constexpr double kTurnTolerance = 0.01;
 /// One look at a motor that turns evenly.
 struct TurnLook {
   TimePoint time;
-  double position = 0;          ///< 6064h, in increments.
-  std::optional<double> speed;  ///< 606Ch, in increments a second.
-  double rpm = 0;               ///< By the drive's monitor.
+  double position = 0;  ///< 6064h, in increments.
+  double speed = 0;     ///< 606Ch, in increments a second.
+  double rpm = 0;       ///< By the drive's monitor.
 };
 
 /// What the looks tell.
 struct TurnMeasurement {
-  double increments = 0;           ///< Of 6064h in one turn of the motor.
-  double uncertainty = 0;          ///< Relative: one step of the monitor, and two standard errors.
-  std::optional<double> by_speed;  ///< The same by 606Ch.
-  double rpm = 0;                  ///< Mean of the monitor.
-  double turns = 0;                ///< That the motor made meanwhile, by the monitor.
+  double increments = 0;   ///< Of 6064h in one turn of the motor.
+  double uncertainty = 0;  ///< Relative: one step of the monitor, and two standard errors.
+  double by_speed = 0;     ///< The same by 606Ch.
+  double rpm = 0;          ///< Mean of the monitor.
+  double turns = 0;        ///< That the motor made meanwhile, by the monitor.
   double seconds = 0;
   std::size_t looks = 0;
 };
