@@ -101,6 +101,11 @@ Result<Value> run(Context& context, const Arguments& arguments) {
                    {"from", "", Show::text},
                    {"kept", "", Show::json}};
   for (const auto node : context.nodes) {
+    const auto there = context.session->upload(node, objects::kDeviceType);
+    if (!there && there.error().code != Errc::sdo_abort) {
+      context.errors.push_back(there.error());
+      continue;
+    }
     const auto known = find_turn(context, node);
     if (!known.unused.empty())
       context.notices.push_back(
@@ -109,6 +114,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
       if (measure == Measure::increments_per_turn || context.profile->rules.units.count(measure) > 0)
         table.rows.push_back(row(context, node, measure, name, options->turn, known));
   }
+  table.json_only = table.rows.empty();  // The errors say why.
   return Value(std::move(table));
 }
 
