@@ -20,6 +20,15 @@ class Mapping : public DrivenTest {
     const auto request = fmt::format("601#23{:02X}{:02X}01{}", record & 0xFFU, record >> 8U, bytes);
     ASSERT_EQ(sdo(request).substr(0, 6), kTaken) << request;
   }
+  /// Types 252 and 253 of TPDO1 are refused while bit 30 of its COB-ID forbids remote frames.
+  void expect_remote_types_by_bit_30() {
+    ASSERT_EQ(sdo("601#23001801810100C0").substr(0, 6), kTaken);
+    for (const char* type : {"FC", "FD"})
+      EXPECT_EQ(sdo("601#2F001802" + std::string(type) + "000000"), "581#8000180230000906") << type;
+    ASSERT_EQ(sdo("601#2300180181010080").substr(0, 6), kTaken);
+    for (const char* type : {"FC", "FD"})
+      EXPECT_EQ(sdo("601#2F001802" + std::string(type) + "000000").substr(0, 6), kTaken) << type;
+  }
 };
 
 struct Mapped {
@@ -108,12 +117,7 @@ TEST_F(Mapping, ACanIdOfAnotherServiceIsNotTakenForAPdoThatIsValid) {  // Table 
 
 TEST_F(Mapping, RemoteFramesAreNoTypeWhereTheyAreForbidden) {  // 1800h:01, bit 30
   boot("cia402");
-  ASSERT_EQ(sdo("601#23001801810100C0").substr(0, 6), kTaken);
-  for (const char* type : {"FC", "FD"})
-    EXPECT_EQ(sdo("601#2F001802" + std::string(type) + "000000"), "581#8000180230000906") << type;
-  ASSERT_EQ(sdo("601#2300180181010080").substr(0, 6), kTaken);
-  for (const char* type : {"FC", "FD"})
-    EXPECT_EQ(sdo("601#2F001802" + std::string(type) + "000000").substr(0, 6), kTaken) << type;
+  expect_remote_types_by_bit_30();
   for (const char* type : {"F1", "FB"})
     EXPECT_EQ(sdo("601#2F001802" + std::string(type) + "000000"), "581#8000180230000906") << type;
   for (const char* type : {"F1", "FC", "FD"})
@@ -124,12 +128,7 @@ TEST_F(Mapping, RemoteFramesAreNoTypeWhereTheyAreForbidden) {  // 1800h:01, bit 
 
 TEST_F(Mapping, OfTheTsARemoteFrameIsATypeAsBit30Says) {
   boot("ts");
-  ASSERT_EQ(sdo("601#23001801810100C0").substr(0, 6), kTaken);
-  for (const char* type : {"FC", "FD"})
-    EXPECT_EQ(sdo("601#2F001802" + std::string(type) + "000000"), "581#8000180230000906") << type;
-  ASSERT_EQ(sdo("601#2300180181010080").substr(0, 6), kTaken);
-  for (const char* type : {"FC", "FD"})
-    EXPECT_EQ(sdo("601#2F001802" + std::string(type) + "000000").substr(0, 6), kTaken) << type;
+  expect_remote_types_by_bit_30();
 }
 
 TEST_F(Mapping, OfTheGsd600NoRemoteFrameIsAType) {  // Its TPDOs have bit 30 set (1664), and it stays (680).
