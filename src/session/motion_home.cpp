@@ -146,7 +146,8 @@ Result<Physical> speed_of(Motion& motion, ObjectAddress object, const MotionPlan
     return fail(motion.error(
         Errc::refused,
         fmt::format("its homing speed ({}) cannot be compared with its speed limit", to_string(object)),
-        motion.is_told_turn() ? "" : "add --turn COUNTS, if the drive does not tell its encoder"));
+        motion.is_told_turn() ? ""
+                              : "add --turn (increments of 6064h in a turn), if the drive does not tell it"));
   if (const auto allowed = motion.check_speed(speed->value); !allowed)
     return tl::unexpected<Error>(allowed.error());
   if (speed->value > 0 || takes_present_position(plan)) return *speed;

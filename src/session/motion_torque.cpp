@@ -97,7 +97,8 @@ Result<MotionPlan> plan_torque(Motion& motion, const Torque& torque) {
   if (!motion.supervise_speed(*cap * kOvershoot))
     return fail(motion.error(
         Errc::refused, "tells its speed in another unit than its limit: nobody would watch it",
-        motion.is_told_turn() ? "" : "add --turn COUNTS, if the drive does not tell its encoder"));
+        motion.is_told_turn() ? ""
+                              : "add --turn (increments of 6064h in a turn), if the drive does not tell it"));
   motion.set_standstill(*cap);
   plan.summary = fmt::format("push with {} {} for {}, no faster than {} {}", number_text(value.value),
                              value.unit, servoctl::to_string(torque.length), number_text(*cap),

@@ -1,5 +1,6 @@
 #include "session/motion_units.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 
@@ -55,8 +56,8 @@ std::optional<double> MotionUnits::turn() const {
 Error MotionUnits::unknown_turn(ObjectAddress object, Error error) const {
   const auto what = meaning(object);
   if (what.measure == drive::Measure::increments_per_turn && !what.bridge)
-    error.hint += profile_->rules.learn.speed.empty() ? "; --turn COUNTS says it"
-                                                      : "; --turn COUNTS says it, `units learn` measures it";
+    error.hint += fmt::format("; --turn says how many increments of 6064h a turn has{}",
+                              profile_->rules.learn.speed.empty() ? "" : ", `units learn` measures it");
   return error;
 }
 
