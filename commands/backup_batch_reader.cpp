@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include "commands/assignments.hpp"
 #include "commands/backup_formats.hpp"
 #include "commands/change.hpp"
 
@@ -13,16 +12,17 @@ class Reader {
   Reader(const std::string& file, const drive::Profile& profile, std::uint8_t node)
       : file_(&file), profile_(&profile), node_(node) {}
 
-  Result<void> take(const BatchLine& line) {
+  Result<void> take(const settings::SettingLine& line) {
     line_ = &line;
     if (const auto chosen = check_choice(); !chosen) return chosen;
-    if (line.command->path == "nmt preop") return {};  // Whoever restores sees to the state.
-    if (line.command->path == "param set") return take_assignments();
-    if (line.command->path == "write" && line.arguments.has("value"))
-      return add(drive::resolve(profile_, line.arguments.text("object")), line.arguments.text("value"),
-                 od::parse_data_type(line.arguments.text("--type")));
-    return refuse(fmt::format("'{}' writes no value", line.command->path),
-                  "to be read as settings, a batch file holds `param set` and `write` lines");
+    if (!line.values) return refuse(line.values.error().message, line.values.error().hint);
+    for (const auto& value : *line.values)
+      if (const auto added = add(value.panel ? drive::resolve_panel(*profile_, value.name)
+                                             : drive::resolve(profile_, value.name),
+                                 value.value, value.type);
+          !added)
+        return added;
+    return {};
   }
 
   Backup take_backup() { return std::move(out_); }
@@ -37,16 +37,6 @@ class Reader {
         (out_.identity.node != 0 && out_.identity.node != line_->nodes.front()))
       return refuse("is for another node than the lines before", "a file holds the settings of one drive");
     out_.identity.node = line_->nodes.front();
-    return {};
-  }
-
-  Result<void> take_assignments() {
-    const auto assignments = parse_assignments(line_->arguments.all("assignment"));
-    if (!assignments) return refuse(assignments.error().message, assignments.error().hint);
-    for (const auto& assignment : *assignments)
-      if (const auto added = add(drive::resolve_panel(*profile_, assignment.id), assignment.value, {});
-          !added)
-        return added;
     return {};
   }
 
@@ -88,15 +78,15 @@ class Reader {
   const std::string* file_;
   const drive::Profile* profile_;
   std::uint8_t node_;
-  const BatchLine* line_ = nullptr;
+  const settings::SettingLine* line_ = nullptr;
   Backup out_;
 };
 
 }  // namespace
 
-Result<Backup> read_batch_backup(const Context& context, std::string_view text, const std::string& file,
-                                 const drive::Profile& profile, std::uint8_t node) {
-  const auto lines = context.batch_lines(text, file);
+Result<Backup> read_batch_backup(settings::LineReader& lines_of, std::string_view text,
+                                 const std::string& file, const drive::Profile& profile, std::uint8_t node) {
+  const auto lines = lines_of.setting_lines(text, file);
   if (!lines) return tl::unexpected<Error>(lines.error());
   Reader reader(file, profile, node);
   for (const auto& line : *lines)

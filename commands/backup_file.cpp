@@ -84,26 +84,28 @@ void forget_soft_marks(const drive::Profile& profile, session::Identity& identit
   }
 }
 
-Result<Backup> read_foreign(const Context& context, const BackupSource& source, const drive::Profile& profile,
-                            std::uint8_t node) {
+Result<Backup> read_foreign(const BackupSource& source, const drive::Profile& profile, std::uint8_t node) {
   switch (source.format) {
     case BackupFormat::dcf: return read_dcf_backup(source.text, source.file, node);
     case BackupFormat::csv: return read_csv_backup(source.text, source.file, profile, node);
-    case BackupFormat::batch: return read_batch_backup(context, source.text, source.file, profile, node);
+    case BackupFormat::batch:
+      if (source.lines == nullptr)
+        return fail(Errc::file, fmt::format("{}: command lines are not understood here", source.file));
+      return read_batch_backup(*source.lines, source.text, source.file, profile, node);
     default: return read_concise_dcf(source.text, source.file);
   }
 }
 
 /// What the reader of a restore must know: no checksum, no identity, and what is not written.
-void tell(Context& context, const BackupSource& source, const Backup& backup) {
-  context.notices.push_back(fmt::format(
+void tell(show::Desk& desk, const BackupSource& source, const Backup& backup) {
+  desk.notices.push_back(fmt::format(
       "{} is a {}: it proves neither its drive nor that it is whole; its objects and values fit {}",
       source.file, title_of(source.format), backup.family));
   constexpr std::size_t kMostNamed = 4;
   for (std::size_t i = 0; i < std::min(kMostNamed, backup.passed_over.size()); ++i)
-    context.notices.push_back(backup.passed_over[i]);
+    desk.notices.push_back(backup.passed_over[i]);
   if (backup.passed_over.size() > kMostNamed)
-    context.notices.push_back(
+    desk.notices.push_back(
         fmt::format("{}: {} more of that kind", source.file, backup.passed_over.size() - kMostNamed));
   std::size_t left_out = 0;
   std::string names;
@@ -113,12 +115,12 @@ void tell(Context& context, const BackupSource& source, const Backup& backup) {
   }
   if (left_out > kMostNamed) names += fmt::format(" and {} more", left_out - kMostNamed);
   if (left_out > 0)
-    context.notices.push_back(fmt::format("{}: no settings, and left out: {}", source.file, names));
+    desk.notices.push_back(fmt::format("{}: no settings, and left out: {}", source.file, names));
 }
 
 /// All are named, none is left out without being told to.
-Result<void> judge_unusable(Context& context, const Backup& backup, bool skip_invalid) {
-  auto& errors = context.errors;
+Result<void> judge_unusable(show::Desk& desk, const Backup& backup, bool skip_invalid) {
+  auto& errors = desk.errors;
   if (skip_invalid || backup.unusable.empty()) {
     for (auto error : backup.unusable) {
       error.code = Errc::negative;
@@ -152,16 +154,16 @@ std::string_view extension_of(BackupFormat format) {
   return place < std::size(kExtensions) ? kExtensions[place] : std::string_view();
 }
 
-Backup make_backup(const Context& context, const session::Snapshot& snapshot) {
+Backup make_backup(const show::Desk& desk, const session::Snapshot& snapshot) {
   Backup out;
   out.proven = true;
-  out.family = context.profile->family;
+  out.family = desk.profile->family;
   out.tool = "servoctl " SERVOCTL_VERSION;
   out.time = utc_now_text();
-  out.bus = context.session->url();
+  out.bus = desk.session->url();
   out.identity = snapshot.identity;
   for (const auto& entry : snapshot.entries) {
-    const auto target = drive::target_at(context.profile, entry.object);
+    const auto target = drive::target_at(desk.profile, entry.object);
     Backup::Entry stored;
     stored.object = entry.object;
     stored.id = target.parameter != nullptr ? target.parameter->id : std::string();
@@ -174,7 +176,7 @@ Backup make_backup(const Context& context, const session::Snapshot& snapshot) {
     stored.left_out = entry.left_out;
     // No drive gets it back: a backup that says so is taken all the same.
     if (entry.bytes)
-      if (const auto free = check_cob_id(context.profile, entry.object, *entry.bytes, snapshot.identity.node);
+      if (const auto free = check_cob_id(desk.profile, entry.object, *entry.bytes, snapshot.identity.node);
           !free) {
         stored.left_out = fmt::format("0x{:08X}{}{}", load_le(*entry.bytes), kConflict, free.error().message);
         stored.bytes.reset();
@@ -184,77 +186,76 @@ Backup make_backup(const Context& context, const session::Snapshot& snapshot) {
   return out;
 }
 
-void tell_left_out(Context& context, const Backup& backup) {
+void tell_left_out(show::Desk& desk, const Backup& backup) {
   for (const auto& entry : backup.entries)
     if (!entry.bytes && entry.left_out.find(kConflict) != std::string::npos)
-      context.notices.push_back(fmt::format("node {}: {} {} is left out: {}", backup.identity.node,
-                                            to_string(entry.object), entry.name, entry.left_out));
+      desk.notices.push_back(fmt::format("node {}: {} {} is left out: {}", backup.identity.node,
+                                         to_string(entry.object), entry.name, entry.left_out));
 }
 
-std::string backup_text(const Context& context, const Backup& backup) {
-  return json_text(context.profile, backup);
+std::string backup_text(const show::Desk& desk, const Backup& backup) {
+  return json_text(desk.profile, backup);
 }
 
-Result<std::string> backup_text(Context& context, const Backup& backup, BackupFormat format,
+Result<std::string> backup_text(show::Desk& desk, const Backup& backup, BackupFormat format,
                                 const std::filesystem::path& file) {
   switch (format) {
-    case BackupFormat::dcf:
-      return dcf_text(*context.profile, backup, file.filename().string(), context.notices);
-    case BackupFormat::csv: return csv_text(*context.profile, backup);
-    case BackupFormat::batch: return batch_text(*context.profile, backup);
-    default: return json_text(context.profile, backup);
+    case BackupFormat::dcf: return dcf_text(*desk.profile, backup, file.filename().string(), desk.notices);
+    case BackupFormat::csv: return csv_text(*desk.profile, backup);
+    case BackupFormat::batch: return batch_text(*desk.profile, backup);
+    default: return json_text(desk.profile, backup);
   }
 }
 
-Result<BackupSource> open_backup(const std::filesystem::path& file) {
+Result<BackupSource> open_backup(const std::filesystem::path& file, settings::LineReader* lines) {
   const auto bytes = read_file(file);
   if (!bytes) return tl::unexpected<Error>(bytes.error());
   // Spreadsheets save tables in whatever encoding their system has.
   const auto decoded = od::to_utf8(*bytes);
   const auto text = decoded.text(*bytes);
   const auto format = guess_format(*bytes, text, lower(file.extension().string()));
-  return BackupSource{file.string(), std::string(format == BackupFormat::concise_dcf ? *bytes : text),
-                      format};
+  return BackupSource{file.string(), std::string(format == BackupFormat::concise_dcf ? *bytes : text), format,
+                      lines};
 }
 
-std::string family_of(const Context& context, const BackupSource& source) {
+std::string family_of(const BackupSource& source) {
   if (source.format == BackupFormat::json) {
     const auto document = report::parse_json(source.text, source.file);
     const auto* family = document ? report::find(*document, "family") : nullptr;
     const auto* name = family == nullptr ? nullptr : std::get_if<std::string>(&family->data());
     return name == nullptr ? std::string() : *name;
   }
-  if (source.format != BackupFormat::batch || !context.batch_lines) return {};
-  const auto lines = context.batch_lines(source.text, source.file);
+  if (source.format != BackupFormat::batch || source.lines == nullptr) return {};
+  const auto lines = source.lines->setting_lines(source.text, source.file);
   if (lines)
     for (const auto& line : *lines)
       if (!line.family.empty()) return line.family;
   return {};
 }
 
-Result<Backup> read_backup(Context& context, const BackupSource& source, const drive::Profile* profile,
+Result<Backup> read_backup(show::Desk& desk, const BackupSource& source, const drive::Profile* profile,
                            std::uint8_t node, bool skip_invalid) {
   if (source.format == BackupFormat::json) return read_json_backup(source.text, source.file);
   if (profile == nullptr)
     return fail(Errc::usage, fmt::format("{} does not say of which family it is", source.file),
                 "add -d FAMILY; `drives` lists families");
-  auto backup = read_foreign(context, source, *profile, node);
+  auto backup = read_foreign(source, *profile, node);
   if (!backup) return backup;
   if (backup->identity.node == 0) backup->identity.node = node;
   forget_soft_marks(*profile, backup->identity);
   const bool procedure = source.format == BackupFormat::batch || source.format == BackupFormat::concise_dcf;
   settle(*backup, source.file, *profile, procedure);
-  if (const auto usable = judge_unusable(context, *backup, skip_invalid); !usable)
+  if (const auto usable = judge_unusable(desk, *backup, skip_invalid); !usable)
     return tl::unexpected<Error>(usable.error());
-  tell(context, source, *backup);
+  tell(desk, source, *backup);
   return backup;
 }
 
-Result<Backup> read_backup(Context& context, const std::filesystem::path& file, std::uint8_t node,
-                           bool skip_invalid) {
-  const auto source = open_backup(file);
+Result<Backup> read_backup(show::Desk& desk, const std::filesystem::path& file, settings::LineReader* lines,
+                           std::uint8_t node, bool skip_invalid) {
+  const auto source = open_backup(file, lines);
   if (!source) return tl::unexpected<Error>(source.error());
-  return read_backup(context, *source, context.profile, node, skip_invalid);
+  return read_backup(desk, *source, desk.profile, node, skip_invalid);
 }
 
 Result<Backup> read_backup(const std::filesystem::path& file) {

@@ -6,8 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "commands/command.hpp"
 #include "session/snapshot.hpp"
+#include "settings/setting_line.hpp"
+#include "show/desk.hpp"
 
 namespace servoctl::commands {
 
@@ -34,11 +35,6 @@ struct Backup {
   std::vector<std::string> passed_over;  ///< Entries that mean nothing, with the line.
 };
 
-/// `--skip-invalid`, for the commands that read files of other forms.
-inline constexpr Parameter kSkipInvalidOption{.name = "--skip-invalid",
-                                              .help = "leave out entries that cannot be used, and name them",
-                                              .kind = Kind::flag};
-
 /// The forms settings are kept in. All are read; the last one is not written.
 enum class BackupFormat : std::uint8_t {
   json,        ///< Ours: with identity and checksum.
@@ -59,11 +55,11 @@ std::string_view extension_of(BackupFormat format);
 
 /// The backup of a snapshot, with names and types of the family. A COB-ID that no drive may have
 /// (check_cob_id()) is left out, with the reason: what is saved can be put back.
-Backup make_backup(const Context& context, const session::Snapshot& snapshot);
+Backup make_backup(const show::Desk& desk, const session::Snapshot& snapshot);
 
-/// Names in `context.notices` what a backup leaves out although it is a setting: a COB-ID that no drive may
+/// Names in `desk.notices` what a backup leaves out although it is a setting: a COB-ID that no drive may
 /// have.
-void tell_left_out(Context& context, const Backup& backup);
+void tell_left_out(show::Desk& desk, const Backup& backup);
 
 /// A checksum of everything a restore would use.
 std::string checksum(const Backup& backup);
@@ -71,11 +67,11 @@ std::string checksum(const Backup& backup);
 std::string checksum_of(std::string_view text);
 
 /// The file's text as JSON: one entry a line, with a checksum over node-independent content.
-std::string backup_text(const Context& context, const Backup& backup);
+std::string backup_text(const show::Desk& desk, const Backup& backup);
 
 /// The file's text in any format; the others than JSON are told in backup_formats.hpp. `file` stands in a DCF
-/// as its name. What cannot stand in the format is told in `context.notices`.
-Result<std::string> backup_text(Context& context, const Backup& backup, BackupFormat format,
+/// as its name. What cannot stand in the format is told in `desk.notices`.
+Result<std::string> backup_text(show::Desk& desk, const Backup& backup, BackupFormat format,
                                 const std::filesystem::path& file);
 
 /// A file that is to be read as a backup.
@@ -83,25 +79,26 @@ struct BackupSource {
   std::string file;  ///< For messages.
   std::string text;
   BackupFormat format = BackupFormat::json;
+  settings::LineReader* lines = nullptr;  ///< Who understands command lines; null: nobody.
 };
 
 /// Reads the file and tells its format by what stands in it. Errc::file.
-Result<BackupSource> open_backup(const std::filesystem::path& file);
+Result<BackupSource> open_backup(const std::filesystem::path& file, settings::LineReader* lines);
 
 /// The family the file names; empty when it names none.
-std::string family_of(const Context& context, const BackupSource& source);
+std::string family_of(const BackupSource& source);
 
 /// Takes a backup apart. Errc::file, with line and entry, when it is truncated, edited (the checksum does not
 /// fit), of a newer version, has an entry twice, or in another format than JSON an entry the family does not
 /// know or whose value does not fit; with `skip_invalid` such an entry is left out, and its error in
-/// `context.errors`. What is no setting (commands, targets, readings) is left out, with the
+/// `desk.errors`. What is no setting (commands, targets, readings) is left out, with the
 /// reason. A file that says no node is taken as of `node`; `profile` may be null for JSON alone. What a
-/// format cannot prove is told in `context.notices`.
-Result<Backup> read_backup(Context& context, const BackupSource& source, const drive::Profile* profile,
+/// format cannot prove is told in `desk.notices`.
+Result<Backup> read_backup(show::Desk& desk, const BackupSource& source, const drive::Profile* profile,
                            std::uint8_t node, bool skip_invalid = false);
-/// The same, with the family of the context.
-Result<Backup> read_backup(Context& context, const std::filesystem::path& file, std::uint8_t node,
-                           bool skip_invalid = false);
+/// The same, with the family of the desk.
+Result<Backup> read_backup(show::Desk& desk, const std::filesystem::path& file, settings::LineReader* lines,
+                           std::uint8_t node, bool skip_invalid = false);
 /// A backup in JSON: what servoctl keeps for itself.
 Result<Backup> read_backup(const std::filesystem::path& file);
 

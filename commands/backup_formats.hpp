@@ -31,8 +31,8 @@ Result<Backup> read_csv_backup(std::string_view text, const std::string& file, c
 std::string batch_text(const drive::Profile& profile, const Backup& backup);
 /// Takes lines that write, choose (`use`, `drive`) and nothing else, all for one node. An object written
 /// several times is one of a PDO's procedure (the last value counts), or refused.
-Result<Backup> read_batch_backup(const Context& context, std::string_view text, const std::string& file,
-                                 const drive::Profile& profile, std::uint8_t node);
+Result<Backup> read_batch_backup(settings::LineReader& lines_of, std::string_view text,
+                                 const std::string& file, const drive::Profile& profile, std::uint8_t node);
 /// The family's limits, where the value a drive held is outside of them; empty when it is not.
 std::string range_missed(const drive::Profile& profile, std::uint8_t node, ObjectAddress object,
                          const Bytes& data);

@@ -20,23 +20,23 @@ constexpr std::uint32_t kNoSuchObject = 0x0602'0000;  ///< CiA 301, table of SDO
 
 /// An object whose length no manual tells is read to learn it: a write of another length would be refused or
 /// worse.
-Result<drive::Meaning> learn_size(Context& context, std::uint8_t node, const drive::Target& target,
+Result<drive::Meaning> learn_size(show::Desk& desk, std::uint8_t node, const drive::Target& target,
                                   const drive::Meaning& meaning) {
-  const auto bytes = context.session->upload(node, target.address);
+  const auto bytes = desk.session->upload(node, target.address);
   if (!bytes) {
     auto error = bytes.error();
     error.message = "the object's size is not known and reading it to learn it failed: " + error.message;
     const bool absent = error.abort_code == kNoSuchObject;
-    error.hint = context.profile == nullptr ? "say the type: --type i32, or the drive family: -d FAMILY"
-                 : absent ? fmt::format("`objects -d {}` lists the objects it has", context.profile->family)
+    error.hint = desk.profile == nullptr ? "say the type: --type i32, or the drive family: -d FAMILY"
+                 : absent ? fmt::format("`objects -d {}` lists the objects it has", desk.profile->family)
                           : std::string("say the type: --type i32");
     return tl::unexpected<Error>(std::move(error));
   }
   auto learned = drive::fitted(meaning, bytes->size());
   if (!meaning.type_known) learned.type = type_of({node, target, {}, *bytes}, *bytes);
   if (learned.type != meaning.type || !meaning.type_known)
-    context.notices.push_back(fmt::format("node {}, object {}: taken as {} by the length of what it holds",
-                                          node, to_string(target.address), od::name(learned.type)));
+    desk.notices.push_back(fmt::format("node {}, object {}: taken as {} by the length of what it holds", node,
+                                       to_string(target.address), od::name(learned.type)));
   if (const auto size = od::size_of(learned.type); size && *size != bytes->size())
     return fail(Errc::negative,
                 fmt::format("the object holds {} bytes, and {} is none of that length", bytes->size(),
@@ -46,17 +46,17 @@ Result<drive::Meaning> learn_size(Context& context, std::uint8_t node, const dri
 }
 
 /// Whether only the drive's own gear and ratings tell what the unit in the text is.
-bool asks_measure(const Context& context, const drive::Meaning& meaning, std::string_view text) {
-  return meaning.measure && context.profile != nullptr && drive::needs_bridge(meaning, text);
+bool asks_measure(const show::Desk& desk, const drive::Meaning& meaning, std::string_view text) {
+  return meaning.measure && desk.profile != nullptr && drive::needs_bridge(meaning, text);
 }
 
 /// A gear that takes effect at a restart may be set and not in force: what is written then is converted by
 /// numbers the drive does not go by yet.
-void warn_of_gear(Context& context, std::uint8_t node, drive::Measure measure) {
+void warn_of_gear(show::Desk& desk, std::uint8_t node, drive::Measure measure) {
   std::set<std::string> ids;
-  for (const auto& way : context.profile->rules.units.at(measure))
+  for (const auto& way : desk.profile->rules.units.at(measure))
     for (const auto object : way.objects()) {
-      const auto target = drive::target_at(context.profile, object);
+      const auto target = drive::target_at(desk.profile, object);
       if (drive::meaning(target, node).effect == od::Effect::restart && target.parameter != nullptr)
         ids.insert(target.parameter->id);
     }
@@ -65,19 +65,19 @@ void warn_of_gear(Context& context, std::uint8_t node, drive::Measure measure) {
   const auto notice = fmt::format(
       "node {}: the unit is converted by {}, right only if the drive was restarted since they were changed",
       node, names);
-  if (std::find(context.notices.begin(), context.notices.end(), notice) == context.notices.end())
-    context.notices.push_back(notice);
+  if (std::find(desk.notices.begin(), desk.notices.end(), notice) == desk.notices.end())
+    desk.notices.push_back(notice);
 }
 
 /// What the drive's gear makes of the unit in the text, where only the drive can tell.
-void add_bridge(Context& context, std::uint8_t node, const drive::Target& target, std::string_view text,
+void add_bridge(show::Desk& desk, std::uint8_t node, const drive::Target& target, std::string_view text,
                 drive::Meaning& meaning) {
-  if (!asks_measure(context, meaning, text)) return;
+  if (!asks_measure(desk, meaning, text)) return;
   const session::MeasureQuestion question[] = {{node, *meaning.measure}};
-  const auto measure = session::read_measures(*context.session, *context.profile, question).front();
+  const auto measure = session::read_measures(*desk.session, *desk.profile, question).front();
   if (!measure) return;
   meaning.bridge = drive::bridge(meaning.unit, target.address, measure->value);
-  warn_of_gear(context, node, question[0].measure);
+  warn_of_gear(desk, node, question[0].measure);
 }
 
 tl::unexpected<Error> named(Error error, std::uint8_t node, const drive::Target& target,
@@ -151,10 +151,10 @@ std::string effect_text(od::Effect effect) {
 }
 
 /// A refusal that the family's password may explain says so.
-Error with_password_hint(const Context& context, const Change& change, Error error) {
-  if (context.profile == nullptr || error.code != Errc::sdo_abort) return error;
-  const auto& store = context.profile->rules.store;
-  const auto* password = context.profile->parameter(store.unlock);
+Error with_password_hint(const show::Desk& desk, const Change& change, Error error) {
+  if (desk.profile == nullptr || error.code != Errc::sdo_abort) return error;
+  const auto& store = desk.profile->rules.store;
+  const auto* password = desk.profile->parameter(store.unlock);
   const bool vendor_object = change.target.address.index >= 0x2000 && change.target.address.index < 0x6000;
   if (password == nullptr || !password->object || !store.unlock_open || !vendor_object) return error;
   error.hint = fmt::format("it may be locked: `param set {} {}` opens", password->id, *store.unlock_open);
@@ -163,11 +163,11 @@ Error with_password_hint(const Context& context, const Change& change, Error err
 }
 
 report::List change_row(const Change& change, const Result<session::Written>& written, const Value& kept,
-                        const Context& context) {
+                        const show::Desk& desk) {
   const Reading reading{change.node, change.target, change.type, change.data, change.bridge};
   const auto decoded = decode_value(reading, change.data);
   const auto effect = drive::meaning(change.target, change.node).effect;
-  const auto name = context.chinese ? change.target.label_zh() : change.target.label();
+  const auto name = desk.chinese ? change.target.label_zh() : change.target.label();
   std::string state = "not written";
   if (written && written->answer_lost)
     state = "written (the answer was lost, the value was read back)";
@@ -194,7 +194,7 @@ report::List change_row(const Change& change, const Result<session::Written>& wr
           written ? kept_text(kept) : Value(),
           written ? report::text_or_null(effect_text(effect)) : Value(),
           report::text_or_null(std::string(od::name(effect))),
-          written ? Value() : error_record(written.error(), abort_words(context, written.error()))};
+          written ? Value() : error_record(written.error(), abort_words(desk, written.error()))};
 }
 
 }  // namespace
@@ -204,51 +204,51 @@ std::string name_of(const drive::Target& target) {
   return label.empty() ? to_string(target.address) : label;
 }
 
-Result<Change> make_change(Context& context, std::uint8_t node, const drive::Target& target,
+Result<Change> make_change(show::Desk& desk, std::uint8_t node, const drive::Target& target,
                            std::string_view value, std::optional<od::DataType> type) {
   auto meaning = writable_meaning(node, target, type);
   if (!meaning) return tl::unexpected<Error>(meaning.error());
   if (!type && (!meaning->type_known || !meaning->size_known)) {
-    meaning = learn_size(context, node, target, *meaning);
+    meaning = learn_size(desk, node, target, *meaning);
     if (!meaning) return tl::unexpected<Error>(meaning.error());
   }
-  add_bridge(context, node, target, value, *meaning);
-  return change_to(context.profile, node, target, *meaning, value);
+  add_bridge(desk, node, target, value, *meaning);
+  return change_to(desk.profile, node, target, *meaning, value);
 }
 
-Result<void> check_change(const Context& context, std::uint8_t node, const drive::Target& target,
+Result<void> check_change(const show::Desk& desk, std::uint8_t node, const drive::Target& target,
                           std::string_view value, std::optional<od::DataType> type) {
   const auto meaning = writable_meaning(node, target, type);
   if (!meaning) return tl::unexpected<Error>(meaning.error());
   const bool asks_size = !type && (!meaning->type_known || !meaning->size_known);
-  if (asks_size || asks_measure(context, *meaning, value)) return {};
-  if (const auto change = change_to(context.profile, node, target, *meaning, value); !change)
+  if (asks_size || asks_measure(desk, *meaning, value)) return {};
+  if (const auto change = change_to(desk.profile, node, target, *meaning, value); !change)
     return tl::unexpected<Error>(change.error());
   return {};
 }
 
-Result<void> confirm_changes(Context& context, std::span<const Change> changes) {
+Result<void> confirm_changes(show::Desk& desk, std::span<const Change> changes) {
   for (const auto& change : changes) {
-    const auto reason = reason_to_ask(context.profile, change);
+    const auto reason = reason_to_ask(desk.profile, change);
     if (reason.empty()) continue;
     const auto question = fmt::format("Write {} on node {}? {}", name_of(change.target), change.node, reason);
-    if (const auto answer = context.confirm(question); !answer) return answer;
+    if (const auto answer = desk.confirm(question); !answer) return answer;
   }
   return {};
 }
 
-Result<Value> write_changes(Context& context, std::span<const Change> changes, const WriteOptions& options) {
+Result<Value> write_changes(show::Desk& desk, std::span<const Change> changes, const WriteOptions& options) {
   std::vector<session::SdoRequest> requests;
   for (const auto& change : changes)
     requests.push_back({change.node, change.target.address, change.data, change.transfer});
-  KeepingNodes keeping(context, changes);
+  KeepingNodes keeping(desk, changes);
   if (const auto opened = keeping.open(options); !opened) return tl::unexpected<Error>(opened.error());
   const bool energises = std::any_of(changes.begin(), changes.end(), enables);
-  const auto hold = context.session->protect(energises ? session::Care::energised : session::Care::none);
-  const auto written = session::write_all(*context.session, requests, options.read_back || options.keep);
+  const auto hold = desk.session->protect(energises ? session::Care::energised : session::Care::none);
+  const auto written = session::write_all(*desk.session, requests, options.read_back || options.keep);
   keeping.close(written);
   for (const auto& change : changes)
-    if (enables(change)) context.session->energised().insert(change.node);
+    if (enables(change)) desk.session->energised().insert(change.node);
   report::Table table;
   table.columns = {{"node"},
                    {"object", "", Show::text},
@@ -272,10 +272,10 @@ Result<Value> write_changes(Context& context, std::span<const Change> changes, c
                    {"error", "", Show::json}};
   table.json_only = std::none_of(written.begin(), written.end(), [](const auto& w) { return w.has_value(); });
   for (std::size_t i = 0; i < changes.size(); ++i) {
-    table.rows.push_back(change_row(changes[i], written[i], keeping.kept(changes[i]), context));
-    if (!written[i]) context.errors.push_back(with_password_hint(context, changes[i], written[i].error()));
+    table.rows.push_back(change_row(changes[i], written[i], keeping.kept(changes[i]), desk));
+    if (!written[i]) desk.errors.push_back(with_password_hint(desk, changes[i], written[i].error()));
     if (written[i] && written[i]->answer_lost)
-      context.notices.push_back(fmt::format(
+      desk.notices.push_back(fmt::format(
           "node {}, object {}: the answer to the write was lost; the value read back is the one written",
           changes[i].node, to_string(changes[i].target.address)));
   }

@@ -27,15 +27,15 @@ std::string name_of(const drive::Target& target);
 
 /// Turns a name and a value into a change. Errc::usage for an unknown name, a read-only object, a value that
 /// does not fit; an object of unknown type is read first to learn its size.
-Result<Change> make_change(Context& context, std::uint8_t node, const drive::Target& target,
+Result<Change> make_change(show::Desk& desk, std::uint8_t node, const drive::Target& target,
                            std::string_view value, std::optional<od::DataType> type);
 
 /// Whether make_change() would take the value, as far as the dictionary alone can tell.
-Result<void> check_change(const Context& context, std::uint8_t node, const drive::Target& target,
+Result<void> check_change(const show::Desk& desk, std::uint8_t node, const drive::Target& target,
                           std::string_view value, std::optional<od::DataType> type);
 
 /// Asks before changes that do more than change a value: store or restore commands, node-ID, bitrate.
-Result<void> confirm_changes(Context& context, std::span<const Change> changes);
+Result<void> confirm_changes(show::Desk& desk, std::span<const Change> changes);
 
 /// The frames of these changes, in the order they would be sent.
 report::Value planned_frames(std::span<const Change> changes);
@@ -49,18 +49,12 @@ struct WriteOptions {
 
 /// What write_changes() would send: the values, and what the family's password and memory need around them.
 /// Only reads. Errors as there.
-Result<report::Value> planned_changes(Context& context, std::span<const Change> changes,
+Result<report::Value> planned_changes(show::Desk& desk, std::span<const Change> changes,
                                       const WriteOptions& options);
 
-/// `--keep` and `--unlock`, for the commands that have them.
-inline constexpr Parameter kKeepOption{
-    .name = "--keep", .help = "make the values survive power-off", .kind = Kind::flag};
-inline constexpr Parameter kUnlockOption{
-    .name = "--unlock", .help = "give the family's password before, take it back after", .kind = Kind::flag};
-
 /// Writes the changes and tells of each: written, read back, kept, when it takes effect. Failures go to
-/// `context.errors`.
-Result<report::Value> write_changes(Context& context, std::span<const Change> changes,
+/// `desk.errors`.
+Result<report::Value> write_changes(show::Desk& desk, std::span<const Change> changes,
                                     const WriteOptions& options);
 
 }  // namespace servoctl::commands

@@ -7,6 +7,7 @@
 #include "commands/change.hpp"
 #include "commands/command.hpp"
 #include "commands/restoring.hpp"
+#include "commands/setting_options.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -49,9 +50,8 @@ Result<Value> run(Context& context, const Arguments& arguments) {
     return fail(Errc::usage, fmt::format("node {} cannot be cloned into itself", from->front()));
   std::vector<std::uint8_t> all = *to;
   all.push_back(from->front());
-  if (context.hold_family)
-    if (const auto right = context.hold_family(all, context.profile, true); !right)
-      return tl::unexpected<Error>(right.error());
+  if (const auto right = context.hold_family(all, context.profile, true); !right)
+    return tl::unexpected<Error>(right.error());
   const auto snapshot = session::take_snapshots(*context.session, *context.profile, *from, {}).front();
   if (!snapshot) return tl::unexpected<Error>(snapshot.error());
   const auto backup = make_backup(context, *snapshot);

@@ -6,7 +6,7 @@
 #include "can/asc.hpp"
 #include "can/trace.hpp"
 #include "commands/command.hpp"
-#include "commands/frame_log.hpp"
+#include "commands/frame_filter.hpp"
 #include "commands/recording.hpp"
 
 namespace servoctl::commands {

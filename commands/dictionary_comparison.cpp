@@ -104,15 +104,15 @@ bool are_data_sheets(const BackupSource& a, const BackupSource& b) {
   return is_without_values(a) || is_without_values(b);
 }
 
-Result<Value> compare_data_sheets(Context& context, const BackupSource& a, const BackupSource& b) {
+Result<Value> compare_data_sheets(show::Desk& desk, const BackupSource& a, const BackupSource& b) {
   const auto left = od::read_eds(a.text, a.file);
   if (!left) return tl::unexpected<Error>(left.error());
   const auto right = od::read_eds(b.text, b.file);
   if (!right) return tl::unexpected<Error>(right.error());
   for (const auto& [source, file] : {std::pair(&a, &*left), std::pair(&b, &*right)})
     if (file->error_count() > 0)
-      context.notices.push_back(fmt::format("{0}: {1} errors; `eds check {0}` lists what is not compared",
-                                            source->file, file->error_count()));
+      desk.notices.push_back(fmt::format("{0}: {1} errors; `eds check {0}` lists what is not compared",
+                                         source->file, file->error_count()));
   Comparer comparer(a.file, b.file);
   const auto all = addresses(left->dictionary, right->dictionary);
   for (const auto address : all)
@@ -123,7 +123,7 @@ Result<Value> compare_data_sheets(Context& context, const BackupSource& a, const
     error.code = Errc::negative;
     error.message =
         fmt::format("{} of {} entries differ between {} and {}", different, all.size(), a.file, b.file);
-    context.errors.push_back(std::move(error));
+    desk.errors.push_back(std::move(error));
   }
   auto table = comparer.take();
   return Value(report::Record{

@@ -8,7 +8,7 @@ namespace servoctl::commands {
 bool are_data_sheets(const BackupSource& a, const BackupSource& b);
 
 /// `{compared, different, differences[{index sub name field a b}]}`: every entry of either; what one side
-/// lacks has the field `entry`, and null there. Differences make an error in the context. Errc::file.
-Result<report::Value> compare_data_sheets(Context& context, const BackupSource& a, const BackupSource& b);
+/// lacks has the field `entry`, and null there. Differences make an error in the desk. Errc::file.
+Result<report::Value> compare_data_sheets(show::Desk& desk, const BackupSource& a, const BackupSource& b);
 
 }  // namespace servoctl::commands

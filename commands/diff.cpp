@@ -6,6 +6,7 @@
 #include "commands/command.hpp"
 #include "commands/comparison.hpp"
 #include "commands/dictionary_comparison.hpp"
+#include "commands/setting_options.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -31,7 +32,7 @@ struct Operand {
   bool is_factory() const { return !source && node == 0; }
 };
 
-Result<Operand> parse_operand(std::string_view word) {
+Result<Operand> parse_operand(std::string_view word, settings::LineReader* lines) {
   Operand out{std::string(word), {}, 0};
   if (word == kFactory) return out;
   if (word.starts_with(kNode)) {
@@ -41,7 +42,7 @@ Result<Operand> parse_operand(std::string_view word) {
     out.node = static_cast<std::uint8_t>(*number);
     return out;
   }
-  auto source = open_backup(word);
+  auto source = open_backup(word, lines);
   if (!source) {
     if (parse_digits(word, 10)) source.error().hint = fmt::format("a drive is named {}{}", kNode, word);
     return tl::unexpected<Error>(source.error());
@@ -87,10 +88,11 @@ class Difference {
     profile_ = context_->profile;
     for (const auto& operand : operands_) {
       if (profile_ != nullptr || !operand.source) continue;
-      auto name = family_of(*context_, *operand.source);
+      auto name = family_of(*operand.source);
       if (name.empty() && operand.source->format == BackupFormat::dcf && are_files())
         name = operand.source->file;
-      const auto found = name.empty() ? Result<const drive::Profile*>(nullptr) : context_->family(name);
+      const auto found =
+          name.empty() ? Result<const drive::Profile*>(nullptr) : context_->front_end->family(name);
       if (found) profile_ = *found;
     }
     const auto needy = std::find_if(operands_.begin(), operands_.end(),
@@ -130,11 +132,10 @@ class Difference {
       return fail(Errc::refused,
                   fmt::format("{} is of {}, not of {}", operands_[1 - i].word, family_, profile_->family),
                   "name the family of the backup with -d when the drive really is one");
-    const auto session = context_->open_bus();
+    const auto session = context_->front_end->open_bus();
     if (!session) return tl::unexpected<Error>(session.error());
-    if (context_->hold_family)
-      if (const auto right = context_->hold_family(std::span(&operand.node, 1), profile_, false); !right)
-        return tl::unexpected<Error>(right.error());
+    if (const auto right = context_->hold_family(std::span(&operand.node, 1), profile_, false); !right)
+      return tl::unexpected<Error>(right.error());
     std::vector<ObjectAddress> objects;
     if (operands_[1 - i].source)
       for (const auto& value : sides_[1 - i].values) objects.push_back(value.first);
@@ -160,7 +161,7 @@ class Difference {
 Result<Value> run(Context& context, const Arguments& arguments) {
   std::vector<Operand> operands;
   for (const auto word : {arguments.text("a"), arguments.text("b")}) {
-    auto operand = parse_operand(word);
+    auto operand = parse_operand(word, context.front_end);
     if (!operand) return tl::unexpected<Error>(operand.error());
     operands.push_back(std::move(*operand));
   }

@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "commands/command.hpp"
 #include "report/html.hpp"
 #include "report/verdict.hpp"
+#include "show/desk.hpp"
 
 /// What is written down of drives when they are handed over.
 namespace servoctl::commands {
@@ -34,16 +34,9 @@ struct Report {
   std::vector<DriveReport> drives;
 };
 
-/// Asks the nodes of the context, tests their communication, and adds the results of earlier tests of theirs.
-/// Parts that a drive refuses carry the reason; a node without answer is one of the errors of the context,
-/// and so is a test that failed. Errc::bus or interrupted when it could not be done, timeout when no node
-/// answers.
-Result<Report> make_report(Context& context, std::string title,
-                           const std::vector<report::TestResult>& earlier);
-
-/// As a page, in the language of the context.
-std::string report_page(const Context& context, const Report& report);
+/// As a page, in the language of the desk.
+std::string report_page(const show::Desk& desk, const Report& report);
 /// As one JSON document.
-std::string report_json(const Context& context, const Report& report);
+std::string report_json(const show::Desk& desk, const Report& report);
 
 }  // namespace servoctl::commands

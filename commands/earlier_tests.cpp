@@ -93,11 +93,11 @@ Result<void> add_tests(const Value& document, std::string_view file, std::vector
 
 /// What says that the test was made of another drive than this one; empty when nothing does, nothing when it
 /// does not tell.
-std::optional<std::string> otherness(const Context& context, const TestResult& test,
+std::optional<std::string> otherness(const show::Desk& desk, const TestResult& test,
                                      const session::Identity& drive) {
   const Value origin(test.origin);
   const auto family = text(find(origin, "family"));
-  if (!family.empty() && family != context.profile->family) return fmt::format("it was of {}", family);
+  if (!family.empty() && family != desk.profile->family) return fmt::format("it was of {}", family);
   const auto* record = find(origin, "identity");
   const auto identity = record == nullptr ? std::nullopt : identity_of(*record, test.node);
   if (!identity || record->is_null()) return std::nullopt;
@@ -141,21 +141,21 @@ Result<std::vector<TestResult>> read_tests(const std::filesystem::path& file) {
   return out;
 }
 
-Result<void> check_tested(Context& context, const std::vector<TestResult>& tests) {
+Result<void> check_tested(show::Desk& desk, const std::vector<TestResult>& tests) {
   std::vector<std::uint8_t> nodes;
-  for (const auto node : context.nodes)
+  for (const auto node : desk.nodes)
     if (std::any_of(tests.begin(), tests.end(), [&](const TestResult& test) { return test.node == node; }))
       nodes.push_back(node);
   if (nodes.empty()) return {};
-  const auto found = session::scan(*context.session, nodes);
+  const auto found = session::scan(*desk.session, nodes);
   if (!found) return tl::unexpected<Error>(found.error());
   for (const auto& drive : *found)
     for (const auto& test : tests) {
       if (test.node != drive.node) continue;
-      const auto what = otherness(context, test, drive);
+      const auto what = otherness(desk, test, drive);
       if (!what)
-        context.notices.push_back(fmt::format("node {}: the test {} does not tell of which drive it was made",
-                                              test.node, test.test));
+        desk.notices.push_back(fmt::format("node {}: the test {} does not tell of which drive it was made",
+                                           test.node, test.test));
       else if (!what->empty())
         return fail(other_drive(test, *what));
     }

@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "commands/command.hpp"
 #include "report/verdict.hpp"
+#include "show/desk.hpp"
 
 namespace servoctl::commands {
 
@@ -12,9 +12,9 @@ namespace servoctl::commands {
 /// holds something else.
 Result<std::vector<report::TestResult>> read_tests(const std::filesystem::path& file);
 
-/// Holds tests of nodes of the context against the drives that are there now. Errc::refused where one was
+/// Holds tests of nodes of the desk against the drives that are there now. Errc::refused where one was
 /// made of another drive or family; a notice where it does not tell. A node that does not answer is left out.
 /// Errc::bus or interrupted.
-Result<void> check_tested(Context& context, const std::vector<report::TestResult>& tests);
+Result<void> check_tested(show::Desk& desk, const std::vector<report::TestResult>& tests);
 
 }  // namespace servoctl::commands

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "commands/command.hpp"
 #include "commands/left_energised.hpp"
 #include "commands/motion_options.hpp"
 #include "commands/motion_result.hpp"
@@ -33,7 +34,7 @@ Result<void> enable_one(Context& context, session::Motion& motion, session::Rehe
   // It stays energised after servoctl has gone, so nothing can watch servoctl.
   const auto items = session::preflight(*context.session, motion.units(), motion.node(), {}, context.chinese);
   if (!items) return tl::unexpected<Error>(items.error());
-  if (context.tell) context.tell(preflight_text(*items));
+  context.tell(preflight_text(*items));
   if (const auto possible = session::check_preflight(*items, motion.node()); !possible)
     return tl::unexpected<Error>(possible.error());
   if (context.dry_run) return energise(context, motion, rehearsal);

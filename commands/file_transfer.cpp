@@ -46,10 +46,10 @@ report::List row(std::uint8_t node, const drive::Target& target, std::size_t byt
 
 }  // namespace
 
-Result<Value> read_to_file(Context& context, std::uint8_t node, const drive::Target& target,
+Result<Value> read_to_file(show::Desk& desk, std::uint8_t node, const drive::Target& target,
                            canopen::Transfer transfer, const std::filesystem::path& file) {
   const session::SdoRequest request{node, target.address, {}, transfer};
-  const auto answers = context.session->transfer(std::span(&request, 1));
+  const auto answers = desk.session->transfer(std::span(&request, 1));
   const auto& data = answers.front();
   if (!data) return tl::unexpected<Error>(data.error());
   const auto written = write_file_atomically(file, std::string(data->begin(), data->end()));
@@ -79,17 +79,17 @@ Result<Change> change_from_file(const drive::Profile* profile, std::uint8_t node
   return Change{node, target, size ? meaning.type : od::DataType::domain, std::move(data)};
 }
 
-Result<Value> write_from_file(Context& context, std::span<const Change> changes,
+Result<Value> write_from_file(show::Desk& desk, std::span<const Change> changes,
                               const std::filesystem::path& file, const WriteOptions& options) {
   std::vector<session::SdoRequest> requests;
   for (const auto& change : changes)
     requests.push_back({change.node, change.target.address, change.data, change.transfer});
-  KeepingNodes keeping(context, changes);
+  KeepingNodes keeping(desk, changes);
   if (const auto opened = keeping.open(options); !opened) return tl::unexpected<Error>(opened.error());
   const bool readable = std::all_of(changes.begin(), changes.end(), [](const Change& c) {
     return od::readable(drive::meaning(c.target, c.node).access);
   });
-  const auto written = session::write_all(*context.session, requests, options.keep && readable);
+  const auto written = session::write_all(*desk.session, requests, options.keep && readable);
   keeping.close(written);
   auto table = new_table(true);
   table.json_only = std::none_of(written.begin(), written.end(), [](const auto& w) { return w.has_value(); });
@@ -104,7 +104,7 @@ Result<Value> write_from_file(Context& context, std::span<const Change> changes,
     const auto kept = written[i] ? keeping.kept(changes[i]) : Value();
     table.rows.back().push_back(kept);
     table.rows.back().push_back(written[i] ? kept_text(kept) : Value());
-    if (!written[i]) context.errors.push_back(written[i].error());
+    if (!written[i]) desk.errors.push_back(written[i].error());
   }
   return Value(std::move(table));
 }

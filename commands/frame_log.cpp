@@ -42,24 +42,11 @@ bool FrameFilter::passes(const DecodedFrame& frame) const {
                                         [&](ObjectAddress object) { return has(objects, object); });
 }
 
-Result<FrameFilter> frame_filter(const Context& context, const Arguments& arguments) {
-  FrameFilter out;
-  if (!context.nodes.empty() && context.nodes.front() != 0) out.nodes = context.nodes;
-  for (const auto& service : arguments.all("--service"))
-    out.services.push_back(*std::find(std::begin(kServices), std::end(kServices), service));
-  for (const auto& name : arguments.all("--object")) {
-    const auto target = drive::resolve(context.profile, name);
-    if (!target) return tl::unexpected<Error>(target.error());
-    out.objects.push_back(target->address);
-  }
-  return out;
-}
-
-FrameLog::FrameLog(Context& context, FrameFilter filter, bool raw)
+FrameLog::FrameLog(show::Desk& desk, FrameFilter filter, bool raw)
     : filter_(std::move(filter)),
       raw_(raw),
-      writer_(context),
-      decoder_({context.profile, context.chinese, writer_.wants_records()}) {}
+      writer_(desk),
+      decoder_({desk.profile, desk.chinese, writer_.wants_records()}) {}
 
 void FrameLog::begin_line(Duration time) {
   const auto since = (time - begin_.value_or(time)).count();

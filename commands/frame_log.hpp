@@ -21,25 +21,10 @@ struct FrameFilter {
   bool passes(const DecodedFrame& frame) const;
 };
 
-/// `--service` and `--object`, for the commands that have them.
-inline constexpr Parameter kServiceOption{
-    .name = "--service",
-    .help = "only this service, such as sdo (may be given several times)",
-    .kind = Kind::choice,
-    .choices = kServices,
-    .repeats = true};
-inline constexpr Parameter kObjectOption{.name = "--object",
-                                         .help = "only frames that carry or name this object",
-                                         .kind = Kind::object,
-                                         .repeats = true};
-
-/// What these options and -n say. Errc::usage for an unknown object.
-Result<FrameFilter> frame_filter(const Context& context, const Arguments& arguments);
-
 /// Shows frames with what they mean, one a line or a record, as far as they pass the filter.
 class FrameLog {
  public:
-  FrameLog(Context& context, FrameFilter filter, bool raw);
+  FrameLog(show::Desk& desk, FrameFilter filter, bool raw);
 
   /// `time` in a record is that of the log; in text it counts from the first frame.
   void add(Duration time, std::string_view interface_name, const can::Frame& frame);

@@ -1,3 +1,4 @@
+#include "commands/command.hpp"
 #include "commands/motion_options.hpp"
 
 namespace servoctl::commands {
@@ -23,7 +24,9 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   const auto longest = duration_option(arguments, "--within");
   if (!longest) return tl::unexpected<Error>(longest.error());
   home.longest = *longest;
-  return run_motion(context, arguments, motion_run(home, session::plan_home, session::run_home));
+  const auto request = motion_request(context, arguments);
+  if (!request) return tl::unexpected<Error>(request.error());
+  return run_motion(context, *request, motion_run(home, session::plan_home, session::run_home));
 }
 
 }  // namespace

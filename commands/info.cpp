@@ -87,7 +87,7 @@ Result<report::Value> run(Context& context, const Arguments&) {
   for (const auto node : context.nodes) {
     if (at < found->size() && (*found)[at].node == node) {
       // What the drive says of itself is the answer all the same.
-      const auto right = context.profile == nullptr || !context.hold_family
+      const auto right = context.profile == nullptr
                              ? Result<void>{}
                              : context.hold_family(std::span(&node, 1), context.profile, false);
       if (!right) context.errors.push_back(right.error());

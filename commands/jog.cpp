@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "base/number.hpp"
+#include "commands/command.hpp"
 #include "commands/motion_options.hpp"
 
 namespace servoctl::commands {
@@ -24,8 +25,10 @@ constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
 /// Turns the repetitions of a held key into "held" and "let go". Keyboards begin to repeat after up to 0.7 s,
 /// and then do it at least ten times a second.
 class HeldKey {
+  using Keys = command::Keys;
+
  public:
-  HeldKey(std::unique_ptr<Keys> keys, session::Session& session)
+  HeldKey(std::unique_ptr<command::Keys> keys, session::Session& session)
       : keys_(std::move(keys)), session_(&session) {}
 
   session::HoldKey operator()() {
@@ -46,7 +49,7 @@ class HeldKey {
   static constexpr Duration kFirstRepeat = std::chrono::milliseconds(700);
   static constexpr Duration kRepeat = std::chrono::milliseconds(200);
 
-  std::unique_ptr<Keys> keys_;
+  std::unique_ptr<command::Keys> keys_;
   session::Session* session_;
   session::HoldKey held_ = session::HoldKey::none;
   bool repeats_ = false;
@@ -79,12 +82,11 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   motion.plan = [&](session::Motion& m) { return session::plan_jog(m, *jog); };
   motion.run = [&](session::Motion& m, const session::MotionPlan& plan) {
     if (by_key) {
-      auto keys = context.open_keys();
+      auto keys = context.front_end->open_keys();
       if (keys == nullptr) return m.finish(missing);
-      if (context.tell)
-        context.tell(
-            "hold right or up to turn, left or down to turn back; any other key ends, and so do 5 s without "
-            "one\n");
+      context.tell(
+          "hold right or up to turn, left or down to turn back; any other key ends, and so do 5 s without "
+          "one\n");
       auto held = std::make_shared<HeldKey>(std::move(keys), m.session());
       jog->keys = [held] { return (*held)(); };
     }
@@ -92,8 +94,12 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
     jog->keys = {};
     return done;
   };
-  if (by_key && !context.dry_run && (!context.open_keys || context.open_keys() == nullptr)) return missing;
-  return run_motion(context, arguments, motion);
+  if (by_key && !context.dry_run &&
+      (context.front_end == nullptr || context.front_end->open_keys() == nullptr))
+    return missing;
+  const auto request = motion_request(context, arguments);
+  if (!request) return tl::unexpected<Error>(request.error());
+  return run_motion(context, *request, motion);
 }
 
 }  // namespace

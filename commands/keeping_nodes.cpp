@@ -13,12 +13,12 @@ constexpr std::uint16_t kLastOfVendor = 0x5FFF;
 
 }  // namespace
 
-KeepingNodes::KeepingNodes(Context& context, std::span<const Change> changes)
-    : context_(&context), changes_(changes) {
+KeepingNodes::KeepingNodes(show::Desk& desk, std::span<const Change> changes)
+    : desk_(&desk), changes_(changes) {
   for (const auto& change : changes)
     if (nodes_.find(change.node) == nodes_.end())
       nodes_.emplace(change.node,
-                     std::make_unique<session::StorageScope>(*context.session, context.profile, change.node));
+                     std::make_unique<session::StorageScope>(*desk.session, desk.profile, change.node));
 }
 
 void KeepingNodes::rehearse(session::Rehearsal& rehearsal) {
@@ -55,15 +55,15 @@ void KeepingNodes::close(std::span<const Result<session::Written>> written) {
 void KeepingNodes::close_node(std::uint8_t node, session::StorageScope& storage, bool all_written,
                               std::size_t writes) {
   const auto kept = storage.close(all_written, writes);
-  if (!kept) context_->errors.push_back(kept.error());
+  if (!kept) desk_->errors.push_back(kept.error());
   kept_[node] = kept.value_or(session::Kept::unknown);
-  for (const auto& notice : storage.notices()) context_->notices.push_back(notice);
+  for (const auto& notice : storage.notices()) desk_->notices.push_back(notice);
 }
 
 report::Value KeepingNodes::kept(const Change& change) const {
   const auto kept = kept_.at(change.node);
   const auto index = change.target.address.index;
-  const auto* profile = context_->profile;
+  const auto* profile = desk_->profile;
   if (change.target.address == objects::kControlword) return false;
   // A switch of the memory is for the objects that go through it.
   if (profile != nullptr && !profile->rules.store.flash_switch.empty() && !goes_to_memory(change)) return {};
@@ -84,9 +84,9 @@ report::Value kept_text(const report::Value& kept) {
 /// Not the controlword, not communication objects, and not the switch that chooses the memory.
 bool KeepingNodes::goes_to_memory(const Change& change) const {
   const auto object = change.target.address;
-  if (object.index < 0x2000 || object.index == 0x6040 || context_->profile == nullptr) return false;
-  const auto& name = context_->profile->rules.store.flash_switch;
-  const auto flash = name.empty() ? Result<drive::Target>{} : drive::resolve(context_->profile, name);
+  if (object.index < 0x2000 || object.index == 0x6040 || desk_->profile == nullptr) return false;
+  const auto& name = desk_->profile->rules.store.flash_switch;
+  const auto flash = name.empty() ? Result<drive::Target>{} : drive::resolve(desk_->profile, name);
   return !name.empty() && flash && flash->address != object;
 }
 

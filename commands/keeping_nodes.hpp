@@ -14,7 +14,7 @@ namespace servoctl::commands {
 class KeepingNodes {
  public:
   /// `changes` outlive it.
-  KeepingNodes(Context& context, std::span<const Change> changes);
+  KeepingNodes(show::Desk& desk, std::span<const Change> changes);
 
   /// From now on nothing is sent: what would be goes there, which outlives this.
   void rehearse(session::Rehearsal& rehearsal);
@@ -22,7 +22,7 @@ class KeepingNodes {
   /// Before the writes. After an error nothing is open any more.
   Result<void> open(const WriteOptions& options);
   /// After the writes: a node of which one write failed stores nothing. What goes wrong is in
-  /// `context.errors`.
+  /// `desk.errors`.
   void close(std::span<const Result<session::Written>> written);
 
   /// Whether a value that was written survives power-off; null where no manual tells.
@@ -32,7 +32,7 @@ class KeepingNodes {
   bool goes_to_memory(const Change& change) const;
   void close_node(std::uint8_t node, session::StorageScope& storage, bool all_written, std::size_t writes);
 
-  Context* context_;
+  show::Desk* desk_;
   std::span<const Change> changes_;
   std::map<std::uint8_t, std::unique_ptr<session::StorageScope>> nodes_;
   std::map<std::uint8_t, session::Kept> kept_;

@@ -92,10 +92,9 @@ std::string change_of(const Identity& before, const Identity& now) {
 }
 
 /// Why what is kept is not to be used; empty when it is.
-std::string reason_against(const Context& context, std::uint8_t node, const KeptTurn& kept) {
-  if (kept.family != context.profile->family)
-    return fmt::format("they were measured with -d {}", kept.family);
-  const auto now = session::read_identity(*context.session, node);
+std::string reason_against(const show::Desk& desk, std::uint8_t node, const KeptTurn& kept) {
+  if (kept.family != desk.profile->family) return fmt::format("they were measured with -d {}", kept.family);
+  const auto now = session::read_identity(*desk.session, node);
   if (!now) return now.error().message;
   const auto change = change_of(kept.identity, *now);
   return change.empty() ? change : change + " is not the one of the drive that was measured";
@@ -103,10 +102,9 @@ std::string reason_against(const Context& context, std::uint8_t node, const Kept
 
 }  // namespace
 
-TurnFile::TurnFile(const Context& context, std::uint8_t node) : node_(node) {
-  if (!context.state_folder.empty())
-    path_ =
-        context.state_folder / fmt::format("turn-{}-node-{}.json", bus_name(context.session->url()), node);
+TurnFile::TurnFile(const show::Desk& desk, std::uint8_t node) : node_(node) {
+  if (!desk.state_folder.empty())
+    path_ = desk.state_folder / fmt::format("turn-{}-node-{}.json", bus_name(desk.session->url()), node);
 }
 
 Result<std::optional<KeptTurn>> TurnFile::read() const {
@@ -136,14 +134,14 @@ Result<bool> TurnFile::remove() const {
   return removed;
 }
 
-KnownTurn find_turn(const Context& context, std::uint8_t node) {
+KnownTurn find_turn(const show::Desk& desk, std::uint8_t node) {
   KnownTurn out;
-  if (context.profile == nullptr || context.profile->rules.learn.speed.empty()) return out;
-  const auto kept = TurnFile(context, node).read();
+  if (desk.profile == nullptr || desk.profile->rules.learn.speed.empty()) return out;
+  const auto kept = TurnFile(desk, node).read();
   if (!kept) out.unused = kept.error().message;
   if (!kept || !*kept) return out;
   out.kept = **kept;
-  out.unused = reason_against(context, node, *out.kept);
+  out.unused = reason_against(desk, node, *out.kept);
   if (out.unused.empty()) out.counts = static_cast<double>(out.kept->counts);
   return out;
 }

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "commands/command.hpp"
 #include "session/identity.hpp"
 #include "session/motion_units.hpp"
+#include "show/desk.hpp"
 
 namespace servoctl::commands {
 
@@ -26,8 +26,8 @@ struct KeptTurn {
 /// The file in the folder for state that holds it: one for each bus, however that was written, and node.
 class TurnFile {
  public:
-  /// `context` has a session; the file's path is empty where there is no folder for state.
-  TurnFile(const Context& context, std::uint8_t node);
+  /// `desk` has a session; the file's path is empty where there is no folder for state.
+  TurnFile(const show::Desk& desk, std::uint8_t node);
 
   const std::filesystem::path& path() const { return path_; }
   /// Empty when there is none. Errc::file for one that is damaged, or was changed by somebody else.
@@ -49,7 +49,7 @@ struct KnownTurn {
   std::string unused;            ///< Why what is kept is not used; else empty.
 };
 /// What is kept for this node, held against family and identity. Asks the drive only where something is kept.
-KnownTurn find_turn(const Context& context, std::uint8_t node);
+KnownTurn find_turn(const show::Desk& desk, std::uint8_t node);
 
 /// Where the counts of a turn come from when they are kept ones, and why they are not used where nothing else
 /// tells them: to be told before a motion, and with its result.

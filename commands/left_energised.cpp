@@ -20,33 +20,33 @@ std::string power_warning(std::uint8_t node, std::string_view why) {
   return fmt::format("NODE {} MAY STILL BE ENERGISED: TAKE THE POWER AWAY: {}", node, why);
 }
 
-void tell_left_energised(Context& context) {
+void tell_left_energised(show::Desk& desk) {
   const drive::Profile plain;
-  for (const auto node : std::set(context.session->energised().nodes())) {
-    session::Power power(*context.session, plain, node);
+  for (const auto node : std::set(desk.session->energised().nodes())) {
+    session::Power power(*desk.session, plain, node);
     const auto state = power.state();
     if (state && drive::is_energised(*state))
-      context.notices.push_back(energised_notice(node));
-    else if (state && context.session->energised().contains(node))
-      context.notices.push_back(fmt::format(
+      desk.notices.push_back(energised_notice(node));
+    else if (state && desk.session->energised().contains(node))
+      desk.notices.push_back(fmt::format(
           "node {} has lost its power by itself ({}) and may start again by itself: 6040h still says "
           "\"enable operation\"; `disable -n {}` takes that back",
           node, drive::name(*state), node));
     else if (!state && state.error().code != Errc::sdo_abort)
-      context.notices.push_back(
+      desk.notices.push_back(
           fmt::format("node {} MAY BE ENERGISED: it does not tell ({})", node, state.error().message));
   }
 }
 
-void stop_left_energised(Context& context) {
-  for (const auto& [node, done] : session::de_energise(*context.session)) {
+void stop_left_energised(show::Desk& desk) {
+  for (const auto& [node, done] : session::de_energise(*desk.session)) {
     if (done) {
-      context.notices.push_back(disabled_notice(node));
+      desk.notices.push_back(disabled_notice(node));
       continue;
     }
     auto error = done.error();
     error.message = power_warning(node, error.message);
-    context.errors.push_back(std::move(error));
+    desk.errors.push_back(std::move(error));
   }
 }
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "commands/command.hpp"
+#include "show/desk.hpp"
 
 /// Drives that a command leaves with power.
 namespace servoctl::commands {
@@ -19,10 +19,10 @@ std::string power_warning(std::uint8_t node, std::string_view why);
 
 /// Looks whether the drives that were energised through this session still are, and says so of each: in the
 /// notices, also where one does not tell.
-void tell_left_energised(Context& context);
+void tell_left_energised(show::Desk& desk);
 
 /// Stops and disables them, for a command that ends before its time; the notices say so, and what did not
-/// succeed is in `context.errors`. Does not hear Ctrl-C.
-void stop_left_energised(Context& context);
+/// succeed is in `desk.errors`. Does not hear Ctrl-C.
+void stop_left_energised(show::Desk& desk);
 
 }  // namespace servoctl::commands

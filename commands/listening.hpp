@@ -3,13 +3,10 @@
 #include <functional>
 #include <optional>
 
-#include "commands/duration_option.hpp"
+#include "session/session.hpp"
 
 /// What commands that listen to the bus have in common.
 namespace servoctl::commands {
-
-inline constexpr Parameter kForOption{
-    .name = "--for", .help = "how long; until Ctrl-C unless said", .kind = Kind::duration};
 
 /// What is done while listening; any of them may be empty.
 struct Listener {

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <functional>
 
 #include "commands/duration_option.hpp"
-#include "session/motion_kinds.hpp"
+#include "commands/motion_run.hpp"
 
-/// What jog, move, home and torque have in common on the command line, and how they run.
+/// What jog, move, home and torque have in common on the command line.
 namespace servoctl::commands {
 
 inline constexpr Parameter kAccelerationOption{
@@ -49,31 +48,7 @@ Result<session::MotionOptions> motion_options(const Context& context, const Argu
 /// The one node that a motion may have. Errc::usage for several: one motor at a time.
 Result<std::uint8_t> one_node(const Context& context);
 
-/// What a command does between the looks and the answer.
-struct MotionRun {
-  std::function<Result<session::MotionPlan>(session::Motion&)> plan;
-  std::function<session::MotionReport(session::Motion&, const session::MotionPlan&)> run;
-  bool in_counts = false;  ///< In the drive's own counts, whatever is known of a turn.
-};
-
-/// One of the motions of session/motion_kinds.hpp; `kind` must outlive it.
-template <class Kind>
-MotionRun motion_run(const Kind& kind, Result<session::MotionPlan> (*plan)(session::Motion&, const Kind&),
-                     session::MotionReport (*run)(session::Motion&, const Kind&,
-                                                  const session::MotionPlan&)) {
-  return {[&kind, plan](session::Motion& motion) { return plan(motion, kind); },
-          [&kind, run](session::Motion& motion, const session::MotionPlan& planned) {
-            return run(motion, kind, planned);
-          }};
-}
-
-/// Whether the motion could be made as it is asked for: options, units, limits of the drive. Only
-/// reads; what an unreachable drive would say is left to the motion itself.
-Result<void> check_motion(const Context& context, const Arguments& arguments,
-                          const std::function<Result<session::MotionPlan>(session::Motion&)>& plan);
-
-/// Looks, shows the pre-flight list, asks, moves, and tells how the drive was left. With --dry-run the drive
-/// is looked at and nothing is written.
-Result<report::Value> run_motion(Context& context, const Arguments& arguments, const MotionRun& run);
+/// The options above, with the node. Errc::usage as those of one_node() and motion_options().
+Result<MotionRequest> motion_request(const Context& context, const Arguments& arguments);
 
 }  // namespace servoctl::commands

@@ -97,26 +97,26 @@ std::string end_text(const session::MotionEnd& end, const session::WatchdogPlan&
   return out;
 }
 
-Value motion_result(Context& context, std::uint8_t node, const session::MotionPlan& plan,
+Value motion_result(show::Desk& desk, std::uint8_t node, const session::MotionPlan& plan,
                     const std::vector<session::PreflightItem>& items, const session::MotionReport& done,
                     bool plot) {
   const auto end = end_text(done.end, done.watchdog);
   if (!done.end.verified)
-    context.errors.push_back(unverified(node, done));
+    desk.errors.push_back(unverified(node, done));
   else if (!done.outcome)
-    context.errors.push_back(ended(node, done));
+    desk.errors.push_back(ended(node, done));
   else if (!done.differences.empty())
-    context.errors.push_back(session::drive_error(
+    desk.errors.push_back(session::drive_error(
         Errc::negative, node, fmt::format("done, but {}", fmt::join(done.differences, "; ")),
         "look at the limits the drive has (`param list`, 607Fh, 6080h, 6072h), its gear and its load"));
-  for (const auto& text : done.unchecked) context.notices.push_back(fmt::format("node {}: {}", node, text));
+  for (const auto& text : done.unchecked) desk.notices.push_back(fmt::format("node {}: {}", node, text));
   for (const auto& left : done.end.left)
-    context.errors.push_back(session::drive_error(
+    desk.errors.push_back(session::drive_error(
         Errc::negative, node, left,
         left.starts_with("object ") ? "write it by hand" : "look at the drive before it is used"));
-  for (const auto& note : done.end.notes) context.notices.push_back(fmt::format("node {}: {}", node, note));
+  for (const auto& note : done.end.notes) desk.notices.push_back(fmt::format("node {}: {}", node, note));
   for (const auto& event : done.events)
-    context.notices.push_back(notice_text(event, context.profile, context.chinese));
+    desk.notices.push_back(notice_text(event, desk.profile, desk.chinese));
   const double length =
       done.samples.empty() ? 0 : seconds_since(done.samples.back(), done.samples.front().time);
   Record out{{"node", node},
@@ -132,7 +132,7 @@ Value motion_result(Context& context, std::uint8_t node, const session::MotionPl
              {"preflight", preflight_table(items), Show::json},
              {"summary", summary_of(done.series)}};
   // With -o jsonl the samples went out one by one.
-  if (context.keeps_samples) out.push_back({"samples", samples_of(done.series), Show::json});
+  if (desk.keeps_samples) out.push_back({"samples", samples_of(done.series), Show::json});
   if (plot) out.push_back({"plot", report::Plot{done.series}, Show::text});
   return out;
 }

@@ -1,14 +1,14 @@
 #pragma once
 
-#include "commands/command.hpp"
 #include "session/motion_kinds.hpp"
+#include "show/desk.hpp"
 
 namespace servoctl::commands {
 
 /// The answer of a motion: what was asked, how it went, how the drive was left, the numbers on the way, and
-/// all samples: in JSON where the context keeps them, in text as a plot where one is wanted. What went wrong
-/// goes to `context.errors`, what the node told to the notices.
-report::Value motion_result(Context& context, std::uint8_t node, const session::MotionPlan& plan,
+/// all samples: in JSON where the desk keeps them, in text as a plot where one is wanted. What went wrong
+/// goes to `desk.errors`, what the node told to the notices.
+report::Value motion_result(show::Desk& desk, std::uint8_t node, const session::MotionPlan& plan,
                             const std::vector<session::PreflightItem>& items,
                             const session::MotionReport& done, bool plot);
 

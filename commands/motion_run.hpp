@@ -1,22 +1,47 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
-#include <vector>
+#include <string>
 
-#include "commands/motion_options.hpp"
-#include "commands/motion_tests.hpp"
+#include "session/motion_kinds.hpp"
+#include "show/desk.hpp"
 
 namespace servoctl::commands {
 
-/// Runs a motion for a test: as run_motion(), but what came of it is kept for `judge`, which makes the result
-/// of it. Its errors are errors of the context.
-Result<MotionTest> run_test_motion(
-    Context& context, const Arguments& arguments,
-    const std::function<Result<session::MotionPlan>(session::Motion&)>& plan,
-    const std::function<session::MotionReport(session::Motion&, const session::MotionPlan&)>& run,
-    const std::function<report::TestResult(const session::MotionPlan&, const session::MotionReport&)>& judge);
+/// What is wanted of a motion beside the motion itself.
+struct MotionRequest {
+  std::uint8_t node = 0;
+  session::MotionOptions options;
+  std::string csv;    ///< The samples go into this file; empty: into none.
+  bool plot = false;  ///< Draw the samples over time at the end.
+};
 
-/// Whether the motion went to its end, and whether the drive was left without power, as criteria.
-void judge_motion(const Context& context, const session::MotionReport& done, report::TestResult& out);
+/// What a command does between the looks and the answer.
+struct MotionRun {
+  std::function<Result<session::MotionPlan>(session::Motion&)> plan;
+  std::function<session::MotionReport(session::Motion&, const session::MotionPlan&)> run;
+  bool in_counts = false;  ///< In the drive's own counts, whatever is known of a turn.
+};
+
+/// One of the motions of session/motion_kinds.hpp; `kind` must outlive it.
+template <class Kind>
+MotionRun motion_run(const Kind& kind, Result<session::MotionPlan> (*plan)(session::Motion&, const Kind&),
+                     session::MotionReport (*run)(session::Motion&, const Kind&,
+                                                  const session::MotionPlan&)) {
+  return {[&kind, plan](session::Motion& motion) { return plan(motion, kind); },
+          [&kind, run](session::Motion& motion, const session::MotionPlan& planned) {
+            return run(motion, kind, planned);
+          }};
+}
+
+/// Whether the motion could be made as it is asked for: options, units, limits of the drive. Only
+/// reads; what an unreachable drive would say is left to the motion itself.
+Result<void> check_motion(const show::Desk& desk, const MotionRequest& request,
+                          const std::function<Result<session::MotionPlan>(session::Motion&)>& plan);
+
+/// Looks, shows the pre-flight list, asks, moves, and tells how the drive was left. With --dry-run the drive
+/// is looked at and nothing is written.
+Result<report::Value> run_motion(show::Desk& desk, const MotionRequest& request, const MotionRun& run);
 
 }  // namespace servoctl::commands

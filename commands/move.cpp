@@ -1,3 +1,4 @@
+#include "commands/command.hpp"
 #include "commands/motion_options.hpp"
 
 namespace servoctl::commands {
@@ -21,7 +22,9 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   move.target = arguments.text("target");
   move.relative = arguments.has("--relative");
   move.speed = arguments.text("--speed");
-  return run_motion(context, arguments, motion_run(move, session::plan_move, session::run_move));
+  const auto request = motion_request(context, arguments);
+  if (!request) return tl::unexpected<Error>(request.error());
+  return run_motion(context, *request, motion_run(move, session::plan_move, session::run_move));
 }
 
 }  // namespace

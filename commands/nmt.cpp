@@ -204,6 +204,7 @@ const Command kNmtPreop{
     .effect = Effect::writes,
     .family = FamilyCheck::never,
     .run = run_command<NmtCommand::enter_pre_operational>,
+    .settings = [](const Arguments&) { return Result<std::vector<settings::NamedValue>>{}; },  // It prepares.
 };
 
 extern const Command kNmtReset;

@@ -5,6 +5,7 @@
 #include "base/number.hpp"
 #include "canopen/cob_id.hpp"
 #include "commands/command.hpp"
+#include "commands/duration_option.hpp"
 #include "commands/listening.hpp"
 #include "commands/notice.hpp"
 #include "drive/standard_objects.hpp"

@@ -3,6 +3,8 @@
 
 #include "commands/assignments.hpp"
 #include "commands/change.hpp"
+#include "commands/command.hpp"
+#include "commands/setting_options.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -53,6 +55,15 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   return write_changes(context, changes, options);
 }
 
+Result<std::vector<settings::NamedValue>> setting_values(const Arguments& arguments) {
+  const auto assignments = parse_assignments(arguments.all("assignment"));
+  if (!assignments) return tl::unexpected<Error>(assignments.error());
+  std::vector<settings::NamedValue> out;
+  for (const auto& assignment : *assignments)
+    out.push_back({std::string(assignment.id), std::string(assignment.value), true});
+  return out;
+}
+
 }  // namespace
 
 extern const Command kParamSet;
@@ -70,6 +81,7 @@ const Command kParamSet{
     .effect = Effect::writes,
     .run = run,
     .check = check,
+    .settings = setting_values,
 };
 
 }  // namespace servoctl::commands

@@ -5,7 +5,9 @@
 #include "base/text.hpp"
 #include "commands/backup_file.hpp"
 #include "commands/change.hpp"
+#include "commands/command.hpp"
 #include "commands/pdo_recipes.hpp"
+#include "commands/setting_options.hpp"
 #include "od/eds.hpp"
 #include "session/pdo_setup.hpp"
 

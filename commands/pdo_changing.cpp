@@ -44,8 +44,8 @@ struct Undone {
 /// One command's change of some nodes.
 class Changing {
  public:
-  Changing(Context& context, const PdoEdit& edit, const PdoChanging& how)
-      : context_(&context), edit_(&edit), how_(how) {}
+  Changing(show::Desk& desk, const PdoEdit& edit, const PdoChanging& how)
+      : desk_(&desk), edit_(&edit), how_(how) {}
 
   Result<Value> run() {
     if (const auto known = take_up_record(); !known) return tl::unexpected<Error>(known.error());
@@ -54,16 +54,16 @@ class Changing {
         undone_ || std::any_of(jobs_.begin(), jobs_.end(), [](const Job& job) { return !job.plan.empty(); });
     if (any)
       if (const auto quiet = check_quiet(); !quiet) return tl::unexpected<Error>(quiet.error());
-    if (context_->dry_run) return frames();
+    if (desk_->dry_run) return frames();
     if (any) {
-      if (const auto yes = context_->confirm(question()); !yes) return tl::unexpected<Error>(yes.error());
+      if (const auto yes = desk_->confirm(question()); !yes) return tl::unexpected<Error>(yes.error());
       // It may have taken long to answer.
       if (const auto quiet = check_quiet(); !quiet) return tl::unexpected<Error>(quiet.error());
     }
     List out;
     for (const auto& job : jobs_) {
       out.emplace_back(carry_out(job));
-      if (!context_->errors.empty() && context_->errors.back().code == Errc::interrupted) break;
+      if (!desk_->errors.empty() && desk_->errors.back().code == Errc::interrupted) break;
     }
     return Value(std::move(out));
   }
@@ -71,8 +71,8 @@ class Changing {
  private:
   /// Of a change that was cut off only its own record is the way back; until then every other change says so.
   Result<void> take_up_record() {
-    if (context_->nodes.size() == 1 && !how_.file.empty()) {
-      PdoRecord record(*context_, context_->nodes.front());
+    if (desk_->nodes.size() == 1 && !how_.file.empty()) {
+      PdoRecord record(*desk_, desk_->nodes.front());
       const auto journal = record.take_up(how_.file);
       if (!journal) return tl::unexpected<Error>(journal.error());
       if (*journal) {
@@ -82,15 +82,15 @@ class Changing {
         return {};
       }
     }
-    tell_cut_off_changes(*context_);
+    tell_cut_off_changes(*desk_);
     return {};
   }
 
   Result<void> plan_all() {
-    const auto read = session::read_pdo_values(*context_->session, context_->profile, context_->nodes);
+    const auto read = session::read_pdo_values(*desk_->session, desk_->profile, desk_->nodes);
     for (std::size_t i = 0; i < read.size(); ++i) {
       if (!read[i]) return tl::unexpected<Error>(read[i].error());
-      Job job{{context_->nodes[i], *read[i], session::pdos_of(*read[i])}, {}, {}, {}};
+      Job job{{desk_->nodes[i], *read[i], session::pdos_of(*read[i])}, {}, {}, {}};
       const auto wanted = (*edit_)(job.present);
       if (!wanted) return tl::unexpected<Error>(wanted.error());
       job.wanted = *wanted;
@@ -113,7 +113,7 @@ class Changing {
       for (const auto& [object, data] : job.values) after[object] = data;
       nodes.push_back({job.present.node, job.present.pdos, session::pdos_of(after)});
     }
-    return check_neighbours(*context_, nodes);
+    return check_neighbours(*desk_, nodes);
   }
 
   Result<void> check(const Job& job) const {
@@ -124,8 +124,8 @@ class Changing {
     for (const auto& pdo : job.wanted.pdos) {
       const auto& now = *job.present.find(pdo);
       if (pdo.entries != now.entries)
-        if (const auto fits = check_mapping(*context_->profile, pdo); !fits) return fits;
-      if (const auto fits = check_communication(*context_->profile, now, pdo, all); !fits) return fits;
+        if (const auto fits = check_mapping(*desk_->profile, pdo); !fits) return fits;
+      if (const auto fits = check_communication(*desk_->profile, now, pdo, all); !fits) return fits;
     }
     return {};
   }
@@ -136,17 +136,17 @@ class Changing {
         job.values.emplace(object, data);
     for (const auto& [object, data] : job.wanted.assignments) job.values.emplace(object, data);
     const auto objects = job.values.size();
-    if (how_.keep) session::add_stored_copies(*context_->profile, job.present.node, job.values);
+    if (how_.keep) session::add_stored_copies(*desk_->profile, job.present.node, job.values);
     copies_ = copies_ || job.values.size() > objects;
     const auto complete =
-        session::complete(*context_->session, job.present.node, job.present.values, job.values);
-    if (complete) job.plan = session::plan_writes(context_->profile, job.present.values, job.values);
+        session::complete(*desk_->session, job.present.node, job.present.values, job.values);
+    if (complete) job.plan = session::plan_writes(desk_->profile, job.present.values, job.values);
     return complete;
   }
 
   Result<void> check_quiet() const {
     for (const auto& job : jobs_)
-      if (const auto quiet = session::check_not_energised(*context_->session, job.present.node); !quiet)
+      if (const auto quiet = session::check_not_energised(*desk_->session, job.present.node); !quiet)
         return quiet;
     return {};
   }
@@ -166,11 +166,11 @@ class Changing {
     for (const auto& job : jobs_) {
       if (is_idle(job)) continue;
       const auto node = job.present.node;
-      const bool pause = session::needs_pre_operational(context_->profile, job.plan);
+      const bool pause = session::needs_pre_operational(desk_->profile, job.plan);
       const auto nmt = [&](canopen::NmtCommand command, std::string when) {
         out.add(session::planned_frame(node, canopen::nmt_frame(command, node), std::move(when)));
       };
-      session::StorageScope storage(*context_->session, context_->profile, node);
+      session::StorageScope storage(*desk_->session, desk_->profile, node);
       storage.rehearse(out);
       if (pause) nmt(canopen::NmtCommand::enter_pre_operational, "if it is operational");
       if (const auto opened = storage.open(how_.keep, how_.unlock, true); !opened)
@@ -179,20 +179,20 @@ class Changing {
       (void)storage.close(true, job.plan.size());
       if (pause) nmt(canopen::NmtCommand::start, "if it was operational");
     }
-    return planned_messages(*context_, out.messages());
+    return planned_messages(*desk_, out.messages());
   }
 
   bool is_idle(const Job& job) const { return job.plan.empty() && !how_.keep; }
 
   Result<void> make_ready(const Job& job, PdoRecord& before) const {
-    if (undone_) return put_means_back(*context_->session, undone_->journal);
+    if (undone_) return put_means_back(*desk_->session, undone_->journal);
     return is_idle(job) ? Result<void>() : before.begin(job.present.values, how_.keep, how_.unlock);
   }
 
   Record carry_out(const Job& job) {
-    auto before = undone_ ? undone_->record : PdoRecord(*context_, job.present.node);
+    auto before = undone_ ? undone_->record : PdoRecord(*desk_, job.present.node);
     if (const auto ready = make_ready(job, before); !ready) {
-      context_->errors.push_back(ready.error());
+      desk_->errors.push_back(ready.error());
       return record(job, "not changed", {});
     }
     if (is_idle(job)) {
@@ -200,12 +200,12 @@ class Changing {
       return record(job, "as wanted already, nothing was written", {});
     }
     const auto outcome =
-        session::change_pdos(*context_->session, context_->profile, job.present.node, job.present.values,
+        session::change_pdos(*desk_->session, desk_->profile, job.present.node, job.present.values,
                              job.values, {.keep = how_.keep, .unlock = how_.unlock});
-    for (const auto& notice : outcome.notices) context_->notices.push_back(notice);
+    for (const auto& notice : outcome.notices) desk_->notices.push_back(notice);
     end(before, outcome);
     if (!outcome.failure) return record(job, "written, read back", kept(outcome));
-    context_->errors.push_back(*outcome.failure);
+    desk_->errors.push_back(*outcome.failure);
     if (outcome.all_written) return record(job, "written, read back; keeping it failed", {});
     if (outcome.rolled_back) return record(job, "not changed: everything is as it was", {});
     add_astray(job, outcome);
@@ -217,12 +217,12 @@ class Changing {
     bool settled = !outcome.failure || (!undone_ && (outcome.all_written || outcome.rolled_back));
     // A trial leaves the switch of the memory at the RAM.
     if (settled && undone_)
-      if (const auto back = put_means_back(*context_->session, undone_->journal); !back) {
-        context_->errors.push_back(back.error());
+      if (const auto back = put_means_back(*desk_->session, undone_->journal); !back) {
+        desk_->errors.push_back(back.error());
         settled = false;
       }
     if (settled) return before.settle();
-    for (auto& notice : before.notices()) context_->notices.push_back(std::move(notice));
+    for (auto& notice : before.notices()) desk_->notices.push_back(std::move(notice));
   }
 
   void add_astray(const Job& job, const session::RestoreOutcome& outcome) {
@@ -234,20 +234,20 @@ class Changing {
       error.message = fmt::format("node {}, object {}: it could not be shown to be as it was before",
                                   job.present.node, to_string(object));
       error.hint = "`pdo show` reads it when the node answers; a restart of the drive brings what is stored";
-      context_->errors.push_back(std::move(error));
+      desk_->errors.push_back(std::move(error));
     }
   }
 
   /// Whether it survives power-off: where a family has neither 1010h nor stored copies, no manual tells.
   Value kept(const session::RestoreOutcome& outcome) {
     // CiA 301, 7.5.2.13: what is not stored by 1010h is lost.
-    const auto& profile = *context_->profile;
+    const auto& profile = *desk_->profile;
     const bool stores =
         profile.rules.store.objects && profile.dictionary.find({objects::kStoreIndex, 1}) != nullptr;
     if (outcome.kept == session::Kept::unknown) return stores && !how_.keep ? Value(false) : Value();
-    const bool told = context_->profile->rules.store.objects || copies_;
+    const bool told = desk_->profile->rules.store.objects || copies_;
     if (outcome.kept == session::Kept::yes && !told) {
-      context_->notices.emplace_back(
+      desk_->notices.emplace_back(
           "whether this drive keeps its PDOs is not stated: `pdo show` after a power cycle tells");
       return {};
     }
@@ -261,17 +261,17 @@ class Changing {
                {"kept", state.starts_with("written") ? kept_text(kept) : Value(), Show::text}};
     List pdos;
     for (const auto& pdo : job.wanted.pdos) {
-      const auto lines = pdo_lines(context_->profile, pdo, job.present.node, context_->chinese);
+      const auto lines = pdo_lines(desk_->profile, pdo, job.present.node, desk_->chinese);
       for (std::size_t i = 0; i < lines.size(); ++i)
         out.push_back(
             {i == 0 ? canopen::name(pdo.direction, pdo.number) : std::string(), lines[i], Show::text});
-      pdos.emplace_back(pdo_record(context_->profile, pdo, job.present.node, context_->chinese));
+      pdos.emplace_back(pdo_record(desk_->profile, pdo, job.present.node, desk_->chinese));
     }
     out.push_back({"pdos", std::move(pdos), Show::json});
     return out;
   }
 
-  Context* context_;
+  show::Desk* desk_;
   const PdoEdit* edit_;
   PdoChanging how_;
   bool copies_ = false;
@@ -281,8 +281,8 @@ class Changing {
 
 }  // namespace
 
-Result<Value> change_pdos(Context& context, const PdoEdit& edit, const PdoChanging& how) {
-  return Changing(context, edit, how).run();
+Result<Value> change_pdos(show::Desk& desk, const PdoEdit& edit, const PdoChanging& how) {
+  return Changing(desk, edit, how).run();
 }
 
 }  // namespace servoctl::commands

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "canopen/pdo.hpp"
-#include "commands/command.hpp"
 #include "session/write_plan.hpp"
+#include "show/desk.hpp"
 
 /// What the commands that change PDOs share.
 namespace servoctl::commands {
@@ -47,9 +47,9 @@ Result<canopen::Pdo> find_pdo(const PresentPdos& present, std::string_view name)
 
 /// Reads the PDOs of all nodes, lets `edit` say what is wanted, and checks it, all before the first write;
 /// then changes node after node, each as a whole. With --dry-run the answer is the frames. Asks before it
-/// writes: whoever sends and receives these PDOs is concerned. Failures of a node go to `context.errors`.
+/// writes: whoever sends and receives these PDOs is concerned. Failures of a node go to `desk.errors`.
 /// While a node is written to, its PdoRecord stands; one that is the file is put back and goes away.
-Result<report::Value> change_pdos(Context& context, const PdoEdit& edit, const PdoChanging& how);
+Result<report::Value> change_pdos(show::Desk& desk, const PdoEdit& edit, const PdoChanging& how);
 
 /// A mapped object as it is named on the command line: `statusword`, `0x6041:0`, with the number of bits
 /// where the dictionary does not tell it (`0x2105:1/16`), or a gap in an RPDO (`gap8`). Errc::usage.

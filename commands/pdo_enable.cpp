@@ -2,6 +2,7 @@
 
 #include "commands/change.hpp"
 #include "commands/pdo_changing.hpp"
+#include "commands/setting_options.hpp"
 
 namespace servoctl::commands {
 namespace {

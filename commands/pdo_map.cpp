@@ -4,8 +4,10 @@
 #include "base/duration.hpp"
 #include "base/number.hpp"
 #include "commands/change.hpp"
+#include "commands/command.hpp"
 #include "commands/pdo_changing.hpp"
 #include "commands/pdo_check.hpp"
+#include "commands/setting_options.hpp"
 
 namespace servoctl::commands {
 namespace {

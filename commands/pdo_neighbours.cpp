@@ -51,7 +51,7 @@ std::optional<Owner> owner_of(const Pdo& pdo) {
 
 class Neighbours {
  public:
-  Neighbours(Context& context, std::span<const PdoNeighbour> nodes) : context_(&context), nodes_(nodes) {}
+  Neighbours(show::Desk& desk, std::span<const PdoNeighbour> nodes) : desk_(&desk), nodes_(nodes) {}
 
   Result<void> run() {
     for (const auto& node : nodes_)
@@ -77,8 +77,8 @@ class Neighbours {
 
   /// Whether the node is there and the PDO has its pre-defined CAN-ID.
   Result<bool> ask(Owner& owner) const {
-    const session::Hurry hurry(*context_->session, kPatience, 0);
-    const auto answer = context_->session->upload(owner.node, {owner.pdo.communication_index(), 1});
+    const session::Hurry hurry(*desk_->session, kPatience, 0);
+    const auto answer = desk_->session->upload(owner.node, {owner.pdo.communication_index(), 1});
     if (!answer && (answer.error().code == Errc::bus || answer.error().code == Errc::interrupted))
       return tl::unexpected<Error>(answer.error());
     if (!answer) return false;
@@ -93,7 +93,7 @@ class Neighbours {
     const auto name = canopen::name(theirs.direction, theirs.number);
     const auto id = can_id_text(pdo.cob_id);
     if (pdo.direction == PdoDirection::receive && theirs.direction == PdoDirection::transmit) {
-      context_->notices.push_back(
+      desk_->notices.push_back(
           fmt::format("node {}: {} takes what {} of node {} sends with {}", node, mine, name, other, id));
       return {};
     }
@@ -107,14 +107,14 @@ class Neighbours {
         fmt::format("take another one, or `pdo disable {} -n {}` first", name, other)));
   }
 
-  Context* context_;
+  show::Desk* desk_;
   std::span<const PdoNeighbour> nodes_;
 };
 
 }  // namespace
 
-Result<void> check_neighbours(Context& context, std::span<const PdoNeighbour> nodes) {
-  return Neighbours(context, nodes).run();
+Result<void> check_neighbours(show::Desk& desk, std::span<const PdoNeighbour> nodes) {
+  return Neighbours(desk, nodes).run();
 }
 
 }  // namespace servoctl::commands

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "canopen/pdo.hpp"
-#include "commands/command.hpp"
+#include "show/desk.hpp"
 
 namespace servoctl::commands {
 
@@ -20,6 +20,6 @@ struct PdoNeighbour {
 /// the node whose PDO stands there in the pre-defined connection set (CiA 301, 7.3.5), which is asked. Two
 /// TPDOs with one CAN-ID collide, and a CAN-ID that another RPDO has commands two drives at once.
 /// Errc::refused. An RPDO that listens to another node's TPDO is a link, and told as a notice.
-Result<void> check_neighbours(Context& context, std::span<const PdoNeighbour> nodes);
+Result<void> check_neighbours(show::Desk& desk, std::span<const PdoNeighbour> nodes);
 
 }  // namespace servoctl::commands

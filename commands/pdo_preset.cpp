@@ -3,7 +3,9 @@
 
 #include "base/text.hpp"
 #include "commands/change.hpp"
+#include "commands/command.hpp"
 #include "commands/pdo_recipes.hpp"
+#include "commands/setting_options.hpp"
 
 namespace servoctl::commands {
 namespace {

@@ -45,17 +45,17 @@ std::string text_of(const Identity& drive) {
 
 }  // namespace
 
-PdoRecord::PdoRecord(const Context& context, std::uint8_t node)
-    : context_(&context),
+PdoRecord::PdoRecord(const show::Desk& desk, std::uint8_t node)
+    : desk_(&desk),
       node_(node),
-      name_(fmt::format("pdos-before-{}-node-{}", bus_name(context.session->url()), node)) {}
+      name_(fmt::format("pdos-before-{}-node-{}", bus_name(desk.session->url()), node)) {}
 
 /// Of any drive that has been this node. The journal is written last and removed first.
 std::vector<fs::path> PdoRecord::found() const {
   std::vector<fs::path> out;
-  if (context_->state_folder.empty()) return out;
+  if (desk_->state_folder.empty()) return out;
   std::error_code none;
-  for (fs::directory_iterator at(context_->state_folder, none), end; !none && at != end; at.increment(none)) {
+  for (fs::directory_iterator at(desk_->state_folder, none), end; !none && at != end; at.increment(none)) {
     const auto name = at->path().filename().string();
     const bool ours = name.starts_with(name_) && name.size() > name_.size() &&
                       (name[name_.size()] == '.' || name[name_.size()] == '-');
@@ -67,22 +67,22 @@ std::vector<fs::path> PdoRecord::found() const {
 }
 
 Result<void> PdoRecord::begin(const session::Values& present, bool keep, bool unlock) {
-  if (context_->state_folder.empty()) return {};
-  auto drive = session::read_identity(*context_->session, node_);
+  if (desk_->state_folder.empty()) return {};
+  auto drive = session::read_identity(*desk_->session, node_);
   if (!drive) return tl::unexpected<Error>(drive.error());
   for (const auto& older : found())
     if (const auto backup = read_backup(older); backup && !is_other_drive(backup->identity, *drive))
       return {};
-  file_ = context_->state_folder / (name_ + name_of_drive(*drive) + ".json");
+  file_ = desk_->state_folder / (name_ + name_of_drive(*drive) + ".json");
   session::Snapshot snapshot;
   snapshot.identity = std::move(*drive);
   for (const auto& [object, data] : present) snapshot.entries.push_back({object, data, {}});
   RestoreJournal journal;
-  journal.checksum = checksum(make_backup(*context_, snapshot));
+  journal.checksum = checksum(make_backup(*desk_, snapshot));
   journal.node = node_;
   journal.keep = keep;
   journal.unlock = unlock;
-  const auto noted = note_before(*context_, file_, snapshot, std::move(journal));
+  const auto noted = note_before(*desk_, file_, snapshot, std::move(journal));
   mine_ = noted.has_value();
   return noted;
 }
@@ -93,7 +93,7 @@ Result<std::optional<RestoreJournal>> PdoRecord::take_up(const fs::path& file) {
     if (!fs::equivalent(file, record, none)) continue;
     const auto backup = read_backup(record);
     if (!backup) return tl::unexpected<Error>(backup.error());
-    const auto drive = session::read_identity(*context_->session, node_);
+    const auto drive = session::read_identity(*desk_->session, node_);
     if (!drive) return tl::unexpected<Error>(drive.error());
     if (is_other_drive(backup->identity, *drive))
       return fail(Errc::refused,
@@ -102,7 +102,7 @@ Result<std::optional<RestoreJournal>> PdoRecord::take_up(const fs::path& file) {
                   "put that drive back to its node, or give this one the PDOs by `pdo save` and `pdo apply`");
     mine_ = true;
     file_ = record;
-    return read_journal(*context_, journal_of(record));
+    return read_journal(*desk_, journal_of(record));
   }
   return std::optional<RestoreJournal>();
 }
@@ -134,15 +134,15 @@ std::vector<std::string> PdoRecord::notices() const {
   const auto records = found();
   std::vector<std::string> out;
   if (records.empty()) return out;
-  const auto drive = session::read_identity(*context_->session, node_);
+  const auto drive = session::read_identity(*desk_->session, node_);
   for (const auto& record : records)
     out.push_back(notice_of(record, drive ? std::optional(*drive) : std::nullopt));
   return out;
 }
 
-void tell_cut_off_changes(Context& context) {
-  for (const auto node : context.nodes)
-    for (auto& notice : PdoRecord(context, node).notices()) context.notices.push_back(std::move(notice));
+void tell_cut_off_changes(show::Desk& desk) {
+  for (const auto node : desk.nodes)
+    for (auto& notice : PdoRecord(desk, node).notices()) desk.notices.push_back(std::move(notice));
 }
 
 }  // namespace servoctl::commands

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "commands/command.hpp"
 #include "commands/restore_journal.hpp"
 #include "session/scan.hpp"
 #include "session/write_plan.hpp"
+#include "show/desk.hpp"
 
 namespace servoctl::commands {
 
@@ -21,8 +21,8 @@ namespace servoctl::commands {
 /// `kill -9`, a pulled cable). Without such a folder nothing is kept.
 class PdoRecord {
  public:
-  /// `context` outlives it.
-  PdoRecord(const Context& context, std::uint8_t node);
+  /// `desk` outlives it.
+  PdoRecord(const show::Desk& desk, std::uint8_t node);
 
   /// Before the first write. A record that stands there already is older, and stays what it is. Errc::file.
   Result<void> begin(const session::Values& present, bool keep, bool unlock);
@@ -40,14 +40,14 @@ class PdoRecord {
   std::string notice_of(const std::filesystem::path& record,
                         const std::optional<session::Identity>& drive) const;
 
-  const Context* context_;
+  const show::Desk* desk_;
   std::uint8_t node_;
   std::string name_;            ///< With which the names of all records of this node begin.
   std::filesystem::path file_;  ///< Of begin() or take_up().
   bool mine_ = false;
 };
 
-/// Adds to the notices which nodes of the context have such a record.
-void tell_cut_off_changes(Context& context);
+/// Adds to the notices which nodes of the desk have such a record.
+void tell_cut_off_changes(show::Desk& desk);
 
 }  // namespace servoctl::commands

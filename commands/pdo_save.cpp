@@ -2,6 +2,7 @@
 
 #include "base/file.hpp"
 #include "base/text.hpp"
+#include "commands/command.hpp"
 #include "commands/pdo_recipes.hpp"
 #include "commands/pdo_report.hpp"
 #include "session/pdo_setup.hpp"

@@ -6,11 +6,11 @@
 
 namespace servoctl::commands {
 
-Result<std::vector<PdoView>> read_views(Context& context, std::uint8_t node) {
-  auto pdos = session::read_pdos(*context.session, context.profile, node);
+Result<std::vector<PdoView>> read_views(show::Desk& desk, std::uint8_t node) {
+  auto pdos = session::read_pdos(*desk.session, desk.profile, node);
   if (!pdos) return tl::unexpected<Error>(pdos.error());
   std::vector<PdoView> out;
-  for (auto& pdo : *pdos) out.push_back(make_view(context.profile, context.chinese, node, std::move(pdo)));
+  for (auto& pdo : *pdos) out.push_back(make_view(desk.profile, desk.chinese, node, std::move(pdo)));
   return out;
 }
 

@@ -10,7 +10,7 @@
 namespace servoctl::commands {
 
 /// The PDOs of a node as the drive tells them.
-Result<std::vector<PdoView>> read_views(Context& context, std::uint8_t node);
+Result<std::vector<PdoView>> read_views(show::Desk& desk, std::uint8_t node);
 
 /// The one of this name among the PDOs of a node. Errors as find_pdo().
 Result<const PdoView*> find_view(std::span<const PdoView> views, std::uint8_t node, std::string_view name);

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "commands/command.hpp"
+#include "commands/duration_option.hpp"
 #include "commands/listening.hpp"
 #include "commands/pdo_use.hpp"
 #include "commands/rhythm_table.hpp"

@@ -27,16 +27,16 @@ Value planned_frames(std::span<const Change> changes) {
   return table;
 }
 
-Result<Value> planned_changes(Context& context, std::span<const Change> changes,
+Result<Value> planned_changes(show::Desk& desk, std::span<const Change> changes,
                               const WriteOptions& options) {
   session::Rehearsal rehearsal;
-  KeepingNodes keeping(context, changes);
+  KeepingNodes keeping(desk, changes);
   keeping.rehearse(rehearsal);
   if (const auto opened = keeping.open(options); !opened) return tl::unexpected<Error>(opened.error());
   add_writes(changes, rehearsal);
   const std::vector<Result<session::Written>> written(changes.size(), session::Written{});
   keeping.close(written);
-  return planned_messages(context, rehearsal.messages());
+  return planned_messages(desk, rehearsal.messages());
 }
 
 }  // namespace servoctl::commands

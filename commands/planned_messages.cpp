@@ -13,8 +13,8 @@ std::string object_text(const session::PlannedMessage& message) {
   return message.frame->id == canopen::kNmt ? "NMT" : "error control";
 }
 
-std::string name_text(const Context& context, const session::PlannedMessage& message) {
-  if (message.write) return drive::target_at(context.profile, message.write->object).label();
+std::string name_text(const show::Desk& desk, const session::PlannedMessage& message) {
+  if (message.write) return drive::target_at(desk.profile, message.write->object).label();
   if (message.frame->id != canopen::kNmt) return message.frame->remote ? "node guarding" : "heartbeat";
   return std::string(canopen::name(static_cast<canopen::NmtCommand>(message.frame->data[0])));
 }
@@ -29,13 +29,12 @@ std::string frame_text(const session::PlannedMessage& message) {
   return frame ? can::to_string(*frame) : std::string();
 }
 
-report::Value planned_messages(const Context& context, std::span<const session::PlannedMessage> messages) {
+report::Value planned_messages(const show::Desk& desk, std::span<const session::PlannedMessage> messages) {
   report::Table table;
   table.columns = {{"node"}, {"object"}, {"name"}, {"when"}, {"frame"}};
   table.json_only = messages.empty();  // Notices and errors say why.
   for (const auto& message : messages)
-    table.rows.push_back({message.node, object_text(message),
-                          report::text_or_null(name_text(context, message)),
+    table.rows.push_back({message.node, object_text(message), report::text_or_null(name_text(desk, message)),
                           report::text_or_null(message.when), frame_text(message)});
   return table;
 }

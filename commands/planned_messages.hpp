@@ -2,8 +2,8 @@
 
 #include <span>
 
-#include "commands/command.hpp"
 #include "session/rehearsal.hpp"
+#include "show/desk.hpp"
 
 namespace servoctl::commands {
 
@@ -11,6 +11,6 @@ namespace servoctl::commands {
 std::string frame_text(const session::PlannedMessage& message);
 
 /// What --dry-run shows of commands that change a drive: `node object name when frame`, one row a message.
-report::Value planned_messages(const Context& context, std::span<const session::PlannedMessage> messages);
+report::Value planned_messages(const show::Desk& desk, std::span<const session::PlannedMessage> messages);
 
 }  // namespace servoctl::commands

@@ -49,8 +49,8 @@ void add_bridges(session::Session& session, const drive::Profile& profile, std::
   }
 }
 
-List reading_row(const Context& context, const Reading& reading) {
-  const bool chinese = context.chinese;
+List reading_row(const show::Desk& desk, const Reading& reading) {
+  const bool chinese = desk.chinese;
   const auto& target = reading.target;
   const auto name = chinese ? target.label_zh() : target.label();
   List row{reading.node, to_string(target.address), target.address.index, target.address.sub,
@@ -65,7 +65,7 @@ List reading_row(const Context& context, const Reading& reading) {
                                                 : std::nullopt;
     row.insert(row.end(), {Value("-"), type ? Value(od::name(*type)) : Value(), Value(), Value(), Value(),
                            Value(), Value(), Value(), Value(), Value(), Value(),
-                           error_record(reading.bytes.error(), abort_words(context, reading.bytes.error()))});
+                           error_record(reading.bytes.error(), abort_words(desk, reading.bytes.error()))});
     return row;
   }
   const auto& bytes = *reading.bytes;
@@ -152,8 +152,8 @@ FamiliarValue familiar_value(const drive::Meaning& meaning, const od::Value& val
           Record{{"value", familiar->value}, {"unit", familiar->unit}}};
 }
 
-Table reading_table(Context& context, std::vector<Reading> readings) {
-  if (context.profile != nullptr) add_bridges(*context.session, *context.profile, readings);
+Table reading_table(show::Desk& desk, std::vector<Reading> readings) {
+  if (desk.profile != nullptr) add_bridges(*desk.session, *desk.profile, readings);
   Table table;
   table.columns = {{"node"},
                    {"object", "", Show::text},
@@ -174,8 +174,8 @@ Table reading_table(Context& context, std::vector<Reading> readings) {
                    {"bytes", "", Show::json},
                    {"error", "", Show::json}};
   for (const auto& reading : readings) {
-    table.rows.push_back(reading_row(context, reading));
-    if (!reading.bytes) context.errors.push_back(reading.bytes.error());
+    table.rows.push_back(reading_row(desk, reading));
+    if (!reading.bytes) desk.errors.push_back(reading.bytes.error());
   }
   table.json_only =
       std::none_of(readings.begin(), readings.end(), [](const Reading& r) { return r.bytes.has_value(); });

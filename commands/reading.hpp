@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "commands/command.hpp"
 #include "drive/naming.hpp"
 #include "drive/quantity.hpp"
 #include "report/value.hpp"
+#include "show/desk.hpp"
 
 /// Values read from drives, taken apart for a reader and for JSON.
 namespace servoctl::commands {
@@ -44,8 +44,8 @@ struct FamiliarValue {
 FamiliarValue familiar_value(const drive::Meaning& meaning, const od::Value& value);
 
 /// Readings as a table, with what the drive's gear makes of them; an `error` in the rows that failed. Errors
-/// are added to `context.errors`.
-report::Table reading_table(Context& context, std::vector<Reading> readings);
+/// are added to `desk.errors`.
+report::Table reading_table(show::Desk& desk, std::vector<Reading> readings);
 
 /// Bytes of the object by its type; 0 when the type is not known or of no fixed size.
 std::size_t size_of(const Reading& reading);

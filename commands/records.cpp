@@ -53,12 +53,12 @@ std::string range_of(const od::Parameter& p) {
 
 }  // namespace
 
-std::string abort_words(const Context& context, std::uint32_t code) {
-  return abort_words(context.profile, context.chinese, code);
+std::string abort_words(const show::Desk& desk, std::uint32_t code) {
+  return abort_words(desk.profile, desk.chinese, code);
 }
 
-std::string abort_words(const Context& context, const Error& error) {
-  return error.abort_code ? abort_words(context.profile, false, *error.abort_code) : std::string();
+std::string abort_words(const show::Desk& desk, const Error& error) {
+  return error.abort_code ? abort_words(desk.profile, false, *error.abort_code) : std::string();
 }
 
 std::string abort_words(const drive::Profile* profile, bool chinese, std::uint32_t code) {
@@ -73,15 +73,15 @@ std::string abort_words(const drive::Profile* profile, bool chinese, std::uint32
   return canopen::sdo_abort_text(code);
 }
 
-void name_abort(const Context& context, Error& error) {
+void name_abort(const show::Desk& desk, Error& error) {
   if (!error.abort_code) return;
   const auto generic = canopen::sdo_abort_text(*error.abort_code);
-  const auto words = abort_words(context, *error.abort_code);
+  const auto words = abort_words(desk, *error.abort_code);
   if (words == generic) return;
   const auto at = error.message.find(generic);
   if (!canopen::is_standard_sdo_abort(*error.abort_code) && at != std::string::npos)
     error.message.replace(at, generic.size(), words);
-  else if (context.chinese)
+  else if (desk.chinese)
     error.message += " — " + words;
 }
 

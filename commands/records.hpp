@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "commands/command.hpp"
 #include "od/parameter.hpp"
 #include "report/value.hpp"
+#include "show/desk.hpp"
 
 /// The records that scripts rely on (docs/json.md), built in one place.
 namespace servoctl::commands {
@@ -16,13 +16,13 @@ namespace servoctl::commands {
 /// What an abort code means: the manual's own words where the family's rules have them in this language, else
 /// those of CiA 301. `profile` may be null.
 std::string abort_words(const drive::Profile* profile, bool chinese, std::uint32_t code);
-std::string abort_words(const Context& context, std::uint32_t code);
+std::string abort_words(const show::Desk& desk, std::uint32_t code);
 /// Of the abort code of an error, in English, for records; empty when it has none.
-std::string abort_words(const Context& context, const Error& error);
+std::string abort_words(const show::Desk& desk, const Error& error);
 
 /// Puts these words into the message of an abort: in place of "not listed in CiA 301", or behind the
 /// standard's words where people read Chinese.
-void name_abort(const Context& context, Error& error);
+void name_abort(const show::Desk& desk, Error& error);
 
 /// An error as it stands in JSON. `abort_words`: what its abort code means on this drive; empty: as in CiA
 /// 301.

@@ -146,7 +146,6 @@ Result<void> send(Context& context, const ReplayPlan& plan, const ReplayDrives& 
 
 /// A recording is sent to the drives it was made with: where a family is named, they are of it.
 Result<void> hold_drives(Context& context, const ReplayDrives& drives) {
-  if (!context.hold_family) return {};
   const std::vector<std::uint8_t> nodes(drives.present.begin(), drives.present.end());
   return context.hold_family(nodes, context.profile, true);
 }
@@ -174,7 +173,8 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   if (!text) return tl::unexpected<Error>(text.error());
   const auto drives = find_drives(context, *text);
   if (!drives) return tl::unexpected<Error>(drives.error());
-  const auto plan = plan_replay(context, arguments, *text, *drives);
+  const auto plan = plan_replay(
+      context, {.only = arguments.all("--only"), .of_master = arguments.has("--master")}, *text, *drives);
   tell_plan(context, plan, file);
   if (plan.seen == 0) return no_frames(file);
   if (plan.frames.size() > 1 && plan.frames.back().time == Duration::zero())

@@ -44,12 +44,12 @@ std::set<std::uint8_t> nodes_in(std::string_view recording) {
 /// One choice of frames; sees all of the recording, for what PDOs carry is learnt on the way.
 class Choice {
  public:
-  Choice(const Context& context, const Arguments& arguments, const ReplayDrives& drives)
-      : profile_(context.profile),
+  Choice(const show::Desk& desk, const ReplayChoice& choice, const ReplayDrives& drives)
+      : profile_(desk.profile),
         drives_(&drives),
-        only_(arguments.all("--only")),
-        master_(arguments.has("--master")),
-        decoder_({context.profile, false, false}) {
+        only_(choice.only),
+        master_(choice.of_master),
+        decoder_({desk.profile, false, false}) {
     for (const auto& [node, values] : drives.pdos) decoder_.pdos().set(node, values);
   }
 
@@ -193,12 +193,12 @@ std::size_t ReplayPlan::dangerous() const {
                          [](std::size_t sum, const auto& kind) { return sum + kind.second; });
 }
 
-Result<ReplayDrives> find_drives(Context& context, std::string_view recording) {
+Result<ReplayDrives> find_drives(show::Desk& desk, std::string_view recording) {
   ReplayDrives out;
   std::vector<session::SdoRequest> questions;
   for (const auto node : nodes_in(recording))
     questions.push_back({.node = node, .object = objects::kStatusword});
-  const auto answers = context.session->transfer(questions);
+  const auto answers = desk.session->transfer(questions);
   std::vector<std::uint8_t> present;
   for (std::size_t i = 0; i < answers.size(); ++i) {
     const auto code = answers[i] ? Errc::sdo_abort : answers[i].error().code;
@@ -206,7 +206,7 @@ Result<ReplayDrives> find_drives(Context& context, std::string_view recording) {
     if (code == Errc::sdo_abort) present.push_back(questions[i].node);
   }
   out.present.insert(present.begin(), present.end());
-  const auto read = session::read_pdo_values(*context.session, context.profile, present);
+  const auto read = session::read_pdo_values(*desk.session, desk.profile, present);
   for (std::size_t i = 0; i < read.size(); ++i) {
     if (!read[i] && (read[i].error().code == Errc::bus || read[i].error().code == Errc::interrupted))
       return tl::unexpected<Error>(read[i].error());
@@ -219,9 +219,9 @@ Result<ReplayDrives> find_drives(Context& context, std::string_view recording) {
   return out;
 }
 
-ReplayPlan plan_replay(const Context& context, const Arguments& arguments, std::string_view recording,
+ReplayPlan plan_replay(const show::Desk& desk, const ReplayChoice& wanted, std::string_view recording,
                        const ReplayDrives& drives) {
-  Choice choice(context, arguments, drives);
+  Choice choice(desk, wanted, drives);
   std::size_t extended = 0;
   auto strays = for_each_frame(recording, [&](const can::LogFrame& line) {
     if (is_of_canopen(line.frame)) choice.add(line);

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "can/trace.hpp"
-#include "commands/command.hpp"
 #include "commands/recording.hpp"
 #include "session/write_plan.hpp"
+#include "show/desk.hpp"
 
 namespace servoctl::commands {
 
@@ -22,7 +22,7 @@ struct ReplayDrives {
 };
 
 /// Asks the nodes of the recording whether they are there, and what their PDOs are. Errc::bus or interrupted.
-Result<ReplayDrives> find_drives(Context& context, std::string_view recording);
+Result<ReplayDrives> find_drives(show::Desk& desk, std::string_view recording);
 
 /// Kinds of frames in words (`NMT start`, `write of Controlword`), and how many there are of each.
 using FrameKinds = std::map<std::string, std::size_t>;
@@ -42,10 +42,16 @@ struct ReplayPlan {
   std::size_t dangerous() const;
 };
 
-/// Chooses the frames by `--only` and `--master`; reports of the controller and 29-bit identifiers are none
+/// Which frames are wanted.
+struct ReplayChoice {
+  std::span<const std::string> only;  ///< Services, of kServices; empty: all.
+  bool of_master = false;             ///< Only what a master sends.
+};
+
+/// Chooses the frames; reports of the controller and 29-bit identifiers are none
 /// that CANopen sends. With a family, writes that take effect after a restart alone count as harmless;
 /// without one, every write from 2000h on counts as one that can move.
-ReplayPlan plan_replay(const Context& context, const Arguments& arguments, std::string_view recording,
+ReplayPlan plan_replay(const show::Desk& desk, const ReplayChoice& choice, std::string_view recording,
                        const ReplayDrives& drives);
 
 /// `1 NMT start, 2 SYNC, 12 write of Target velocity`; of many kinds the first.

@@ -5,6 +5,7 @@
 #include "commands/restore_journal.hpp"
 #include "commands/restoring.hpp"
 #include "commands/selection.hpp"
+#include "commands/setting_options.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -40,7 +41,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   if (const auto alone = check_resume(arguments); !alone) return tl::unexpected<Error>(alone.error());
   const std::string file(arguments.text("file"));
   const auto node = context.nodes.front();
-  auto backup = read_backup(context, file, node, arguments.has("--skip-invalid"));
+  auto backup = read_backup(context, file, context.front_end, node, arguments.has("--skip-invalid"));
   if (backup)
     if (const auto kept = keep_part(context, *backup, file, arguments.text("--only")); !kept)
       return tl::unexpected<Error>(kept.error());

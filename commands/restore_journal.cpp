@@ -116,7 +116,7 @@ Result<void> check_means(const drive::Profile& profile, const RestoreJournal& jo
 
 std::filesystem::path journal_of(const std::filesystem::path& before) { return before.string() + ".journal"; }
 
-Result<std::optional<RestoreJournal>> read_journal(const Context& context,
+Result<std::optional<RestoreJournal>> read_journal(const show::Desk& desk,
                                                    const std::filesystem::path& path) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) return std::optional<RestoreJournal>();
@@ -126,7 +126,7 @@ Result<std::optional<RestoreJournal>> read_journal(const Context& context,
   if (!document) return no_journal(document.error().message);
   auto journal = parse_journal(*document, path.string());
   if (!journal) return tl::unexpected<Error>(journal.error());
-  if (const auto fits = check_means(*context.profile, *journal, path.string()); !fits)
+  if (const auto fits = check_means(*desk.profile, *journal, path.string()); !fits)
     return tl::unexpected<Error>(fits.error());
   return std::optional(std::move(*journal));
 }
@@ -137,15 +137,15 @@ Result<void> write_journal(const std::filesystem::path& path, const RestoreJourn
   return write_file_atomically(path, report::to_json(document) + "\n");
 }
 
-Result<void> note_before(const Context& context, const std::filesystem::path& before,
+Result<void> note_before(const show::Desk& desk, const std::filesystem::path& before,
                          const session::Snapshot& snapshot, RestoreJournal journal) {
   if (journal.means.empty())
-    for (const auto& mean : drive::means_of_writing(*context.profile)) {
-      const auto value = context.session->upload(journal.node, mean.first);
+    for (const auto& mean : drive::means_of_writing(*desk.profile)) {
+      const auto value = desk.session->upload(journal.node, mean.first);
       if (value) journal.means.emplace_back(mean.first, *value);
       if (!value && value.error().code != Errc::sdo_abort) return tl::unexpected<Error>(value.error());
     }
-  const auto saved = write_file_atomically(before, backup_text(context, make_backup(context, snapshot)));
+  const auto saved = write_file_atomically(before, backup_text(desk, make_backup(desk, snapshot)));
   return saved ? write_journal(journal_of(before), journal) : saved;
 }
 

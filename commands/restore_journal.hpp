@@ -10,8 +10,8 @@
 #include "base/bytes.hpp"
 #include "base/object_address.hpp"
 #include "base/result.hpp"
-#include "commands/command.hpp"
 #include "session/snapshot.hpp"
+#include "show/desk.hpp"
 
 namespace servoctl::commands {
 
@@ -34,16 +34,16 @@ std::filesystem::path journal_of(const std::filesystem::path& before);
 
 /// Reads a journal; empty when there is none. It is foreign data as a backup is: Errc::file for one that
 /// cannot be understood, was changed after it was written, or is of no node, and for one that names an object
-/// that the family of the context does not write for the sake of other writes (drive::means_of_writing()), or
+/// that the family of the desk does not write for the sake of other writes (drive::means_of_writing()), or
 /// a value outside of its limits.
-Result<std::optional<RestoreJournal>> read_journal(const Context& context, const std::filesystem::path& path);
+Result<std::optional<RestoreJournal>> read_journal(const show::Desk& desk, const std::filesystem::path& path);
 
 /// Writes a journal; it is on the disk when this returns.
 Result<void> write_journal(const std::filesystem::path& path, const RestoreJournal& journal);
 
 /// Before the first write: saves what a node holds as a backup in `before`, and the journal beside it. A
 /// journal without memory switch and password gets them as they are now.
-Result<void> note_before(const Context& context, const std::filesystem::path& before,
+Result<void> note_before(const show::Desk& desk, const std::filesystem::path& before,
                          const session::Snapshot& snapshot, RestoreJournal journal);
 
 /// Memory switch and password as they were before what was cut off.

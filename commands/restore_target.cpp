@@ -40,12 +40,12 @@ Result<void> RestoreTarget::prepare() {
 
 Result<void> RestoreTarget::check_identity() {
   const bool force = choice_.force;
-  if (backup_->family != context_->profile->family && !force)
+  if (backup_->family != desk_->profile->family && !force)
     return fail(Errc::refused,
-                fmt::format("{} is of {}, not of {}", title_, backup_->family, context_->profile->family),
+                fmt::format("{} is of {}, not of {}", title_, backup_->family, desk_->profile->family),
                 "--force restores what fits all the same");
   const std::uint8_t nodes[] = {node_};
-  const auto found = session::scan(*context_->session, nodes);
+  const auto found = session::scan(*desk_->session, nodes);
   if (!found) return tl::unexpected<Error>(found.error());
   if (found->empty())
     return fail(Errc::timeout, fmt::format("node {} does not answer", node_), "`scan` shows who does");
@@ -58,14 +58,14 @@ Result<void> RestoreTarget::check_identity() {
   const bool says_firmware = backup_->identity.revision || !backup_->identity.software_version.empty();
   if (says_firmware && (backup_->identity.revision != drive.revision ||
                         backup_->identity.software_version != drive.software_version))
-    context_->notices.push_back(fmt::format(
+    desk_->notices.push_back(fmt::format(
         "node {}: the firmware differs from that of the backup: compare the values that matter", node_));
   return {};
 }
 
 /// Gains and limits are no things to change under a drive that holds a load.
 Result<void> RestoreTarget::check_standstill() const {
-  const auto word = context_->session->upload(node_, objects::kStatusword);
+  const auto word = desk_->session->upload(node_, objects::kStatusword);
   if (!word && word.error().code != Errc::sdo_abort) return tl::unexpected<Error>(word.error());
   if (!word || !drive::is_energised(drive::decode_state(static_cast<std::uint16_t>(load_le(*word)))))
     return {};
@@ -78,23 +78,23 @@ Result<void> RestoreTarget::leave_out(const Backup::Entry& entry, std::string_vi
   const auto what = fmt::format("{}:{}: {} is no setting of this drive: {}", title_, entry.line,
                                 to_string(entry.object), reason);
   if (!choice_.force) return fail(Errc::refused, what, "nothing was written; --force restores the rest");
-  context_->notices.push_back(what + "; it is left out");
+  desk_->notices.push_back(what + "; it is left out");
   return {};
 }
 
 Result<void> RestoreTarget::choose_values() {
   std::map<ObjectAddress, std::string_view> settings;
-  for (const auto& setting : drive::settings_of(*context_->profile))
+  for (const auto& setting : drive::settings_of(*desk_->profile))
     settings.emplace(setting.entry->address, setting.left_out);
   for (const auto& entry : backup_->entries) {
-    const bool address = is_address(context_->profile, entry.object);
+    const bool address = is_address(desk_->profile, entry.object);
     if (!entry.bytes || (address && !choice_.with_address)) continue;
     const auto setting = settings.find(entry.object);
     const auto reason =
         setting == settings.end() ? std::string_view("not in its data, or read-only") : setting->second;
     if (reason.empty())
       wanted_.emplace(entry.object, address ? *entry.bytes
-                                            : for_node(context_->profile, entry.object, *entry.bytes,
+                                            : for_node(desk_->profile, entry.object, *entry.bytes,
                                                        backup_->identity.node, node_));
     else if (const auto left_out = leave_out(entry, reason); !left_out)
       return left_out;
@@ -104,7 +104,7 @@ Result<void> RestoreTarget::choose_values() {
 
 /// A text and a domain are as long as what is written.
 bool RestoreTarget::same_length(ObjectAddress object, const Bytes& data) const {
-  const auto target = drive::target_at(context_->profile, object);
+  const auto target = drive::target_at(desk_->profile, object);
   const bool fixed = target.entry == nullptr || od::size_of(target.entry->type);
   return !fixed || data.size() == wanted_.at(object).size();
 }
@@ -112,7 +112,7 @@ bool RestoreTarget::same_length(ObjectAddress object, const Bytes& data) const {
 Result<void> RestoreTarget::read_present() {
   std::vector<ObjectAddress> objects;
   for (const auto& value : wanted_) objects.push_back(value.first);
-  const auto read = session::read_objects(*context_->session, node_, objects);
+  const auto read = session::read_objects(*desk_->session, node_, objects);
   if (!read) return tl::unexpected<Error>(read.error());
   for (const auto& entry : *read) {
     if (entry.bytes && same_length(entry.object, *entry.bytes)) {
@@ -138,7 +138,7 @@ std::uint32_t RestoreTarget::line_of(ObjectAddress object) const {
 
 tl::unexpected<Error> RestoreTarget::unfit(Errc code, ObjectAddress object, std::string_view what,
                                            std::string hint) const {
-  const auto name = name_of(drive::target_at(context_->profile, object));
+  const auto name = name_of(drive::target_at(desk_->profile, object));
   auto error =
       fail(code, fmt::format("{}:{}: {}: {}", title_, line_of(object), name, what), std::move(hint)).value();
   error.node = node_;
@@ -148,14 +148,14 @@ tl::unexpected<Error> RestoreTarget::unfit(Errc code, ObjectAddress object, std:
 
 /// `outside` tells whether the only thing against it is a limit.
 Result<void> RestoreTarget::check_value(ObjectAddress object, const Bytes& data, bool& outside) const {
-  const auto target = drive::target_at(context_->profile, object);
+  const auto target = drive::target_at(desk_->profile, object);
   const auto meaning = drive::fitted(drive::meaning(target, node_), data.size());
   const auto value =
       meaning.type_known ? od::decode(meaning.type, data) : Result<od::Value>(od::Value(std::uint64_t{0}));
   if (!od::writable(meaning.access))
     return unfit(Errc::negative, object, "is read-only", "nothing was written");
   if (!value) return unfit(Errc::negative, object, value.error().message, "nothing was written");
-  if (const auto free = check_cob_id(context_->profile, object, data, node_); !free)
+  if (const auto free = check_cob_id(desk_->profile, object, data, node_); !free)
     return unfit(Errc::refused, object, free.error().message, "nothing was written; " + free.error().hint);
   const auto limits = meaning.type_known ? drive::check_limits(meaning, *value) : Result<void>{};
   outside = !limits;
@@ -197,7 +197,7 @@ Result<void> RestoreTarget::check_pdos() {
   };
   if (std::none_of(wanted_.begin(), wanted_.end(), changes)) return {};
   const std::uint8_t nodes[] = {node_};
-  auto values = std::move(session::read_pdo_values(*context_->session, context_->profile, nodes).front());
+  auto values = std::move(session::read_pdo_values(*desk_->session, desk_->profile, nodes).front());
   if (!values) return tl::unexpected<Error>(values.error());
   const auto present = session::pdos_of(*values);
   for (const auto& [object, data] : wanted_)
@@ -213,7 +213,7 @@ Result<void> RestoreTarget::check_pdos() {
     };
     const auto now = std::find_if(wanted.begin(), wanted.end(), same);
     if (now == wanted.end() || std::none_of(wanted_.begin(), wanted_.end(), of_it)) continue;
-    if (const auto fits = check_pdo(*context_->profile, was, *now, wanted); !fits)
+    if (const auto fits = check_pdo(*desk_->profile, was, *now, wanted); !fits)
       return unfit(Errc::refused, std::find_if(wanted_.begin(), wanted_.end(), of_it)->first,
                    fits.error().message, "nothing was written; " + fits.error().hint);
   }

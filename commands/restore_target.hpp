@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "commands/backup_file.hpp"
-#include "commands/command.hpp"
 #include "session/restore.hpp"
 #include "session/scan.hpp"
+#include "show/desk.hpp"
 
 namespace servoctl::commands {
 
@@ -22,10 +22,10 @@ struct RestoreChoice {
 /// A drive that a backup is to go into: whether it may, and which values. Writes nothing.
 class RestoreTarget {
  public:
-  /// `context` and `backup` outlive it. `title` names the backup in messages.
-  RestoreTarget(Context& context, const Backup& backup, std::string title, std::uint8_t node,
+  /// `desk` and `backup` outlive it. `title` names the backup in messages.
+  RestoreTarget(show::Desk& desk, const Backup& backup, std::string title, std::uint8_t node,
                 const RestoreChoice& choice)
-      : context_(&context), backup_(&backup), title_(std::move(title)), node_(node), choice_(choice) {}
+      : desk_(&desk), backup_(&backup), title_(std::move(title)), node_(node), choice_(choice) {}
 
   /// Checks family, identity and standstill, reads what the drive holds, and checks every value against its
   /// data. Errc::refused for another or an energised drive, for what is no setting of this one, for a COB-ID
@@ -53,7 +53,7 @@ class RestoreTarget {
   Result<void> check_pdos();
   tl::unexpected<Error> unfit(Errc code, ObjectAddress object, std::string_view what, std::string hint) const;
 
-  Context* context_;
+  show::Desk* desk_;
   const Backup* backup_;
   std::string title_;
   std::uint8_t node_;

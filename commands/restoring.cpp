@@ -18,9 +18,9 @@ using report::Value;
 /// One restore, from file to outcome.
 class Restoring {
  public:
-  Restoring(Context& context, const Backup& backup, const std::string& title, std::uint8_t node,
+  Restoring(show::Desk& desk, const Backup& backup, const std::string& title, std::uint8_t node,
             const fs::path& before, const RestoringOptions& options, const fs::path& undoes)
-      : context_(&context),
+      : desk_(&desk),
         backup_(&backup),
         title_(title),
         node_(node),
@@ -31,11 +31,11 @@ class Restoring {
   Result<Restored> run() {
     const auto locked = lock();
     if (!locked) return tl::unexpected<Error>(locked.error());
-    const auto errors = context_->errors.size();
+    const auto errors = desk_->errors.size();
     auto answer = carry_through();
     if (!answer) return tl::unexpected<Error>(answer.error());
-    const bool failed = context_->errors.size() > errors;
-    context_->errors.insert(context_->errors.end(), left_over_.begin(), left_over_.end());
+    const bool failed = desk_->errors.size() > errors;
+    desk_->errors.insert(desk_->errors.end(), left_over_.begin(), left_over_.end());
     return Restored{std::move(*answer), failed};
   }
 
@@ -43,7 +43,7 @@ class Restoring {
   /// Two restores of one file and node would take each other's notes for their own.
   Result<std::vector<FileLock>> lock() const {
     std::vector<FileLock> out;
-    if (context_->dry_run) return out;
+    if (desk_->dry_run) return out;
     for (const auto& file : {journal(), undoes_}) {
       if (file.empty() || (!out.empty() && file == journal())) continue;
       auto taken = FileLock::take(file.string() + ".lock");
@@ -59,18 +59,18 @@ class Restoring {
 
   Result<Value> carry_through() {
     if (const auto known = take_up_journals(); !known) return tl::unexpected<Error>(known.error());
-    RestoreTarget target(*context_, *backup_, title_, node_, options_.choice);
+    RestoreTarget target(*desk_, *backup_, title_, node_, options_.choice);
     if (const auto fits = target.prepare(); !fits) return tl::unexpected<Error>(fits.error());
-    auto comparison = compare(context_->profile, {fmt::format("node {}", node_), node_, target.present()},
-                              {title_, node_, target.wanted()}, true, context_->chinese);
+    auto comparison = compare(desk_->profile, {fmt::format("node {}", node_), node_, target.present()},
+                              {title_, node_, target.wanted()}, true, desk_->chinese);
     left_over_ = target.left();
     const bool idle = comparison.different == 0 && !options_.keep && left_.means.empty();
     if (idle) return take_away_journals(result(std::move(comparison.record), said("nothing differs"), {}));
-    if (context_->dry_run) return planned(target);
-    if (const auto answer = context_->confirm(question(comparison.different)); !answer)
+    if (desk_->dry_run) return planned(target);
+    if (const auto answer = desk_->confirm(question(comparison.different)); !answer)
       return tl::unexpected<Error>(answer.error());
     if (const auto noted = note(target); !noted) return tl::unexpected<Error>(noted.error());
-    if (const auto back = put_means_back(*context_->session, left_); !back)
+    if (const auto back = put_means_back(*desk_->session, left_); !back)
       return tl::unexpected<Error>(back.error());
     return carry_out(target, std::move(comparison.record));
   }
@@ -80,7 +80,7 @@ class Restoring {
   /// A restore that was cut off is gone on with or undone, never begun anew: what the drive held before is in
   /// its file, and must not be replaced by what it holds now.
   Result<void> take_up_journals() {
-    const auto found = read_journal(*context_, journal());
+    const auto found = read_journal(*desk_, journal());
     if (!found) return tl::unexpected<Error>(found.error());
     if (*found && !options_.resume)
       return fail(Errc::refused,
@@ -93,7 +93,7 @@ class Restoring {
                   "leave --resume away");
     if (options_.resume) return resume(**found);
     if (undoes_.empty()) return {};
-    const auto undone = read_journal(*context_, undoes_);
+    const auto undone = read_journal(*desk_, undoes_);
     if (!undone) return tl::unexpected<Error>(undone.error());
     if (!*undone || (*undone)->node != node_) return {};
     left_ = **undone;
@@ -126,8 +126,8 @@ class Restoring {
 
   Value planned(const RestoreTarget& target) const {
     std::vector<Change> changes;
-    for (const auto& step : session::plan_writes(context_->profile, target.present(), target.wanted()))
-      changes.push_back({node_, drive::target_at(context_->profile, step.object), {}, step.data});
+    for (const auto& step : session::plan_writes(desk_->profile, target.present(), target.wanted()))
+      changes.push_back({node_, drive::target_at(desk_->profile, step.object), {}, step.data});
     return planned_frames(changes);
   }
 
@@ -146,7 +146,7 @@ class Restoring {
     journal.keep = options_.keep;
     journal.unlock = options_.unlock;
     journal.means = left_.means;
-    return note_before(*context_, before_, snapshot, std::move(journal));
+    return note_before(*desk_, before_, snapshot, std::move(journal));
   }
 
   Value take_away_journals(Value done) {
@@ -158,17 +158,17 @@ class Restoring {
 
   Result<Value> carry_out(const RestoreTarget& target, Record record) {
     const auto outcome =
-        session::restore(*context_->session, context_->profile, node_, target.present(), target.wanted(),
+        session::restore(*desk_->session, desk_->profile, node_, target.present(), target.wanted(),
                          {.roll_back = options_.roll_back, .keep = options_.keep, .unlock = options_.unlock});
-    for (const auto& notice : outcome.notices) context_->notices.push_back(notice);
-    context_->notices.push_back(fmt::format("what node {} held before is in {}", node_, before_.string()));
+    for (const auto& notice : outcome.notices) desk_->notices.push_back(notice);
+    desk_->notices.push_back(fmt::format("what node {} held before is in {}", node_, before_.string()));
     if (!outcome.failure) return take_away_journals(result(std::move(record), said("restored"), outcome));
-    context_->errors.push_back(*outcome.failure);
+    desk_->errors.push_back(*outcome.failure);
     add_astray(outcome);
     auto out = result(std::move(record), failed_state(outcome), outcome);
     // Undone to the end: nothing is left to go on with. What is being taken back itself stays begun.
     if (outcome.rolled_back && left_.checksum.empty()) return take_away_journals(std::move(out));
-    context_->notices.push_back(
+    desk_->notices.push_back(
         fmt::format("node {}: --resume goes on with it when the cause is removed", node_));
     return out;
   }
@@ -182,7 +182,7 @@ class Restoring {
       error.message = fmt::format(
           "node {}, object {}: neither the value of the backup nor the one from before is certain", node_,
           to_string(object));
-      context_->errors.push_back(std::move(error));
+      desk_->errors.push_back(std::move(error));
     }
   }
 
@@ -208,7 +208,7 @@ class Restoring {
     return out;
   }
 
-  Context* context_;
+  show::Desk* desk_;
   const Backup* backup_;
   std::string title_;
   std::uint8_t node_;
@@ -221,18 +221,9 @@ class Restoring {
 
 }  // namespace
 
-Result<void> check_resume(const Arguments& arguments) {
-  if (!arguments.has("--resume")) return {};
-  for (const auto* option : {"--keep", "--unlock", "--force", "--with-address"})
-    if (arguments.has(option))
-      return fail(Errc::usage, fmt::format("--resume goes on as it was begun: {} has no say", option),
-                  fmt::format("leave {} away", option));
-  return {};
-}
-
-Result<Restored> put_into(Context& context, const Backup& backup, const std::string& title, std::uint8_t node,
+Result<Restored> put_into(show::Desk& desk, const Backup& backup, const std::string& title, std::uint8_t node,
                           const fs::path& before, const RestoringOptions& options, const fs::path& undoes) {
-  return Restoring(context, backup, title, node, before, options, undoes).run();
+  return Restoring(desk, backup, title, node, before, options, undoes).run();
 }
 
 }  // namespace servoctl::commands

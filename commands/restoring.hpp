@@ -9,13 +9,6 @@
 
 namespace servoctl::commands {
 
-/// `--resume`, for the commands that restore.
-inline constexpr Parameter kResumeOption{
-    .name = "--resume", .help = "go on with what was cut off, as it was begun", .kind = Kind::flag};
-
-/// What is gone on with goes on as it was begun: an option that would say otherwise is refused, not dropped.
-Result<void> check_resume(const Arguments& arguments);
-
 /// How a backup goes into a drive.
 struct RestoringOptions {
   RestoreChoice choice;
@@ -35,8 +28,8 @@ struct Restored {
 /// the node holds (`before`) and a journal beside it, and carries the restore out. `title` names the backup
 /// in messages. Where a journal stands already Errc::refused, unless it is to be gone on with. `undoes` is
 /// the journal of the restore that this one takes back, where there is one; it goes away when all is done.
-/// The answer says what differed and how it ended; failures go to `context.errors`.
-Result<Restored> put_into(Context& context, const Backup& backup, const std::string& title, std::uint8_t node,
+/// The answer says what differed and how it ended; failures go to `desk.errors`.
+Result<Restored> put_into(show::Desk& desk, const Backup& backup, const std::string& title, std::uint8_t node,
                           const std::filesystem::path& before, const RestoringOptions& options,
                           const std::filesystem::path& undoes = {});
 

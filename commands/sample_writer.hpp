@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "base/printable.hpp"
-#include "commands/command.hpp"
 #include "report/json_writer.hpp"
+#include "show/desk.hpp"
 
 namespace servoctl::commands {
 
@@ -14,13 +14,13 @@ namespace servoctl::commands {
 /// would cost more than all the rest. Call flush() before every wait.
 class SampleWriter {
  public:
-  explicit SampleWriter(Context& context) : context_(&context) {}
+  explicit SampleWriter(show::Desk& desk) : desk_(&desk) {}
   ~SampleWriter() { flush(); }
   SampleWriter(const SampleWriter&) = delete;
   SampleWriter& operator=(const SampleWriter&) = delete;
 
   /// Whether samples are records now; else they are lines of text.
-  bool wants_records() const { return context_->wants_records || context_->keeps_samples; }
+  bool wants_records() const { return desk_->wants_records || desk_->keeps_samples; }
 
   void add_line(std::string_view line) {
     lines_ += printable(line);
@@ -29,14 +29,14 @@ class SampleWriter {
   /// Adds a record; `fill` is given a JsonWriter and writes the members.
   template <class Fill>
   void add_record(const Fill& fill) {
-    report::JsonWriter json(context_->keeps_samples ? kept_ : lines_);
+    report::JsonWriter json(desk_->keeps_samples ? kept_ : lines_);
     json.begin_record();
     fill(json);
     json.end_record();
-    if (!context_->keeps_samples) end_line();
+    if (!desk_->keeps_samples) end_line();
   }
   void flush() {
-    if (!lines_.empty()) context_->write(lines_);
+    if (!lines_.empty()) desk_->write(lines_);
     lines_.clear();
   }
   /// The list of records that `--json` keeps for the result.
@@ -50,7 +50,7 @@ class SampleWriter {
     if (lines_.size() >= kPiece) flush();
   }
 
-  Context* context_;
+  show::Desk* desk_;
   std::string lines_;
   std::string kept_ = "[";
 };

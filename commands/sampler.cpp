@@ -18,18 +18,18 @@ namespace {
 using report::Value;
 
 /// What the drives say their units are worth, each asked once.
-void add_bridges(Context& context, std::vector<Channel>& channels) {
-  if (context.profile == nullptr) return;
+void add_bridges(show::Desk& desk, std::vector<Channel>& channels) {
+  if (desk.profile == nullptr) return;
   std::vector<session::MeasureQuestion> questions;
   std::vector<Channel*> asking;
   for (auto& channel : channels) {
     const auto measure = drive::meaning(channel.target, channel.node).measure;
-    if (!measure || context.profile->rules.units.count(*measure) == 0) continue;
+    if (!measure || desk.profile->rules.units.count(*measure) == 0) continue;
     questions.push_back({channel.node, *measure});
     asking.push_back(&channel);
   }
   if (questions.empty()) return;
-  const auto measures = session::read_measures(*context.session, *context.profile, questions);
+  const auto measures = session::read_measures(*desk.session, *desk.profile, questions);
   for (std::size_t i = 0; i < asking.size(); ++i) {
     const auto unit = drive::meaning(asking[i]->target, asking[i]->node).unit;
     if (measures[i]) asking[i]->bridge = drive::bridge(unit, asking[i]->target.address, measures[i]->value);
@@ -64,30 +64,30 @@ Value rounded(double number) { return parse_real(fmt::format("{:.9g}", number)).
 
 }  // namespace
 
-Result<Sampler> Sampler::make(Context& context, std::span<const std::string> names) {
-  Sampler out(context);
-  for (const auto node : context.nodes)
+Result<Sampler> Sampler::make(show::Desk& desk, std::span<const std::string> names) {
+  Sampler out(desk);
+  for (const auto node : desk.nodes)
     for (const auto& name : names) {
-      const auto target = drive::resolve(context.profile, name);
+      const auto target = drive::resolve(desk.profile, name);
       if (!target) return tl::unexpected<Error>(target.error());
-      auto label = context.chinese ? target->label_zh() : target->label();
+      auto label = desk.chinese ? target->label_zh() : target->label();
       if (label.empty()) label = to_string(target->address);
-      out.channels_.push_back({node, *target, std::move(label), context.nodes.size() > 1});
+      out.channels_.push_back({node, *target, std::move(label), desk.nodes.size() > 1});
     }
   out.brought_.resize(out.channels_.size());
   out.answered_.resize(out.channels_.size());
-  add_bridges(context, out.channels_);
+  add_bridges(desk, out.channels_);
   out.find_pdos();
   return out;
 }
 
 void Sampler::find_pdos() {
-  const auto answers = session::read_pdos(*context_->session, context_->profile, context_->nodes);
+  const auto answers = session::read_pdos(*desk_->session, desk_->profile, desk_->nodes);
   for (std::size_t i = 0; i < answers.size(); ++i) {
     if (!answers[i]) continue;
     for (const auto& pdo : *answers[i]) {
       if (!pdo.is_valid() || pdo.direction != canopen::PdoDirection::transmit) continue;
-      const auto view = make_view(context_->profile, context_->chinese, context_->nodes[i], pdo);
+      const auto view = make_view(desk_->profile, desk_->chinese, desk_->nodes[i], pdo);
       for (std::size_t c = 0; c < channels_.size(); ++c)
         for (const auto& field : view.fields)
           if (channels_[c].node == view.node && channels_[c].target.address == field.entry.object)
@@ -122,7 +122,7 @@ bool Sampler::is_carried(std::size_t channel) const {
 }
 
 std::vector<Sample> Sampler::read(std::span<const std::size_t> wanted) {
-  auto& session = *context_->session;
+  auto& session = *desk_->session;
   std::vector<session::SdoRequest> requests;
   const auto begin = session.now();
   for (const auto i : wanted) {

@@ -31,9 +31,9 @@ struct Sample {
 /// Looks at objects of drives: takes what TPDOs bring, and reads by SDO what they do not.
 class Sampler {
  public:
-  /// The objects of all nodes of the context. Errc::usage for an unknown name. Asks the nodes for their PDO
+  /// The objects of all nodes of the desk. Errc::usage for an unknown name. Asks the nodes for their PDO
   /// mapping; one that does not tell it is read by SDO alone.
-  static Result<Sampler> make(Context& context, std::span<const std::string> names);
+  static Result<Sampler> make(show::Desk& desk, std::span<const std::string> names);
 
   /// Every frame that is received, in every wait (see session::Hearing). The values it brings, when it is a
   /// TPDO with some of the objects.
@@ -48,7 +48,7 @@ class Sampler {
   bool is_carried(std::size_t channel) const;
 
  private:
-  explicit Sampler(Context& context) : context_(&context) {}
+  explicit Sampler(show::Desk& desk) : desk_(&desk) {}
   void find_pdos();
 
   /// Where a channel is found in a TPDO.
@@ -59,7 +59,7 @@ class Sampler {
     std::size_t bits = 0;  ///< Of the whole PDO.
   };
 
-  Context* context_;
+  show::Desk* desk_;
   std::vector<Channel> channels_;
   std::vector<Source> sources_;
   std::vector<std::optional<Sample>> brought_;
@@ -71,7 +71,7 @@ Result<void> check_number(const Channel& channel);
 /// The same of what was read, where the dictionary does not tell.
 Result<void> check_number(const Channel& channel, ByteSpan bytes);
 
-/// The reads that fail still: of each node the first error, for `context.errors`.
+/// The reads that fail still: of each node the first error, for `desk.errors`.
 std::vector<Error> failures_of(std::span<const Sample> last);
 
 /// What was sampled of one channel: a Series with its statistics.

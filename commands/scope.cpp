@@ -8,6 +8,7 @@
 #include "base/file.hpp"
 #include "base/text.hpp"
 #include "commands/command.hpp"
+#include "commands/duration_option.hpp"
 #include "commands/listening.hpp"
 #include "commands/sampler.hpp"
 #include "commands/scope_mapping.hpp"
@@ -130,9 +131,8 @@ Result<std::vector<std::unique_ptr<ScopeMapping>>> map_objects(Context& context,
   if (context.read_only || context.dry_run)
     return fail(Errc::refused, "--map changes a TPDO of the drive, and that is forbidden",
                 "without --map the objects are read by SDO");
-  if (context.hold_family)
-    if (const auto right = context.hold_family(context.nodes, context.profile, true); !right)
-      return tl::unexpected<Error>(right.error());
+  if (const auto right = context.hold_family(context.nodes, context.profile, true); !right)
+    return tl::unexpected<Error>(right.error());
   std::string nodes;
   for (const auto node : context.nodes) append(nodes, fmt::format("{}", node));
   if (const auto sure = context.confirm(fmt::format(

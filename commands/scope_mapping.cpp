@@ -34,7 +34,7 @@ Result<Pdo> ScopeMapping::choose(std::span<const std::string> objects, Duration 
                                  const std::vector<Pdo>& pdos) const {
   Pdo out;
   for (const auto& object : objects) {
-    const auto entry = parse_mapped(*context_->profile, object);
+    const auto entry = parse_mapped(*desk_->profile, object);
     if (!entry) return tl::unexpected<Error>(entry.error());
     out.entries.push_back(*entry);
   }
@@ -44,28 +44,28 @@ Result<Pdo> ScopeMapping::choose(std::span<const std::string> objects, Duration 
     if (!is_spare(spare, before_)) continue;
     auto wanted = spare;
     wanted.entries = out.entries;
-    wanted.type = event_type(*context_->profile);
+    wanted.type = event_type(*desk_->profile);
     wanted.event = static_cast<std::uint16_t>(std::clamp<std::int64_t>(ms, 1, 0xFFFF));
     if (wanted.inhibit) wanted.inhibit = 0;
-    fits = check_mapping(*context_->profile, wanted);
+    fits = check_mapping(*desk_->profile, wanted);
     if (fits) fits = switch_on(wanted, node_);
     auto all = pdos;
     for (auto& each : all)
       if (each.direction == wanted.direction && each.number == wanted.number) each = wanted;
-    if (fits) fits = check_communication(*context_->profile, spare, wanted, all);
+    if (fits) fits = check_communication(*desk_->profile, spare, wanted, all);
     if (fits) return wanted;
   }
   return tl::unexpected<Error>(fits.error());
 }
 
 Result<void> ScopeMapping::check_still(const std::vector<session::PlannedWrite>& plan) const {
-  const bool generic = context_->profile->is_generic();
-  if (!generic && !session::needs_pre_operational(context_->profile, plan)) return {};
-  return session::check_not_energised(*context_->session, node_);
+  const bool generic = desk_->profile->is_generic();
+  if (!generic && !session::needs_pre_operational(desk_->profile, plan)) return {};
+  return session::check_not_energised(*desk_->session, node_);
 }
 
 Result<void> ScopeMapping::check_state(const std::vector<session::PlannedWrite>& plan) const {
-  const auto state = session::ask_nmt_state(*context_->session, node_);
+  const auto state = session::ask_nmt_state(*desk_->session, node_);
   if (!state) return tl::unexpected<Error>(state.error());
   if (*state != canopen::NmtState::operational)
     return fail(Errc::negative, "it is not known to be operational, and sends TPDOs only then",
@@ -75,17 +75,17 @@ Result<void> ScopeMapping::check_state(const std::vector<session::PlannedWrite>&
 
 Result<void> ScopeMapping::change(const session::Values& present, const session::Values& wanted,
                                   const session::RestoreOptions& options) {
-  auto outcome = session::change_pdos(*context_->session, context_->profile, node_, present, wanted, options);
-  for (auto& notice : outcome.notices) context_->notices.push_back(std::move(notice));
+  auto outcome = session::change_pdos(*desk_->session, desk_->profile, node_, present, wanted, options);
+  for (auto& notice : outcome.notices) desk_->notices.push_back(std::move(notice));
   if (!outcome.failure) return {};
   changed_ = !outcome.rolled_back;
   return tl::unexpected<Error>(*outcome.failure);
 }
 
 Result<void> ScopeMapping::begin(std::span<const std::string> objects, Duration period) {
-  if (context_->profile == nullptr) return fail(Errc::usage, "mapping needs the drive family", "-d FAMILY");
+  if (desk_->profile == nullptr) return fail(Errc::usage, "mapping needs the drive family", "-d FAMILY");
   const std::uint8_t nodes[] = {node_};
-  auto read = std::move(session::read_pdo_values(*context_->session, context_->profile, nodes).front());
+  auto read = std::move(session::read_pdo_values(*desk_->session, desk_->profile, nodes).front());
   if (!read) return tl::unexpected<Error>(read.error());
   before_ = std::move(*read);
   const auto wanted = choose(objects, period, session::pdos_of(before_));
@@ -93,8 +93,8 @@ Result<void> ScopeMapping::begin(std::span<const std::string> objects, Duration 
   pdo_ = *wanted;
   auto present = before_;
   const auto mapped = session::values_of(*wanted, present);
-  if (const auto full = session::complete(*context_->session, node_, present, mapped); !full) return full;
-  const auto plan = session::plan_writes(context_->profile, present, mapped);
+  if (const auto full = session::complete(*desk_->session, node_, present, mapped); !full) return full;
+  const auto plan = session::plan_writes(desk_->profile, present, mapped);
   if (const auto able = check_state(plan); !able) return able;
   if (const auto noted = record_.begin(before_, false, false); !noted) return noted;
   changed_ = true;
@@ -117,7 +117,7 @@ std::string ScopeMapping::astray() const {
   std::vector<session::SdoRequest> questions;
   const auto wanted = values_before();
   for (const auto& value : wanted) questions.push_back({.node = node_, .object = value.first});
-  const auto answers = context_->session->transfer(questions);
+  const auto answers = desk_->session->transfer(questions);
   std::string out;
   for (std::size_t i = 0; i < answers.size(); ++i)
     if (const auto object = questions[i].object; !answers[i] || *answers[i] != wanted.at(object))
@@ -129,15 +129,15 @@ std::string ScopeMapping::astray() const {
 Result<void> ScopeMapping::put_back() {
   const auto wanted = values_before();
   session::Values present;
-  if (const auto read = session::complete(*context_->session, node_, present, wanted); !read) return read;
-  const auto plan = session::plan_writes(context_->profile, present, wanted);
+  if (const auto read = session::complete(*desk_->session, node_, present, wanted); !read) return read;
+  const auto plan = session::plan_writes(desk_->profile, present, wanted);
   if (const auto able = check_still(plan); !able) return able;
   return change(present, wanted, {.roll_back = false});
 }
 
 void ScopeMapping::end() {
   if (!std::exchange(changed_, false)) return;
-  const session::Deaf deaf(*context_->session);
+  const session::Deaf deaf(*desk_->session);
   const auto done = put_back();
   changed_ = false;
   if (done) return record_.settle();
@@ -147,7 +147,7 @@ void ScopeMapping::end() {
       fmt::format("node {}: {} could not be put back as it was: {}; not as before, or not known: {}", node_,
                   canopen::name(pdo_.direction, pdo_.number), error.message, astray());
   error.hint = fmt::format("`pdo show -n {}` shows it; a restart of the drive brings its stored one", node_);
-  context_->errors.push_back(std::move(error));
+  desk_->errors.push_back(std::move(error));
 }
 
 }  // namespace servoctl::commands

@@ -5,17 +5,16 @@
 #include <string>
 
 #include "canopen/pdo.hpp"
-#include "commands/command.hpp"
 #include "commands/pdo_record.hpp"
 #include "session/restore.hpp"
+#include "show/desk.hpp"
 
 namespace servoctl::commands {
 
 /// Puts objects of one node into a TPDO that is not in use, for as long as it lives.
 class ScopeMapping {
  public:
-  ScopeMapping(Context& context, std::uint8_t node)
-      : context_(&context), node_(node), record_(context, node) {}
+  ScopeMapping(show::Desk& desk, std::uint8_t node) : desk_(&desk), node_(node), record_(desk, node) {}
   ScopeMapping(const ScopeMapping&) = delete;
   ScopeMapping& operator=(const ScopeMapping&) = delete;
   ~ScopeMapping() { end(); }
@@ -23,9 +22,9 @@ class ScopeMapping {
   /// Maps them, sent every `period`. Errc::negative or Errc::refused, with the reason, where that is not
   /// possible: no spare TPDO with an event timer, a node that is not Operational, objects that cannot be
   /// mapped, an energised drive whose family leaves Operational for it or is not known. Then nothing has
-  /// changed, or `context.errors` says what could not be put back.
+  /// changed, or `desk.errors` says what could not be put back.
   Result<void> begin(std::span<const std::string> objects, Duration period);
-  /// Puts the TPDO back as it was; what goes wrong is in `context.errors`. Ctrl-C waits for it.
+  /// Puts the TPDO back as it was; what goes wrong is in `desk.errors`. Ctrl-C waits for it.
   void end();
 
  private:
@@ -41,7 +40,7 @@ class ScopeMapping {
   session::Values values_before() const;
   std::string astray() const;
 
-  Context* context_;
+  show::Desk* desk_;
   std::uint8_t node_;
   session::Values before_;  ///< All PDOs of the node.
   canopen::Pdo pdo_;        ///< The one that is used.

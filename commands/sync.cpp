@@ -5,6 +5,7 @@
 #include "base/duration.hpp"
 #include "base/number.hpp"
 #include "commands/command.hpp"
+#include "commands/duration_option.hpp"
 #include "commands/listening.hpp"
 #include "commands/sync_end.hpp"
 #include "session/option_scope.hpp"

@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
 #include "base/file.hpp"
-#include "commands/comm_test.hpp"
-#include "commands/io_test.hpp"
+#include "commands/comm_trial.hpp"
+#include "commands/command.hpp"
+#include "commands/io_trial.hpp"
 #include "commands/motion_options.hpp"
-#include "commands/motion_tests.hpp"
+#include "commands/motion_trials.hpp"
+#include "commands/trial_options.hpp"
 #include "commands/verdict.hpp"
 
 namespace servoctl::commands {
@@ -32,8 +34,10 @@ class AllTests {
   AllTests(Context& context, const Arguments& arguments) : context_(&context), arguments_(&arguments) {}
 
   Result<report::Value> run() {
-    const auto node = one_node(*context_);
-    if (!node) return tl::unexpected<Error>(node.error());
+    auto request = motion_request(*context_, *arguments_);
+    if (!request) return tl::unexpected<Error>(request.error());
+    request_ = std::move(*request);
+    const auto node = request_->node;
     const auto jog = parse_jog_test(*arguments_, arguments_->text("speed"));
     if (!jog) return tl::unexpected<Error>(jog.error());
     const auto home = parse_home_test(*arguments_, {});
@@ -43,13 +47,13 @@ class AllTests {
     if (const std::string path(arguments_->text("--junit")); !path.empty() && !context_->dry_run)
       if (const auto possible = check_writable(path); !possible)
         return tl::unexpected<Error>(possible.error());
-    if (const auto done = add(test_communication(*context_, *node, {})); !done)
+    if (const auto done = add(test_communication(*context_, node, {})); !done)
       return tl::unexpected<Error>(done.error());
     // A motor is not moved by way of a bus that has just failed.
     bool may_move = passed(results_.back());
     const bool heard = may_move;
     // Asked here and not before the command: a drive that does not answer has failed its first test.
-    if (heard && context_->hold_family)
+    if (heard)
       if (const auto fits = context_->hold_family(context_->nodes, context_->profile, true); !fits)
         return tl::unexpected<Error>(fits.error());
     // Nothing is begun that a limit would end half way.
@@ -59,16 +63,16 @@ class AllTests {
         may_move = false;
       }
     if (!inputs->empty() && may_move)
-      if (const auto done = add(test_inputs(*context_, *node, {*inputs})); !done)
+      if (const auto done = add(test_inputs(*context_, node, {*inputs})); !done)
         return tl::unexpected<Error>(done.error());
     // What was found before is told even when a motion is refused, or not confirmed.
     if (may_move)
       if (const auto done = move(*jog, *home); !done) context_->errors.push_back(done.error());
     if (!heard)
       context_->notices.push_back(
-          fmt::format("node {}: nothing was moved, because the test of the communication failed", *node));
+          fmt::format("node {}: nothing was moved, because the test of the communication failed", node));
     if (context_->dry_run) return report::Value(std::move(plans_));
-    return verdicts(*context_, *arguments_, results_);
+    return verdicts(*context_, verdict_options(*arguments_), results_);
   }
 
  private:
@@ -78,7 +82,7 @@ class AllTests {
     return {};
   }
 
-  Result<void> add(Result<MotionTest> done) {
+  Result<void> add(Result<MotionTrial> done) {
     if (!done) return tl::unexpected<Error>(done.error());
     if (!done->result) {
       plans_.push_back(std::move(done->plan));
@@ -90,9 +94,9 @@ class AllTests {
 
   bool homes() const { return !arguments_->has("--no-home") && context_->profile->rules.motion.homing; }
 
-  Result<void> check(const JogTest& jog, const HomeTest& home) const {
-    if (auto possible = check_jog_test(*context_, *arguments_, jog); !possible || !homes()) return possible;
-    auto possible = check_home_test(*context_, *arguments_, home);
+  Result<void> check(const JogTrial& jog, const HomeTrial& home) const {
+    if (auto possible = check_jog_test(*context_, *request_, jog); !possible || !homes()) return possible;
+    auto possible = check_home_test(*context_, *request_, home);
     if (possible) return possible;
     auto error = possible.error();
     error.message = "the test home could not be run, so nothing is: " + error.message;
@@ -100,15 +104,16 @@ class AllTests {
     return fail(std::move(error));
   }
 
-  Result<void> move(const JogTest& jog, const HomeTest& home) {
-    if (const auto done = add(test_jog(*context_, *arguments_, jog)); !done) return done;
+  Result<void> move(const JogTrial& jog, const HomeTrial& home) {
+    if (const auto done = add(test_jog(*context_, *request_, jog)); !done) return done;
     if (!context_->dry_run && !passed(results_.back())) return {};
     if (!homes()) return {};
-    return add(test_home(*context_, *arguments_, home));
+    return add(test_home(*context_, *request_, home));
   }
 
   Context* context_;
   const Arguments* arguments_;
+  std::optional<MotionRequest> request_;
   std::vector<TestResult> results_;
   report::List plans_;
 };

@@ -1,5 +1,7 @@
-#include "commands/comm_test.hpp"
+#include "commands/comm_trial.hpp"
+#include "commands/command.hpp"
 #include "commands/motion_options.hpp"
+#include "commands/trial_options.hpp"
 #include "commands/verdict.hpp"
 
 namespace servoctl::commands {
@@ -12,7 +14,7 @@ constexpr Parameter kParameters[] = {
 };
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
-  CommTest test;
+  CommTrial test;
   const auto count = count_option(arguments, "--count", 1, 1'000'000, test.count);
   if (!count) return tl::unexpected<Error>(count.error());
   const auto longest = duration_option(arguments, "--longest");
@@ -24,7 +26,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
     if (!result) return tl::unexpected<Error>(result.error());
     results.push_back(std::move(*result));
   }
-  return verdicts(context, arguments, results);
+  return verdicts(context, verdict_options(arguments), results);
 }
 
 }  // namespace

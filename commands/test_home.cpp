@@ -1,5 +1,7 @@
+#include "commands/command.hpp"
 #include "commands/motion_options.hpp"
-#include "commands/motion_tests.hpp"
+#include "commands/motion_trials.hpp"
+#include "commands/trial_options.hpp"
 #include "commands/verdict.hpp"
 
 namespace servoctl::commands {
@@ -19,10 +21,12 @@ constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   const auto test = parse_home_test(arguments, arguments.text("method"));
   if (!test) return tl::unexpected<Error>(test.error());
-  auto done = test_home(context, arguments, *test);
+  const auto request = motion_request(context, arguments);
+  if (!request) return tl::unexpected<Error>(request.error());
+  auto done = test_home(context, *request, *test);
   if (!done) return tl::unexpected<Error>(done.error());
   if (!done->result) return std::move(done->plan);
-  return verdicts(context, arguments, {std::move(*done->result)});
+  return verdicts(context, verdict_options(arguments), {std::move(*done->result)});
 }
 
 }  // namespace

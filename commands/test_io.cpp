@@ -1,5 +1,7 @@
-#include "commands/io_test.hpp"
+#include "commands/command.hpp"
+#include "commands/io_trial.hpp"
 #include "commands/motion_options.hpp"
+#include "commands/trial_options.hpp"
 #include "commands/verdict.hpp"
 
 namespace servoctl::commands {
@@ -15,7 +17,7 @@ constexpr Parameter kParameters[] = {
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   if (context.nodes.size() != 1) return fail(Errc::usage, "'test io' watches one drive", "name it: -n 1");
-  InputTest test;
+  InputTrial test;
   auto expected = parse_inputs(context, arguments.text("--expect"));
   if (!expected) return tl::unexpected<Error>(expected.error());
   test.expected = std::move(*expected);
@@ -24,7 +26,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   test.length = length->value_or(test.length);
   auto result = test_inputs(context, context.nodes.front(), test);
   if (!result) return tl::unexpected<Error>(result.error());
-  return verdicts(context, arguments, {std::move(*result)});
+  return verdicts(context, verdict_options(arguments), {std::move(*result)});
 }
 
 }  // namespace

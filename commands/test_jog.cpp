@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include "base/number.hpp"
+#include "commands/command.hpp"
 #include "commands/motion_options.hpp"
-#include "commands/motion_tests.hpp"
+#include "commands/motion_trials.hpp"
+#include "commands/trial_options.hpp"
 #include "commands/verdict.hpp"
 
 namespace servoctl::commands {
@@ -24,10 +26,12 @@ constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   const auto test = parse_jog_test(arguments, arguments.text("speed"));
   if (!test) return tl::unexpected<Error>(test.error());
-  auto done = test_jog(context, arguments, *test);
+  const auto request = motion_request(context, arguments);
+  if (!request) return tl::unexpected<Error>(request.error());
+  auto done = test_jog(context, *request, *test);
   if (!done) return tl::unexpected<Error>(done.error());
   if (!done->result) return std::move(done->plan);
-  return verdicts(context, arguments, {std::move(*done->result)});
+  return verdicts(context, verdict_options(arguments), {std::move(*done->result)});
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+#include "commands/command.hpp"
 #include "commands/motion_options.hpp"
 
 namespace servoctl::commands {
@@ -19,7 +20,9 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   if (!length) return tl::unexpected<Error>(length.error());
   if (!*length) return fail(Errc::usage, "how long?", "add --for 1s");
   torque.length = **length;
-  return run_motion(context, arguments, motion_run(torque, session::plan_torque, session::run_torque));
+  const auto request = motion_request(context, arguments);
+  if (!request) return tl::unexpected<Error>(request.error());
+  return run_motion(context, *request, motion_run(torque, session::plan_torque, session::run_torque));
 }
 
 }  // namespace

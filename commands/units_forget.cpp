@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "commands/command.hpp"
 #include "commands/kept_turn.hpp"
 #include "commands/records.hpp"
 

@@ -5,6 +5,7 @@
 #include "base/file.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
+#include "commands/command.hpp"
 #include "commands/drive_rules.hpp"
 #include "commands/kept_turn.hpp"
 #include "commands/motion_options.hpp"
@@ -212,11 +213,12 @@ void add_measurement(Value& answer, const session::LearnReport& done, double gea
 }
 
 Result<Value> run(Context& context, const Arguments& arguments) {
-  const auto node = one_node(context);
-  if (!node) return tl::unexpected<Error>(node.error());
-  const auto learn = learn_of(context, arguments, *node);
+  const auto request = motion_request(context, arguments);
+  if (!request) return tl::unexpected<Error>(request.error());
+  const auto node = request->node;
+  const auto learn = learn_of(context, arguments, node);
   if (!learn) return tl::unexpected<Error>(learn.error());
-  const TurnFile file(context, *node);
+  const TurnFile file(context, node);
   if (file.path().empty())
     return fail(Errc::refused, "there is no folder to keep in what is measured",
                 "set HOME or XDG_STATE_HOME");
@@ -237,11 +239,11 @@ Result<Value> run(Context& context, const Arguments& arguments) {
     moved = true;
     return done.motion;
   };
-  auto answer = run_motion(context, arguments, motion);
+  auto answer = run_motion(context, *request, motion);
   if (!answer || !moved) return answer;
   bool kept = false;
   if (done.counts) {
-    const auto written = keep(context, *node, done, learn->gear);
+    const auto written = keep(context, node, done, learn->gear);
     kept = written.has_value();
     if (!written) context.errors.push_back(written.error());
   }

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "base/number.hpp"
+#include "commands/command.hpp"
 #include "commands/drive_rules.hpp"
 #include "commands/identity.hpp"
 #include "commands/kept_turn.hpp"

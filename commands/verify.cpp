@@ -2,6 +2,7 @@
 
 #include "commands/command.hpp"
 #include "commands/comparison.hpp"
+#include "commands/setting_options.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -19,7 +20,8 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   const auto name = arguments.text("file");
   std::optional<Backup> backup;
   if (name != kFactory) {
-    auto read = read_backup(context, name, context.nodes.front(), arguments.has("--skip-invalid"));
+    auto read =
+        read_backup(context, name, context.front_end, context.nodes.front(), arguments.has("--skip-invalid"));
     if (!read) return tl::unexpected<Error>(read.error());
     if (read->family != context.profile->family)
       return fail(Errc::refused,

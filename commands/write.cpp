@@ -1,10 +1,14 @@
 #include "commands/change.hpp"
+#include "commands/command.hpp"
 #include "commands/file_transfer.hpp"
+#include "commands/setting_options.hpp"
 #include "commands/transfer_option.hpp"
 #include "commands/type_option.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+constexpr std::string_view kPath = "write";
 
 constexpr Parameter kParameters[] = {
     {.name = "object",
@@ -76,11 +80,18 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
                                  : write_changes(context, changes, options);
 }
 
+Result<std::vector<settings::NamedValue>> setting_values(const Arguments& arguments) {
+  if (!arguments.has("value")) return settings::writes_no_value(kPath);
+  return std::vector<settings::NamedValue>{{.name = std::string(arguments.text("object")),
+                                            .value = std::string(arguments.text("value")),
+                                            .type = od::parse_data_type(arguments.text("--type"))}};
+}
+
 }  // namespace
 
 extern const Command kWrite;
 const Command kWrite{
-    .path = "write",
+    .path = kPath,
     .summary = "Write one object of a node",
     .details =
         "The value is checked against type and limits before a frame is sent. A plain number is the raw "
@@ -95,6 +106,7 @@ const Command kWrite{
     .effect = Effect::writes,
     .run = run,
     .check = check,
+    .settings = setting_values,
 };
 
 }  // namespace servoctl::commands

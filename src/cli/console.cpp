@@ -90,7 +90,7 @@ void StandardConsole::pause(std::string_view text) {
 
 bool StandardConsole::can_ask() const { return ::isatty(STDIN_FILENO) == 1 && ::isatty(STDERR_FILENO) == 1; }
 
-std::unique_ptr<commands::Keys> StandardConsole::open_keys() {
+std::unique_ptr<command::Keys> StandardConsole::open_keys() {
   return can_ask() ? TerminalKeys::open(STDIN_FILENO) : nullptr;
 }
 

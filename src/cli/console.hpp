@@ -9,7 +9,7 @@
 #include "base/printable.hpp"
 #include "base/time.hpp"
 #include "cli/live_output.hpp"
-#include "commands/keys.hpp"
+#include "command/keys.hpp"
 #include "session/protection.hpp"
 
 namespace servoctl::cli {
@@ -37,7 +37,7 @@ class Console {
   virtual bool can_ask() const = 0;       ///< Whether there is a person at a terminal.
   virtual std::size_t width() const = 0;  ///< Columns of the terminal text goes to; 0: no terminal.
   /// The keys of the terminal as they are pressed, until the answer is destroyed; null where there is none.
-  virtual std::unique_ptr<commands::Keys> open_keys() { return nullptr; }
+  virtual std::unique_ptr<command::Keys> open_keys() { return nullptr; }
   /// Whether data can no longer be written: the reader has gone.
   virtual bool output_lost() const { return false; }
   /// Told what would be left alone if nobody read what is shown: who reads is not waited for while a drive is
@@ -69,7 +69,7 @@ class StandardConsole final : public Console {
   void pause(std::string_view text) override;
   bool can_ask() const override;
   std::size_t width() const override;
-  std::unique_ptr<commands::Keys> open_keys() override;
+  std::unique_ptr<command::Keys> open_keys() override;
   bool output_lost() const override { return write_error() != 0; }
   void set_care(session::Care care) override;
   std::size_t take_left_out() override { return out_.take_left_out(); }

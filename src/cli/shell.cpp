@@ -11,7 +11,6 @@
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "canopen/cob_id.hpp"
-#include "cli/batch_lines.hpp"
 #include "cli/signals.hpp"
 #include "commands/help.hpp"
 #include "commands/notice.hpp"
@@ -102,7 +101,7 @@ Outcome Shell::perform(const std::vector<std::string>& words) {
   if (!parsed) return failed(parsed.error(), std::move(settings), path);
   auto applied = apply_options(options_.defaults, parsed->arguments);
   if (!applied) return failed(applied.error(), std::move(settings), path);
-  Run run{parsed->command, std::move(*applied), {}};
+  Run run(*this, *parsed->command, std::move(*applied));
   const auto result = execute(run, parsed->arguments);
   progress_.end();
   return finish(run, result);
@@ -131,44 +130,8 @@ Result<Value> Shell::execute(Run& run, const commands::Arguments& arguments) {
   context.stays_open = stays_open_;
   context.drive_folders = options_.drive_folders;
   context.state_folder = options_.state_folder;
-  context.confirm = [this, &run](std::string_view asked) -> Result<void> {
-    if (run.settings.yes) return {};
-    const auto question = printable(asked);
-    if (!console_->can_ask())
-      return fail(Errc::refused, fmt::format("this needs a confirmation: {}", question),
-                  "add --yes when you mean it");
-    if (console_->ask(question)) return {};
-    return fail(Errc::refused, "not confirmed; nothing was sent");
-  };
-  context.open_bus = [this, &run]() -> Result<session::Session*> {
-    const auto opened = open(run.settings);
-    if (opened) run.context.session = *opened;
-    return opened;
-  };
-  context.hold_family = [this, &run](std::span<const std::uint8_t> nodes, const drive::Profile* profile,
-                                     bool changes) {
-    return hold_family(run, nodes, profile,
-                       changes ? FamilyGate::Weight::changes : FamilyGate::Weight::answers);
-  };
-  context.family = [this](const std::string& family) { return profile(family); };
-  context.batch_lines = [this](std::string_view text, const std::string& file) {
-    return batch_lines(*this, text, file);
-  };
   context.keeps_samples = run.settings.json && !run.settings.samples;
   context.wants_records = run.settings.samples;
-  context.write = [this](std::string_view lines) { console_->out(lines); };
-  context.emit = [this, &run](const report::Record& sample, std::string_view line) {
-    if (run.settings.samples)
-      console_->out(report::to_json(sample) + "\n");
-    else if (!run.settings.json && !line.empty())
-      console_->out(printable(line) + "\n");
-  };
-  context.tell = [this](std::string_view text) {
-    progress_.end();
-    console_->err(text);
-  };
-  context.output_lost = [this] { return console_->output_lost(); };
-  context.open_keys = [this] { return console_->open_keys(); };
   return run.command->run(context, arguments);
 }
 
@@ -187,17 +150,7 @@ Result<void> Shell::prepare(Run& run, const commands::Arguments& arguments) {
   if (!opened) return tl::unexpected<Error>(opened.error());
   run.context.session = *opened;
   if (const auto named = prepare_nodes(run); !named) return named;
-  return hold_family(run, run.context.nodes, run.context.profile, weight_of(command, arguments));
-}
-
-Result<void> Shell::hold_family(Run& run, std::span<const std::uint8_t> nodes, const drive::Profile* profile,
-                                FamilyGate::Weight weight) {
-  FamilyGate gate(*run.context.session,
-                  {.folders = options_.drive_folders,
-                   .force = run.settings.force_family,
-                   .dry_run = run.settings.dry_run},
-                  run.context.notices);
-  return gate.hold(nodes, profile, weight);
+  return run.line.hold_family(run.context.nodes, run.context.profile, weight_of(command, arguments));
 }
 
 Result<void> Shell::prepare_profile(Run& run) {

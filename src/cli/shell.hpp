@@ -12,10 +12,10 @@
 
 #include "cli/bus_holder.hpp"
 #include "cli/console.hpp"
-#include "cli/family_gate.hpp"
 #include "cli/outcome.hpp"
 #include "cli/parse.hpp"
 #include "cli/progress.hpp"
+#include "cli/running_line.hpp"
 #include "cli/settings.hpp"
 #include "session/session.hpp"
 #include "sim/sim_bus.hpp"
@@ -54,6 +54,8 @@ class Shell {
   int report_error(const Error& error, bool json, std::string_view command = {});
 
   Console& console() { return *console_; }
+  /// What goes on is shown no longer: something else is.
+  void end_progress() { progress_.end(); }
   /// Whether the user wants what is running to end.
   bool cancelled() const { return options_.cancelled && options_.cancelled(); }
 
@@ -84,9 +86,12 @@ class Shell {
 
  private:
   struct Run {
+    Run(Shell& shell, const commands::Command& of, Settings as)
+        : command(&of), settings(std::move(as)), line(shell, settings, context) {}
     const commands::Command* command;
     Settings settings;
     commands::Context context;
+    RunningLine line;
   };
 
   session::Options session_options();
@@ -94,8 +99,6 @@ class Shell {
   Result<void> prepare(Run& run, const commands::Arguments& arguments);
   Result<void> prepare_profile(Run& run);
   Result<void> prepare_nodes(Run& run);
-  Result<void> hold_family(Run& run, std::span<const std::uint8_t> nodes, const drive::Profile* profile,
-                           FamilyGate::Weight weight);
   void hear_second_node(const Run& run);
   static Result<void> name_nodes(Run& run);
   tl::unexpected<Error> ask_for_family(Run& run);

@@ -12,7 +12,7 @@ constexpr int kEscape = 0x1B;
 
 }  // namespace
 
-std::unique_ptr<commands::Keys> TerminalKeys::open(int descriptor) {
+std::unique_ptr<command::Keys> TerminalKeys::open(int descriptor) {
   termios before{};
   if (::tcgetattr(descriptor, &before) != 0) return nullptr;
   auto raw = before;
@@ -23,7 +23,7 @@ std::unique_ptr<commands::Keys> TerminalKeys::open(int descriptor) {
   raw.c_cc[VTIME] = 0;
   // What was typed before nobody meant as a key that moves something.
   if (::tcsetattr(descriptor, TCSAFLUSH, &raw) != 0) return nullptr;
-  return std::unique_ptr<commands::Keys>(new TerminalKeys(descriptor, before));
+  return std::unique_ptr<command::Keys>(new TerminalKeys(descriptor, before));
 }
 
 TerminalKeys::~TerminalKeys() { (void)::tcsetattr(descriptor_, TCSAFLUSH, &before_); }

@@ -4,15 +4,15 @@
 
 #include <memory>
 
-#include "commands/keys.hpp"
+#include "command/keys.hpp"
 
 namespace servoctl::cli {
 
 /// Takes the keys of a terminal one by one while it lives: no echo, no Enter; Ctrl-C stays a signal.
-class TerminalKeys final : public commands::Keys {
+class TerminalKeys final : public command::Keys {
  public:
   /// Null when `descriptor` is no terminal.
-  static std::unique_ptr<commands::Keys> open(int descriptor);
+  static std::unique_ptr<command::Keys> open(int descriptor);
   ~TerminalKeys() override;
 
   Key take() override;

@@ -9,9 +9,12 @@
 #include <map>
 #include <random>
 
-#include "cli/batch_lines.hpp"
+#include "cli/batch.hpp"
 #include "cli/line_runner.hpp"
+#include "cli/parse.hpp"
+#include "cli/setting_lines.hpp"
 #include "cli/shell.hpp"
+#include "cli/words.hpp"
 #include "commands/backup_formats.hpp"
 #include "commands/comparison.hpp"
 #include "commands/restoring.hpp"
@@ -21,6 +24,7 @@
 #include "sim/sim_bus.hpp"
 #include "sim/sim_drive.hpp"
 #include "tests/session/troubled_bus.hpp"
+#include "tests/show/audiences.hpp"
 #include "tests/source_dir.hpp"
 
 namespace servoctl::cli {
@@ -48,7 +52,7 @@ const drive::Profile& profile_of(const std::string& family) {
 }
 
 /// One drive that holds what a test put into its memory.
-class World {
+class World : public settings::LineReader {
  public:
   World(const std::string& family, const sim::Memory::Cells& cells)
       : profile_(&profile_of(family)),
@@ -59,14 +63,14 @@ class World {
     context.session = &session();
     context.profile = profile_;
     context.nodes = {1};
-    context.confirm = [](std::string_view) { return Result<void>(); };
-    context.batch_lines = [this](std::string_view text, const std::string& file) {
-      return batch_lines(shell(), text, file);
-    };
+    context.audience = &willing_;
   }
-  ~World() { fs::remove_all(folder_); }
-  World(const World&) = delete;
-  World& operator=(const World&) = delete;
+  ~World() override { fs::remove_all(folder_); }
+
+  Result<std::vector<settings::SettingLine>> setting_lines(std::string_view text,
+                                                           const std::string& file) override {
+    return cli::setting_lines(shell(), text, file);
+  }
 
   Backup backup() {
     const std::uint8_t nodes[] = {1};
@@ -77,7 +81,7 @@ class World {
     return commands::backup_text(context, backup, format, "drive");
   }
   Result<Backup> read(std::string text, BackupFormat format) {
-    return commands::read_backup(context, {"drive", std::move(text), format}, profile_, 1);
+    return commands::read_backup(context, {"drive", std::move(text), format, this}, profile_, 1);
   }
   Result<commands::Restored> restore(const Backup& backup) {
     context.errors.clear();
@@ -126,6 +130,7 @@ class World {
   std::unique_ptr<session::Session> session_;
   RecordingConsole console_;
   std::unique_ptr<Shell> shell_;
+  show::Willing willing_;
 };
 
 /// A value of the type, with no thought of limits.
@@ -304,15 +309,15 @@ TEST(AnyText, SurvivesEveryFormatAndIsNothingButAValue) {
 
 RC_GTEST_PROP(AnyText, InALineIsOneValueOfOneWriteAndNoOption,
               (const std::string& before, std::uint32_t seed)) {
-  static World world("lab", {});
   std::mt19937 random(seed);
   const auto text = before + any_text(random);
   const Bytes bytes(text.begin(), text.end());
   const auto line = commands::commented_line(&profile_of("lab"), 1, {0x2000, 0}, bytes);
-  const auto lines = world.context.batch_lines(line + "\nread 0x1000\n", "f");
-  RC_ASSERT(lines.has_value());
-  RC_ASSERT(lines->size() == 2U);
-  const auto& first = lines->front();
+  const auto batch = parse_batch(line + "\nread 0x1000\n");
+  RC_ASSERT(batch.errors.empty());
+  RC_ASSERT(batch.statements.size() == 2U);
+  const auto words = split_words(batch.statements.front().text).value();
+  const auto first = parse_line(words).value();
   RC_ASSERT(first.command->path == "write");
   for (const auto* option : {"--from", "--keep", "--unlock", "--yes", "--trace", "--bus"})
     RC_ASSERT(!first.arguments.has(option));

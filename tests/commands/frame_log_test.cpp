@@ -77,15 +77,22 @@ struct Logged {
   std::string list;                ///< With `--json`.
 };
 
+class Reader final : public show::Audience {
+ public:
+  void write(std::string_view text) override { lines += text; }
+  std::string lines;
+};
+
 /// The whole log as the command writes it, on a bus of this name.
 Logged write_log(std::string_view interface_name) {
   drive::Profile profile;
   profile.dictionary = od::read_eds(kHostileEds, "hostile.eds").value().dictionary;
   Logged out;
-  std::string lines;
+  Reader reader;
+  auto& lines = reader.lines;
   const auto write = [&](Context& context) {
     context.profile = &profile;
-    context.write = [&](std::string_view text) { lines += text; };
+    context.audience = &reader;
     FrameLog log(context, {}, false);
     Duration time{1'700'000'000'000'000};
     for (const auto frame : kLog)

@@ -3,6 +3,7 @@
 
 #include "drive/standard_objects.hpp"
 #include "tested_drive.hpp"
+#include "tests/show/audiences.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -83,7 +84,8 @@ TEST_F(MotionTests, JogFailsWhenItStopsTooLate) {
 
 TEST_F(MotionTests, JogMovesNothingWithoutAYes) {
   build("sv2@1", "sv2");
-  context.confirm = [](std::string_view) -> Result<void> { return fail(Errc::refused, "no"); };
+  show::Unwilling unwilling;
+  context.audience = &unwilling;
   const auto result = jog();
   ASSERT_FALSE(result.has_value());
   EXPECT_EQ(result.error().code, Errc::refused);

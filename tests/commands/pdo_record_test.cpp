@@ -1,4 +1,5 @@
 // A change of PDOs whose process is killed at any step leaves a record with which everything is as before.
+#include "commands/command.hpp"
 #include "commands/pdo_record.hpp"
 
 #include <gtest/gtest.h>
@@ -10,6 +11,7 @@
 #include "../session/troubled_bus.hpp"
 #include "drive/drive_settings.hpp"
 #include "session/pdo_setup.hpp"
+#include "tests/show/audiences.hpp"
 #include "tests/source_dir.hpp"
 
 namespace servoctl::commands {
@@ -57,7 +59,8 @@ class World {
     context.profile = &profile_;
     context.nodes = {1};
     context.state_folder = folder_;
-    context.confirm = [](std::string_view) { return Result<void>(); };
+    show::Willing willing;
+    context.audience = &willing;
     notices.clear();
     try {
       const auto done = find_command(command)->run(context, arguments);

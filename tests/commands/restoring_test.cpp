@@ -10,6 +10,7 @@
 #include "../session/troubled_bus.hpp"
 #include "commands/restore_journal.hpp"
 #include "drive/quantity.hpp"
+#include "tests/show/audiences.hpp"
 #include "tests/source_dir.hpp"
 
 namespace servoctl::commands {
@@ -70,7 +71,8 @@ class World {
     context.session = &session;
     context.profile = &profile_;
     context.nodes = {1};
-    context.confirm = [](std::string_view) { return Result<void>(); };
+    show::Willing willing;
+    context.audience = &willing;
     try {
       const auto done = put_into(context, what, title, 1, saved, options, undoes);
       frames = counted->frames();

@@ -9,6 +9,7 @@
 #include "canopen/pdo.hpp"
 #include "session/pdo_setup.hpp"
 #include "tested_drive.hpp"
+#include "tests/show/audiences.hpp"
 #include "tests/source_dir.hpp"
 
 namespace servoctl::commands {
@@ -84,7 +85,8 @@ TEST_P(SamplingEveryFamily, MappingIsPutBackHoweverManyObjectsThereAre) {
 TEST_F(Sampling, MappingAsksAndIsNotDoneWithoutAYes) {
   build("gsd600@1", "gsd600");
   start_node();
-  context.confirm = [](std::string_view) -> Result<void> { return fail(Errc::refused, "no"); };
+  show::Unwilling unwilling;
+  context.audience = &unwilling;
   const auto before = pdo_values();
   const auto result = run("scope", {{"object", "0x6064"}, {"--map", "true"}});
   ASSERT_FALSE(result);

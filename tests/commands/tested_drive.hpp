@@ -40,6 +40,19 @@ class TouchedBus final : public can::Bus {
   sim::SimBus* bus_;
 };
 
+/// Says yes, and remembers what it was asked and shown.
+class Onlooker final : public show::Audience {
+ public:
+  Result<void> confirm(std::string_view question) override {
+    questions.emplace_back(question);
+    return {};
+  }
+  void emit(const report::Record& /*sample*/, std::string_view line) override { lines.emplace_back(line); }
+
+  std::vector<std::string> lines;
+  std::vector<std::string> questions;
+};
+
 /// A command run on simulated drives in virtual time, with its context in the hands of the test.
 class TestedDrive : public testing::Test {
  protected:
@@ -61,11 +74,7 @@ class TestedDrive : public testing::Test {
     context.profile = &profile_;
     context.nodes = {1};
     context.keeps_samples = true;
-    context.emit = [this](const report::Record&, std::string_view line) { lines.emplace_back(line); };
-    context.confirm = [this](std::string_view question) -> Result<void> {
-      questions.emplace_back(question);
-      return {};
-    };
+    context.audience = &onlooker_;
   }
 
   using Words = std::vector<std::pair<std::string, std::string>>;
@@ -99,8 +108,13 @@ class TestedDrive : public testing::Test {
   TouchedBus* bus = nullptr;
   std::unique_ptr<session::Session> session;
   Context context;
-  std::vector<std::string> lines;
-  std::vector<std::string> questions;
+
+ private:
+  Onlooker onlooker_;
+
+ protected:
+  std::vector<std::string>& lines = onlooker_.lines;
+  std::vector<std::string>& questions = onlooker_.questions;
 
  private:
   drive::Profile profile_;

@@ -12,6 +12,7 @@
 #include "commands/kept_turn.hpp"
 #include "sim/sim_bus.hpp"
 #include "sim/sim_drive.hpp"
+#include "tests/show/audiences.hpp"
 #include "tests/source_dir.hpp"
 
 namespace servoctl::commands {
@@ -64,8 +65,8 @@ class Units : public testing::Test {
     context.nodes = {1};
     context.state_folder = folder;
     context.dry_run = dry_run;
-    context.confirm = [](std::string_view) { return Result<void>(); };
-    context.emit = [](const report::Record&, std::string_view) {};
+    show::Willing willing;
+    context.audience = &willing;
     auto done = find_command(command)->run(context, arguments);
     notices = fmt::format("{}", fmt::join(context.notices, "\n"));
     error = !done ? done.error().message : context.errors.empty() ? "" : context.errors.front().message;

@@ -1,7 +1,7 @@
 // Backups in the formats of other tools; the first byte chooses the format.
 #include <filesystem>
 
-#include "cli/batch_lines.hpp"
+#include "cli/running_line.hpp"
 #include "cli/shell.hpp"
 #include "commands/backup_formats.hpp"
 #include "tests/cli/recording_console.hpp"
@@ -26,13 +26,9 @@ commands::Context& context() {
   static cli::Shell::Options options;
   options.drive_folders = kFolders;
   static cli::Shell shell(console, options);
-  static commands::Context out = [] {
-    commands::Context made;
-    made.batch_lines = [](std::string_view text, const std::string& file) {
-      return cli::batch_lines(shell, text, file);
-    };
-    return made;
-  }();
+  static commands::Context out;
+  static cli::Settings settings;
+  static cli::RunningLine line(shell, settings, out);
   out.notices.clear();
   return out;
 }
@@ -48,7 +44,8 @@ std::map<ObjectAddress, Bytes> values(const Backup& backup) {
 }
 
 Result<Backup> read(std::string text, BackupFormat format) {
-  return commands::read_backup(context(), {"fuzz", std::move(text), format}, &profile(), 1);
+  return commands::read_backup(context(), {"fuzz", std::move(text), format, context().front_end}, &profile(),
+                               1);
 }
 
 }  // namespace

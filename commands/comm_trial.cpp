@@ -1,4 +1,4 @@
-#include "commands/comm_test.hpp"
+#include "commands/comm_trial.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -29,8 +29,8 @@ constexpr Duration kLeastTolerance = std::chrono::milliseconds(10);
 
 class Communication {
  public:
-  Communication(Context& context, std::uint8_t node, const CommTest& test)
-      : context_(&context), session_(context.session), node_(node), test_(test) {}
+  Communication(show::Desk& desk, std::uint8_t node, const CommTrial& test)
+      : desk_(&desk), session_(desk.session), node_(node), test_(test) {}
 
   Result<TestResult> run() {
     const auto begin = session_->now();
@@ -49,7 +49,7 @@ class Communication {
 
  private:
   std::string say(std::string_view english, std::string_view chinese) const {
-    return commands::say(*context_, english, chinese);
+    return commands::say(*desk_, english, chinese);
   }
 
   Result<void> read_often() {
@@ -172,19 +172,19 @@ class Communication {
   void take_notices() {
     for (const auto report : session_->take_reports()) {
       reports_ += report != can::ControllerReport::error_active;
-      context_->notices.push_back(session_->url() + ": " + std::string(can::text(report)));
+      desk_->notices.push_back(session_->url() + ": " + std::string(can::text(report)));
     }
     for (const auto& event : session_->take_events()) {
       const auto* emergency = std::get_if<canopen::Emergency>(&event.what);
       if (event.node == node_ && emergency != nullptr && !emergency->is_reset()) emergencies_ += event.times;
-      context_->notices.push_back(notice_text(event, context_->profile, context_->chinese));
+      desk_->notices.push_back(notice_text(event, desk_->profile, desk_->chinese));
     }
   }
 
-  Context* context_;
+  show::Desk* desk_;
   session::Session* session_;
   std::uint8_t node_;
-  CommTest test_;
+  CommTrial test_;
   TestResult out_;
   std::vector<Duration> round_trips_;
   std::uint32_t sent_ = 0;
@@ -197,8 +197,8 @@ class Communication {
 
 }  // namespace
 
-Result<TestResult> test_communication(Context& context, std::uint8_t node, const CommTest& test) {
-  return Communication(context, node, test).run();
+Result<TestResult> test_communication(show::Desk& desk, std::uint8_t node, const CommTrial& test) {
+  return Communication(desk, node, test).run();
 }
 
 }  // namespace servoctl::commands

@@ -1,4 +1,4 @@
-#include "commands/io_test.hpp"
+#include "commands/io_trial.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -23,8 +23,8 @@ constexpr Duration kEvery = std::chrono::milliseconds(10);
 /// others by their number.
 class InputNames {
  public:
-  explicit InputNames(const Context& context) : context_(&context) {
-    if (context.profile != nullptr) rules_ = context.profile->rules.motion;
+  explicit InputNames(const show::Desk& desk) : desk_(&desk) {
+    if (desk.profile != nullptr) rules_ = desk.profile->rules.motion;
   }
   /// Whether the switch of this input is actuated.
   bool is_actuated(std::uint32_t levels, unsigned bit) const { return rules_.is_actuated(levels, bit); }
@@ -35,8 +35,8 @@ class InputNames {
   }
   std::string name(unsigned bit) const {
     const auto function = function_of(bit);
-    return function ? say(*context_, kIds[*function], kNamesZh[*function])
-                    : say(*context_, fmt::format("bit{}", bit), fmt::format("位 {}", bit));
+    return function ? say(*desk_, kIds[*function], kNamesZh[*function])
+                    : say(*desk_, fmt::format("bit{}", bit), fmt::format("位 {}", bit));
   }
   Result<unsigned> parse(std::string_view word) const {
     std::vector<std::string> words;
@@ -59,19 +59,15 @@ class InputNames {
     return std::nullopt;
   }
 
-  const Context* context_;
+  const show::Desk* desk_;
   drive::MotionRules rules_;
 };
 
 /// Watches the inputs of one drive while somebody actuates them.
 class InputWatch {
  public:
-  InputWatch(Context& context, std::uint8_t node, std::vector<unsigned> expected)
-      : context_(&context),
-        session_(context.session),
-        node_(node),
-        names_(context),
-        expected_(std::move(expected)) {}
+  InputWatch(show::Desk& desk, std::uint8_t node, std::vector<unsigned> expected)
+      : desk_(&desk), session_(desk.session), node_(node), names_(desk), expected_(std::move(expected)) {}
 
   Result<TestResult> run(Duration length) {
     const auto begin = session_->now();
@@ -117,10 +113,9 @@ class InputWatch {
                   {"input", names_.id(bit)},
                   {"level", level},
                   {"actuated", on}};
-    const auto text = say(*context_, on ? "actuated" : "not actuated", on ? "已动作" : "未动作");
-    context_->emit(record,
-                   fmt::format("{:10.3f}  {} {} ({})", seconds_of(time), names_.name(bit), level, text));
-    if (context_->keeps_samples) events_.emplace_back(std::move(record));
+    const auto text = say(*desk_, on ? "actuated" : "not actuated", on ? "已动作" : "未动作");
+    desk_->emit(record, fmt::format("{:10.3f}  {} {} ({})", seconds_of(time), names_.name(bit), level, text));
+    if (desk_->keeps_samples) events_.emplace_back(std::move(record));
   }
 
   bool is_expected(unsigned bit) const {
@@ -137,11 +132,10 @@ class InputWatch {
     const bool high = (seen_high_ >> bit & 1U) != 0;
     auto out = report::holds(
         names_.id(bit), names_.name(bit), both,
-        both ? "0, 1" : say(*context_, high ? "only 1" : "only 0", high ? "只有 1" : "只有 0"), "0, 1");
+        both ? "0, 1" : say(*desk_, high ? "only 1" : "only 0", high ? "只有 1" : "只有 0"), "0, 1");
     if (changes_[bit] > 0)
-      out.note =
-          say(*context_, fmt::format("changed {} time{}", changes_[bit], changes_[bit] == 1 ? "" : "s"),
-              fmt::format("变化 {} 次", changes_[bit]));
+      out.note = say(*desk_, fmt::format("changed {} time{}", changes_[bit], changes_[bit] == 1 ? "" : "s"),
+                     fmt::format("变化 {} 次", changes_[bit]));
     return out;
   }
 
@@ -158,13 +152,13 @@ class InputWatch {
       out.criteria.push_back(judge(bit));
     }
     if (expected_.empty())
-      out.criteria.push_back(report::at_least(
-          "inputs_changed", say(*context_, "inputs that changed", "有变化的输入"), changed, 1));
-    if (context_->keeps_samples) out.figures.push_back({"events", std::move(events_), Show::json});
+      out.criteria.push_back(
+          report::at_least("inputs_changed", say(*desk_, "inputs that changed", "有变化的输入"), changed, 1));
+    if (desk_->keeps_samples) out.figures.push_back({"events", std::move(events_), Show::json});
     return out;
   }
 
-  Context* context_;
+  show::Desk* desk_;
   session::Session* session_;
   std::uint8_t node_;
   InputNames names_;
@@ -177,8 +171,8 @@ class InputWatch {
 
 }  // namespace
 
-Result<std::vector<unsigned>> parse_inputs(const Context& context, std::string_view text) {
-  const InputNames names(context);
+Result<std::vector<unsigned>> parse_inputs(const show::Desk& desk, std::string_view text) {
+  const InputNames names(desk);
   std::vector<unsigned> out;
   for (const auto word : split(text, ',')) {
     const auto bit = names.parse(trim(word));
@@ -188,8 +182,8 @@ Result<std::vector<unsigned>> parse_inputs(const Context& context, std::string_v
   return out;
 }
 
-Result<TestResult> test_inputs(Context& context, std::uint8_t node, const InputTest& test) {
-  return InputWatch(context, node, test.expected).run(test.length);
+Result<TestResult> test_inputs(show::Desk& desk, std::uint8_t node, const InputTrial& test) {
+  return InputWatch(desk, node, test.expected).run(test.length);
 }
 
 }  // namespace servoctl::commands

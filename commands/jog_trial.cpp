@@ -4,7 +4,7 @@
 
 #include "base/duration.hpp"
 #include "base/number.hpp"
-#include "commands/motion_run.hpp"
+#include "commands/motion_trial.hpp"
 #include "commands/verdict.hpp"
 
 namespace servoctl::commands {
@@ -60,15 +60,9 @@ class Timetable {
 /// One direction, judged.
 class Direction {
  public:
-  Direction(const Context& context, const JogTest& test, const session::MotionPlan& plan,
+  Direction(const show::Desk& desk, const JogTrial& test, const session::MotionPlan& plan,
             const session::MotionReport& done, Timetable::Phase phase, bool forward, TestResult& out)
-      : context_(&context),
-        test_(&test),
-        plan_(&plan),
-        done_(&done),
-        phase_(phase),
-        forward_(forward),
-        out_(&out) {
+      : desk_(&desk), test_(&test), plan_(&plan), done_(&done), phase_(phase), forward_(forward), out_(&out) {
     // Until the middle it may still speed up.
     const auto middle = phase.begin + (phase.end - phase.begin) / 2;
     for (const auto& sample : done.samples) {
@@ -89,8 +83,8 @@ class Direction {
     return fmt::format("{}_{}", name, forward_ ? "forward" : "backward");
   }
   std::string title(std::string_view english, std::string_view chinese) const {
-    return forward_ ? say(*context_, fmt::format("forward: {}", english), fmt::format("正转：{}", chinese))
-                    : say(*context_, fmt::format("backward: {}", english), fmt::format("反转：{}", chinese));
+    return forward_ ? say(*desk_, fmt::format("forward: {}", english), fmt::format("正转：{}", chinese))
+                    : say(*desk_, fmt::format("backward: {}", english), fmt::format("反转：{}", chinese));
   }
   /// More digits than the sensors have say nothing.
   static double rounded(double number) { return parse_real(fmt::format("{:.4g}", number)).value_or(number); }
@@ -102,7 +96,7 @@ class Direction {
   }
   void skip(std::string_view name, std::string title_text) {
     out_->criteria.push_back(report::skipped(
-        id(name), std::move(title_text), say(*context_, "the drive does not tell it", "驱动器不提供该数据")));
+        id(name), std::move(title_text), say(*desk_, "the drive does not tell it", "驱动器不提供该数据")));
   }
 
   /// The change of a quantity from the first to the last of these samples that have it.
@@ -178,8 +172,8 @@ class Direction {
     out_->criteria.push_back(std::move(criterion));
   }
 
-  const Context* context_;
-  const JogTest* test_;
+  const show::Desk* desk_;
+  const JogTrial* test_;
   const session::MotionPlan* plan_;
   const session::MotionReport* done_;
   Timetable::Phase phase_;
@@ -189,48 +183,26 @@ class Direction {
   std::vector<const MotionSample*> steady_;
 };
 
-TestResult judged(const Context& context, const JogTest& test, const Timetable& timetable,
+TestResult judged(const show::Desk& desk, const JogTrial& test, const Timetable& timetable,
                   const session::MotionPlan& plan, const session::MotionReport& done) {
   TestResult out;
   out.test = "jog";
-  judge_motion(context, done, out);
+  judge_motion(desk, done, out);
   for (const bool forward : {true, false})
     if (const auto phase = timetable.phase(forward ? 0 : 1))
-      Direction(context, test, plan, done, *phase, forward, out)
-          .judge(forward ? kRest : std::chrono::hours(1));
+      Direction(desk, test, plan, done, *phase, forward, out).judge(forward ? kRest : std::chrono::hours(1));
   return out;
 }
-
-/// The second half of a shorter one would still be the ramp.
-constexpr Duration kShortest = std::chrono::seconds(1);
 
 }  // namespace
 
-Result<JogTest> parse_jog_test(const Arguments& arguments, std::string_view speed) {
-  JogTest out;
-  out.speed = speed;
-  const auto length = duration_option(arguments, "--for");
-  if (!length) return tl::unexpected<Error>(length.error());
-  out.length = length->value_or(out.length);
-  if (out.length < kShortest)
-    return fail(Errc::usage, "--for is too short to reach the speed", "at least 1s");
-  const auto stop = duration_option(arguments, "--stop-within");
-  if (!stop) return tl::unexpected<Error>(stop.error());
-  out.longest_stop = stop->value_or(out.longest_stop);
-  const auto tolerance = number_option(arguments, "--tolerance", out.tolerance);
-  if (!tolerance) return tl::unexpected<Error>(tolerance.error());
-  out.tolerance = *tolerance;
-  return out;
-}
-
-Result<void> check_jog_test(const Context& context, const Arguments& arguments, const JogTest& test) {
+Result<void> check_jog_test(const show::Desk& desk, const MotionRequest& request, const JogTrial& test) {
   session::Jog jog;
   jog.speed = test.speed;
-  return check_motion(context, arguments,
-                      [&](session::Motion& motion) { return session::plan_jog(motion, jog); });
+  return check_motion(desk, request, [&](session::Motion& motion) { return session::plan_jog(motion, jog); });
 }
 
-Result<MotionTest> test_jog(Context& context, const Arguments& arguments, const JogTest& test) {
+Result<MotionTrial> test_jog(show::Desk& desk, const MotionRequest& request, const JogTrial& test) {
   Timetable timetable(test.length);
   session::Jog jog;
   jog.speed = test.speed;
@@ -251,9 +223,9 @@ Result<MotionTest> test_jog(Context& context, const Arguments& arguments, const 
     jog.keys = [&] { return timetable.key(motion.session().now()); };
     return session::run_jog(motion, jog, planned);
   };
-  return run_test_motion(context, arguments, plan, run,
+  return run_test_motion(desk, request, plan, run,
                          [&](const session::MotionPlan& planned, const session::MotionReport& done) {
-                           return judged(context, test, timetable, planned, done);
+                           return judged(desk, test, timetable, planned, done);
                          });
 }
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "commands/motion_run.hpp"
+#include "commands/motion_trial.hpp"
 #include "commands/verdict.hpp"
 #include "drive/standard_objects.hpp"
 
@@ -22,7 +22,7 @@ struct Found {
 
 class Homings {
  public:
-  Homings(const Context& context, const HomeTest& test) : context_(&context), test_(&test) {
+  Homings(const show::Desk& desk, const HomeTrial& test) : desk_(&desk), test_(&test) {
     home_.method = test.method;
   }
 
@@ -44,7 +44,7 @@ class Homings {
     out.test = "home";
     out.criteria.push_back(report::at_least("found", say("homings that found home", "成功回零次数"),
                                             static_cast<double>(found_.size()), test_->repeat));
-    judge_motion(*context_, done, out);
+    judge_motion(*desk_, done, out);
     std::string unit;
     for (const auto& series : done.series)
       if (series.name == session::name(Channel::position)) unit = series.unit;
@@ -58,7 +58,7 @@ class Homings {
 
  private:
   std::string say(std::string_view english, std::string_view chinese) const {
-    return commands::say(*context_, english, chinese);
+    return commands::say(*desk_, english, chinese);
   }
 
   Found look(session::Motion& motion, const session::MotionReport& done, Duration time) const {
@@ -113,42 +113,30 @@ class Homings {
     return table;
   }
 
-  const Context* context_;
-  const HomeTest* test_;
+  const show::Desk* desk_;
+  const HomeTrial* test_;
   session::Home home_;
   std::vector<Found> found_;
 };
 
 }  // namespace
 
-Result<HomeTest> parse_home_test(const Arguments& arguments, std::string_view method) {
-  HomeTest out;
-  out.method = method;
-  const auto repeat = count_option(arguments, "--repeat", 1, 1000, out.repeat);
-  if (!repeat) return tl::unexpected<Error>(repeat.error());
-  out.repeat = *repeat;
-  const auto spread = number_option(arguments, "--spread", out.spread);
-  if (!spread) return tl::unexpected<Error>(spread.error());
-  out.spread = *spread;
-  return out;
-}
-
-Result<void> check_home_test(const Context& context, const Arguments& arguments, const HomeTest& test) {
+Result<void> check_home_test(const show::Desk& desk, const MotionRequest& request, const HomeTrial& test) {
   session::Home home;
   home.method = test.method;
-  return check_motion(context, arguments,
+  return check_motion(desk, request,
                       [&](session::Motion& motion) { return session::plan_home(motion, home); });
 }
 
-Result<MotionTest> test_home(Context& context, const Arguments& arguments, const HomeTest& test) {
-  Homings homings(context, test);
+Result<MotionTrial> test_home(show::Desk& desk, const MotionRequest& request, const HomeTrial& test) {
+  Homings homings(desk, test);
   const auto plan = [&](session::Motion& motion) {
     auto planned = session::plan_home(motion, homings.home());
     if (planned) planned->summary += fmt::format(", {} times", test.repeat);
     return planned;
   };
   return run_test_motion(
-      context, arguments, plan,
+      desk, request, plan,
       [&](session::Motion& motion, const session::MotionPlan& planned) {
         return homings.run(motion, planned);
       },

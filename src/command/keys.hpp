@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace servoctl::commands {
+namespace servoctl::command {
 
 /// Keys that a person presses, each as it is pressed, without Enter.
 class Keys {
@@ -26,4 +26,4 @@ class Keys {
   virtual Key take() = 0;
 };
 
-}  // namespace servoctl::commands
+}  // namespace servoctl::command

@@ -1,4 +1,4 @@
-#include "cli/batch_lines.hpp"
+#include "cli/setting_lines.hpp"
 
 #include <fmt/format.h>
 
@@ -16,18 +16,19 @@ tl::unexpected<Error> in_line(const std::string& file, std::uint32_t line, Error
   return fail(std::move(error));
 }
 
-Result<commands::BatchLine> line_of(const Settings& base, const std::vector<std::string>& words) {
+Result<settings::SettingLine> line_of(const Settings& base, const std::vector<std::string>& words) {
   auto parsed = parse_line(words);
   if (!parsed) return tl::unexpected<Error>(parsed.error());
-  const auto settings = apply_options(base, parsed->arguments);
-  if (!settings) return tl::unexpected<Error>(settings.error());
-  commands::BatchLine out{.line = 0,
-                          .command = parsed->command,
-                          .arguments = std::move(parsed->arguments),
-                          .nodes = {},
-                          .family = settings->drive};
-  if (settings->nodes.empty()) return out;
-  auto nodes = parse_nodes(settings->nodes);
+  const auto chosen = apply_options(base, parsed->arguments);
+  if (!chosen) return tl::unexpected<Error>(chosen.error());
+  const auto& command = *parsed->command;
+  settings::SettingLine out{.line = 0,
+                            .nodes = {},
+                            .family = chosen->drive,
+                            .values = command.settings != nullptr ? command.settings(parsed->arguments)
+                                                                  : settings::writes_no_value(command.path)};
+  if (chosen->nodes.empty()) return out;
+  auto nodes = parse_nodes(chosen->nodes);
   if (!nodes) return tl::unexpected<Error>(nodes.error());
   out.nodes = std::move(*nodes);
   return out;
@@ -35,25 +36,25 @@ Result<commands::BatchLine> line_of(const Settings& base, const std::vector<std:
 
 }  // namespace
 
-Result<std::vector<commands::BatchLine>> batch_lines(Shell& shell, std::string_view text,
-                                                     const std::string& file) {
+Result<std::vector<settings::SettingLine>> setting_lines(Shell& shell, std::string_view text,
+                                                         const std::string& file) {
   const auto batch = parse_batch(text);
   const auto plan = plan_batch(batch, Variables{}, std::filesystem::path(file).parent_path());
   for (const auto* errors : {&batch.errors, &plan.errors})
     if (!errors->empty()) return in_line(file, errors->front().line.value_or(1), errors->front());
-  Settings settings;
-  std::vector<commands::BatchLine> out;
+  Settings chosen_now;
+  std::vector<settings::SettingLine> out;
   for (const auto& step : plan.steps) {
     if (step.kind != Step::Kind::command || is_exit(step.words))
       return in_line(file, step.line,
                      fail(Errc::file, fmt::format("'{}' writes no value", step.text),
                           "to be read as settings, a batch file holds lines that write")
                          .value());
-    auto next = chosen(shell, settings, step.words);
+    auto next = chosen(shell, chosen_now, step.words);
     if (!next) return in_line(file, step.line, next.error());
-    settings = std::move(*next);
+    chosen_now = std::move(*next);
     if (is_choice(step.words)) continue;
-    auto line = line_of(settings, step.words);
+    auto line = line_of(chosen_now, step.words);
     if (!line) return in_line(file, step.line, line.error());
     line->line = step.line;
     out.push_back(std::move(*line));

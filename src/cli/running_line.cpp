@@ -1,0 +1,73 @@
+#include "cli/running_line.hpp"
+
+#include <fmt/format.h>
+
+#include "base/printable.hpp"
+#include "cli/setting_lines.hpp"
+#include "cli/shell.hpp"
+
+namespace servoctl::cli {
+
+RunningLine::RunningLine(Shell& shell, const Settings& settings, commands::Context& context)
+    : shell_(&shell), settings_(&settings), context_(&context) {
+  context.audience = this;
+  context.front_end = this;
+}
+
+Result<void> RunningLine::confirm(std::string_view question) {
+  if (settings_->yes) return {};
+  auto& console = shell_->console();
+  const auto shown = printable(question);
+  if (!console.can_ask())
+    return fail(Errc::refused, fmt::format("this needs a confirmation: {}", shown),
+                "add --yes when you mean it");
+  if (console.ask(shown)) return {};
+  return fail(Errc::refused, "not confirmed; nothing was sent");
+}
+
+void RunningLine::emit(const report::Record& sample, std::string_view line) {
+  if (settings_->samples)
+    shell_->console().out(report::to_json(sample) + "\n");
+  else if (!settings_->json && !line.empty())
+    shell_->console().out(printable(line) + "\n");
+}
+
+void RunningLine::write(std::string_view lines) { shell_->console().out(lines); }
+
+void RunningLine::tell(std::string_view text) {
+  shell_->end_progress();
+  shell_->console().err(text);
+}
+
+bool RunningLine::is_gone() const { return shell_->console().output_lost(); }
+
+Result<session::Session*> RunningLine::open_bus() {
+  const auto opened = shell_->open(*settings_);
+  if (opened) context_->session = *opened;
+  return opened;
+}
+
+Result<void> RunningLine::hold_family(std::span<const std::uint8_t> nodes, const drive::Profile* profile,
+                                      bool changes) {
+  return hold_family(nodes, profile, changes ? FamilyGate::Weight::changes : FamilyGate::Weight::answers);
+}
+
+Result<void> RunningLine::hold_family(std::span<const std::uint8_t> nodes, const drive::Profile* profile,
+                                      FamilyGate::Weight weight) {
+  FamilyGate gate(
+      *context_->session,
+      {.folders = shell_->drive_folders(), .force = settings_->force_family, .dry_run = settings_->dry_run},
+      context_->notices);
+  return gate.hold(nodes, profile, weight);
+}
+
+Result<const drive::Profile*> RunningLine::family(const std::string& name) { return shell_->profile(name); }
+
+std::unique_ptr<command::Keys> RunningLine::open_keys() { return shell_->console().open_keys(); }
+
+Result<std::vector<settings::SettingLine>> RunningLine::setting_lines(std::string_view text,
+                                                                      const std::string& file) {
+  return cli::setting_lines(*shell_, text, file);
+}
+
+}  // namespace servoctl::cli

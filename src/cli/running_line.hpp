@@ -1,0 +1,48 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cli/family_gate.hpp"
+#include "cli/settings.hpp"
+#include "commands/command.hpp"
+
+namespace servoctl::cli {
+
+class Shell;
+
+/// The shell as the command of one line sees it: who is asked and shown things, and who opens what its words
+/// turn out to need.
+class RunningLine final : public show::Audience, public command::FrontEnd {
+ public:
+  /// All outlive it.
+  RunningLine(Shell& shell, const Settings& settings, commands::Context& context);
+
+  Result<void> confirm(std::string_view question) override;
+  void emit(const report::Record& sample, std::string_view line) override;
+  void write(std::string_view lines) override;
+  void tell(std::string_view text) override;
+  bool is_gone() const override;
+
+  Result<session::Session*> open_bus() override;
+  Result<void> hold_family(std::span<const std::uint8_t> nodes, const drive::Profile* profile,
+                           bool changes) override;
+  Result<const drive::Profile*> family(const std::string& name) override;
+  std::unique_ptr<command::Keys> open_keys() override;
+  Result<std::vector<settings::SettingLine>> setting_lines(std::string_view text,
+                                                           const std::string& file) override;
+
+  /// As FamilyGate::hold().
+  Result<void> hold_family(std::span<const std::uint8_t> nodes, const drive::Profile* profile,
+                           FamilyGate::Weight weight);
+
+ private:
+  Shell* shell_;
+  const Settings* settings_;
+  commands::Context* context_;
+};
+
+}  // namespace servoctl::cli

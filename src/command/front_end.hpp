@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "command/keys.hpp"
+#include "drive/profile.hpp"
+#include "session/session.hpp"
+#include "settings/setting_line.hpp"
+
+namespace servoctl::command {
+
+/// What a front end does for commands whose words decide what they need.
+class FrontEnd : public settings::LineReader {
+ public:
+  /// Opens the bus of the line; the context has its session then.
+  virtual Result<session::Session*> open_bus() = 0;
+  /// Holds a family against the identity of these nodes; `changes`: they will be written to. Errc::refused
+  /// when they contradict it, or two nodes have one number.
+  virtual Result<void> hold_family(std::span<const std::uint8_t> nodes, const drive::Profile* profile,
+                                   bool changes) = 0;
+  /// The data of a family, loaded once; errors as load_profile().
+  virtual Result<const drive::Profile*> family(const std::string& name) = 0;
+  /// The keys of the terminal, until the answer is destroyed; null where there is none.
+  virtual std::unique_ptr<Keys> open_keys() = 0;
+};
+
+}  // namespace servoctl::command

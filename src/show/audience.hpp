@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string_view>
+
+#include "base/result.hpp"
+#include "report/value.hpp"
+
+namespace servoctl::show {
+
+/// Who is on the other side of a desk: is asked before what cannot be taken back, and sees what there is to
+/// see before the answer. This one is nobody: nobody confirms, nothing is shown.
+class Audience {
+ public:
+  Audience() = default;
+  Audience(const Audience&) = delete;
+  Audience& operator=(const Audience&) = delete;
+  virtual ~Audience() = default;
+
+  /// Asks before something that stores, resets, re-addresses or moves; Errc::refused when the answer is no.
+  virtual Result<void> confirm(std::string_view question);
+  /// Shows one sample of a command that goes on: the line in text, the record with `-o jsonl`. With `--json`
+  /// nothing: the result has to carry the samples.
+  virtual void emit(const report::Record& sample, std::string_view line);
+  /// Shows many samples at once, rendered already, for commands to which emit() is too slow; see
+  /// SampleWriter.
+  virtual void write(std::string_view lines);
+  /// Shows lines at once where people look (stderr), whatever form the result has.
+  virtual void tell(std::string_view text);
+  /// Whether what emit() shows reaches nobody any more (closed pipe, full disk).
+  virtual bool is_gone() const { return false; }
+};
+
+}  // namespace servoctl::show

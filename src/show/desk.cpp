@@ -1,0 +1,21 @@
+#include "show/desk.hpp"
+
+namespace servoctl::show {
+
+Result<void> Desk::confirm(std::string_view question) const {
+  return audience != nullptr ? audience->confirm(question) : Audience().confirm(question);
+}
+
+void Desk::emit(const report::Record& sample, std::string_view line) const {
+  if (audience != nullptr) audience->emit(sample, line);
+}
+
+void Desk::write(std::string_view lines) const {
+  if (audience != nullptr) audience->write(lines);
+}
+
+void Desk::tell(std::string_view text) const {
+  if (audience != nullptr) audience->tell(text);
+}
+
+}  // namespace servoctl::show
