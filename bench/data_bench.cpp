@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "base/file.hpp"
-#include "cli/completer.hpp"
+#include "cli/terminal/completer.hpp"
 #include "drive/naming.hpp"
 #include "od/eds.hpp"
 

@@ -18,7 +18,8 @@
 #include <thread>
 
 #include "can/socketcan.hpp"
-#include "commands/command.hpp"
+#include "command/command.hpp"
+#include "command/registry.hpp"
 
 namespace servoctl::bench {
 namespace {
@@ -71,18 +72,18 @@ void measure(const Load& load, const char* what, bool records, const std::string
   session::Session session(std::make_unique<can::SocketCanBus>(can::Descriptor(ends[0]), "can0"), "can0", {});
   const auto profile = drive::load_profile("gsd600", kFolders).value();
   const int out = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
-  commands::Context context;
+  command::Context context;
   context.session = &session;
   context.profile = &profile;
   context.wants_records = records;
   context.write = [&](std::string_view lines) {
     if (::write(out, lines.data(), lines.size()) < 0) std::exit(7);
   };
-  commands::Arguments arguments;
+  command::Arguments arguments;
   arguments.add("--for", seconds + "s");
   arguments.add("--bitrate", "1M");
   const auto before = cpu_seconds();
-  const auto result = commands::find_command("monitor")->run(context, arguments);
+  const auto result = command::find_command("monitor")->run(context, arguments);
   const auto used = cpu_seconds() - before;
   ::kill(sender, SIGKILL);
   if (!result) std::exit(3);

@@ -3,14 +3,16 @@
 #include <system_error>
 
 #include "base/file.hpp"
-#include "commands/backup_file.hpp"
-#include "commands/command.hpp"
-#include "commands/comparison.hpp"
-#include "commands/records.hpp"
-#include "commands/selection.hpp"
+#include "command/command.hpp"
+#include "settings/backup_file.hpp"
+#include "settings/comparison.hpp"
+#include "settings/selection.hpp"
+#include "show/records.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 using report::Show;
 using report::Value;
@@ -22,7 +24,7 @@ constexpr Parameter kParameters[] = {
     {.name = "--format",
      .help = "json, dcf, csv or batch (default: by the file's extension, else json)",
      .kind = Kind::choice,
-     .choices = kBackupFormats},
+     .choices = settings::kBackupFormats},
     {.name = "--only",
      .help = "communication, pdo, params, changed (other than from the factory), or a group of parameters",
      .kind = Kind::text},
@@ -30,7 +32,7 @@ constexpr Parameter kParameters[] = {
 
 Result<session::SettingFilter> filter_of(const Context& context, std::string_view word) {
   if (word.empty() || word == kChanged) return session::SettingFilter{};
-  auto selection = selection_of(*context.profile, word);
+  auto selection = settings::selection_of(*context.profile, word);
   if (!selection) {
     auto error = selection.error();
     if (const auto place = error.hint.find("params,"); place != std::string::npos)
@@ -42,9 +44,9 @@ Result<session::SettingFilter> filter_of(const Context& context, std::string_vie
 }
 
 /// Takes away what is as the factory left it. A value whose default no manual states stays.
-void keep_changed(const drive::Profile& profile, Backup& backup) {
-  const auto factory = factory_side(profile, backup.identity.node);
-  std::erase_if(backup.entries, [&](const Backup::Entry& entry) {
+void keep_changed(const drive::Profile& profile, settings::Backup& backup) {
+  const auto factory = settings::factory_side(profile, backup.identity.node);
+  std::erase_if(backup.entries, [&](const settings::Backup::Entry& entry) {
     const auto found = factory.values.find(entry.object);
     return !entry.bytes || (found != factory.values.end() && found->second == *entry.bytes);
   });
@@ -62,13 +64,13 @@ struct Saved {
   std::size_t left_out = 0;
 };
 
-Result<Saved> save(Context& context, Backup backup, bool changed, BackupFormat format,
+Result<Saved> save(Context& context, settings::Backup backup, bool changed, settings::BackupFormat format,
                    const std::filesystem::path& file) {
   if (changed) keep_changed(*context.profile, backup);
-  tell_left_out(context, backup);
+  settings::tell_left_out(context, backup);
   Saved out;
   for (const auto& entry : backup.entries) ++(entry.bytes ? out.values : out.left_out);
-  const auto text = backup_text(context, backup, format, file);
+  const auto text = settings::backup_text(context, backup, format, file);
   if (!text) return tl::unexpected<Error>(text.error());
   if (const auto written = write_file_atomically(file, *text); !written)
     return tl::unexpected<Error>(written.error());
@@ -81,7 +83,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   if (!wanted) return tl::unexpected<Error>(wanted.error());
   const std::filesystem::path path(arguments.text("file"));
   const bool many = context.nodes.size() > 1;
-  const auto format = format_of(path, arguments.text("--format"));
+  const auto format = settings::format_of(path, arguments.text("--format"));
   if (many)
     if (const auto made = make_folder(path); !made) return tl::unexpected<Error>(made.error());
   const auto snapshots = session::take_snapshots(*context.session, *context.profile, context.nodes, *wanted);
@@ -89,14 +91,14 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   table.columns = {{"node"}, {"file"}, {"values"}, {"left_out", "left out"}, {"error", "", Show::json}};
   for (std::size_t i = 0; i < snapshots.size(); ++i) {
     const auto node = context.nodes[i];
-    const auto file = many ? path / fmt::format("node-{}{}", node, extension_of(format)) : path;
-    const auto saved =
-        snapshots[i] ? save(context, make_backup(context, *snapshots[i]), only == kChanged, format, file)
-                     : Result<Saved>(tl::unexpected<Error>(snapshots[i].error()));
+    const auto file = many ? path / fmt::format("node-{}{}", node, settings::extension_of(format)) : path;
+    const auto saved = snapshots[i] ? save(context, settings::make_backup(context, *snapshots[i]),
+                                           only == kChanged, format, file)
+                                    : Result<Saved>(tl::unexpected<Error>(snapshots[i].error()));
     if (!saved) context.errors.push_back(saved.error());
     table.rows.push_back({node, saved ? Value(file.string()) : Value("not written"),
                           saved ? saved->values : 0U, saved ? saved->left_out : 0U,
-                          saved ? Value() : error_record(saved.error())});
+                          saved ? Value() : show::error_record(saved.error())});
   }
   table.json_only = context.errors.size() == snapshots.size();
   return Value(std::move(table));

@@ -4,13 +4,15 @@
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "canopen/cob_id.hpp"
-#include "commands/change.hpp"
-#include "commands/command.hpp"
-#include "commands/restoring.hpp"
-#include "commands/setting_options.hpp"
+#include "command/command.hpp"
+#include "command/setting_options.hpp"
+#include "settings/change.hpp"
+#include "settings/restoring.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 using report::Value;
 
@@ -54,18 +56,18 @@ Result<Value> run(Context& context, const Arguments& arguments) {
     return tl::unexpected<Error>(right.error());
   const auto snapshot = session::take_snapshots(*context.session, *context.profile, *from, {}).front();
   if (!snapshot) return tl::unexpected<Error>(snapshot.error());
-  const auto backup = make_backup(context, *snapshot);
-  tell_left_out(context, backup);
+  const auto backup = settings::make_backup(context, *snapshot);
+  settings::tell_left_out(context, backup);
   report::List out;
   bool failed = false;
   for (std::size_t i = 0; i < to->size() && !failed; ++i) {
     const auto node = (*to)[i];
-    auto done = put_into(context, backup, fmt::format("node {}", from->front()), node,
-                         fmt::format("before-clone-node-{}.json", node),
-                         {.choice = {.force = arguments.has("--force")},
-                          .keep = arguments.has("--keep"),
-                          .unlock = arguments.has("--unlock"),
-                          .resume = arguments.has("--resume")});
+    auto done = settings::put_into(context, backup, fmt::format("node {}", from->front()), node,
+                                   fmt::format("before-clone-node-{}.json", node),
+                                   {.choice = {.force = arguments.has("--force")},
+                                    .keep = arguments.has("--keep"),
+                                    .unlock = arguments.has("--unlock"),
+                                    .resume = arguments.has("--resume")});
     // One that went wrong ends the work: the others stay as they are.
     if (!done && out.empty()) return tl::unexpected<Error>(done.error());
     if (!done) {

@@ -1,10 +1,12 @@
-#include "commands/command.hpp"
-#include "commands/completion_words.hpp"
-#include "commands/shell_completion.hpp"
+#include "command/command.hpp"
+#include "command/completion_words.hpp"
+#include "command/shell_completion.hpp"
 #include "drive/naming.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 constexpr std::string_view kWhat[] = {"bash", "zsh", "fish", "objects", "parameters", "families"};
 

@@ -5,12 +5,14 @@
 #include "base/text.hpp"
 #include "can/asc.hpp"
 #include "can/trace.hpp"
-#include "commands/command.hpp"
-#include "commands/frame_filter.hpp"
-#include "commands/recording.hpp"
+#include "command/command.hpp"
+#include "command/frame_filter.hpp"
+#include "traffic/recording.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 using report::Value;
 
@@ -27,16 +29,17 @@ constexpr Parameter kParameters[] = {
 Result<Value> run(Context& context, const Arguments& arguments) {
   auto filter = frame_filter(context, arguments);
   if (!filter) return tl::unexpected<Error>(filter.error());
-  const auto text = read_recording(arguments.text("file"));
+  const auto text = traffic::read_recording(arguments.text("file"));
   if (!text) return tl::unexpected<Error>(text.error());
-  FrameLog log(context, std::move(*filter), arguments.has("--raw"));
-  const auto strays = for_each_frame(*text, [&](const can::LogFrame& line) {
+  traffic::FrameLog log(context, std::move(*filter), arguments.has("--raw"));
+  const auto strays = traffic::for_each_frame(*text, [&](const can::LogFrame& line) {
     log.add(line.time, line.interface_name, line.frame);
     return true;
   });
   log.flush();
-  if (log.count() == 0) return no_frames(arguments.text("file"));
-  for (auto& notice : notices(arguments.text("file"), strays)) context.notices.push_back(std::move(notice));
+  if (log.count() == 0) return traffic::no_frames(arguments.text("file"));
+  for (auto& notice : traffic::notices(arguments.text("file"), strays))
+    context.notices.push_back(std::move(notice));
   if (!context.keeps_samples) return Value();
   return Value(log.take_kept());
 }

@@ -3,13 +3,15 @@
 
 #include "base/number.hpp"
 #include "canopen/cob_id.hpp"
-#include "commands/command.hpp"
-#include "commands/comparison.hpp"
-#include "commands/dictionary_comparison.hpp"
-#include "commands/setting_options.hpp"
+#include "command/command.hpp"
+#include "command/setting_options.hpp"
+#include "settings/comparison.hpp"
+#include "settings/dictionary_comparison.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 using report::Value;
 
@@ -26,7 +28,7 @@ constexpr Parameter kParameters[] = {
 /// One word of `diff`: a file, a drive on the bus, or the factory values.
 struct Operand {
   std::string word;
-  std::optional<BackupSource> source;
+  std::optional<settings::BackupSource> source;
   std::uint8_t node = 0;  ///< Of a drive.
 
   bool is_factory() const { return !source && node == 0; }
@@ -42,7 +44,7 @@ Result<Operand> parse_operand(std::string_view word, settings::LineReader* lines
     out.node = static_cast<std::uint8_t>(*number);
     return out;
   }
-  auto source = open_backup(word, lines);
+  auto source = settings::open_backup(word, lines);
   if (!source) {
     if (parse_digits(word, 10)) source.error().hint = fmt::format("a drive is named {}{}", kNode, word);
     return tl::unexpected<Error>(source.error());
@@ -69,12 +71,12 @@ class Difference {
       }
     const bool whole = std::none_of(operands_.begin(), operands_.end(),
                                     [](const Operand& operand) { return operand.is_factory(); });
-    auto comparison = compare(profile_, sides_[0], sides_[1], whole, context_->chinese);
+    auto comparison = settings::compare(profile_, sides_[0], sides_[1], whole, context_->chinese);
     if (comparison.different > 0)
-      context_->errors.push_back(differences_error(comparison, sides_[0], sides_[1]));
+      context_->errors.push_back(settings::differences_error(comparison, sides_[0], sides_[1]));
     if (!batch) return Value(std::move(comparison.record));
     report::List lines;
-    for (auto& line : lines_between(profile_, sides_[0], sides_[1], whole))
+    for (auto& line : settings::lines_between(profile_, sides_[0], sides_[1], whole))
       lines.emplace_back(std::move(line));
     return Value(std::move(lines));
   }
@@ -88,8 +90,8 @@ class Difference {
     profile_ = context_->profile;
     for (const auto& operand : operands_) {
       if (profile_ != nullptr || !operand.source) continue;
-      auto name = family_of(*operand.source);
-      if (name.empty() && operand.source->format == BackupFormat::dcf && are_files())
+      auto name = settings::family_of(*operand.source);
+      if (name.empty() && operand.source->format == settings::BackupFormat::dcf && are_files())
         name = operand.source->file;
       const auto found =
           name.empty() ? Result<const drive::Profile*>(nullptr) : context_->front_end->family(name);
@@ -102,11 +104,11 @@ class Difference {
                 "add -d FAMILY; `drives` lists families");
   }
 
-  Result<Side> side_of_operand(std::size_t i) {
+  Result<settings::Side> side_of_operand(std::size_t i) {
     const auto& operand = operands_[i];
     if (operand.source) return side_of_file(i);
     if (operand.node != 0) return side_of_node(i);
-    return factory_side(*profile_, other_node(i));
+    return settings::factory_side(*profile_, other_node(i));
   }
 
   /// The node that a side without one of its own stands for.
@@ -114,19 +116,20 @@ class Difference {
     return operands_[1 - i].node != 0 ? operands_[1 - i].node : sides_[1 - i].node;
   }
 
-  Result<Side> side_of_file(std::size_t i) {
-    const auto backup = read_backup(*context_, *operands_[i].source, profile_, other_node(i), skip_invalid_);
+  Result<settings::Side> side_of_file(std::size_t i) {
+    const auto backup =
+        settings::read_backup(*context_, *operands_[i].source, profile_, other_node(i), skip_invalid_);
     if (!backup) return tl::unexpected<Error>(backup.error());
     if (!family_.empty() && family_ != backup->family)
       return fail(Errc::negative,
                   fmt::format("{} is of {}, {} of {}: they have nothing to compare", operands_[1 - i].word,
                               family_, operands_[i].word, backup->family));
     family_ = backup->family;
-    return side_of(*backup, operands_[i].word);
+    return settings::side_of(*backup, operands_[i].word);
   }
 
   /// What a file holds is read from the drive; all settings are where there is no file.
-  Result<Side> side_of_node(std::size_t i) {
+  Result<settings::Side> side_of_node(std::size_t i) {
     const auto& operand = operands_[i];
     if (!family_.empty() && family_ != profile_->family)
       return fail(Errc::refused,
@@ -144,7 +147,7 @@ class Difference {
         if (setting.left_out.empty()) objects.push_back(setting.entry->address);
     const auto read = session::read_objects(**session, operand.node, objects);
     if (!read) return tl::unexpected<Error>(read.error());
-    Side out{operand.word, operand.node, {}};
+    settings::Side out{operand.word, operand.node, {}};
     for (const auto& entry : *read)
       if (entry.bytes) out.values.emplace(entry.object, *entry.bytes);
     return out;
@@ -155,7 +158,7 @@ class Difference {
   bool skip_invalid_ = false;
   const drive::Profile* profile_ = nullptr;
   std::string family_;  ///< Of the files read so far.
-  Side sides_[2];
+  settings::Side sides_[2];
 };
 
 Result<Value> run(Context& context, const Arguments& arguments) {
@@ -169,7 +172,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   if (operands[0].source && operands[1].source && are_data_sheets(*operands[0].source, *operands[1].source))
     return batch ? fail(Errc::usage, "two data sheets (EDS) have no settings that lines could write",
                         "leave --batch out to compare their dictionaries")
-                 : compare_data_sheets(context, *operands[0].source, *operands[1].source);
+                 : settings::compare_data_sheets(context, *operands[0].source, *operands[1].source);
   return Difference(context, std::move(operands), arguments.has("--skip-invalid")).run(batch);
 }
 

@@ -1,13 +1,15 @@
 #include <fmt/format.h>
 
-#include "commands/command.hpp"
-#include "commands/planned_messages.hpp"
-#include "commands/records.hpp"
+#include "command/command.hpp"
 #include "drive/cia402.hpp"
-#include "session/power.hpp"
+#include "motion/power.hpp"
+#include "show/planned_messages.hpp"
+#include "show/records.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 using report::Show;
 using report::Value;
@@ -19,13 +21,13 @@ report::Table state_table() {
 }
 
 /// What is known of one node now goes into the table and beside it.
-void tell(Context& context, std::uint8_t node, const session::PowerDownResult& done,
+void tell(Context& context, std::uint8_t node, const motion::PowerDownResult& done,
           std::string_view done_word, report::Table& table) {
   if (!done.outcome) context.errors.push_back(done.outcome.error());
   const bool energised = !done.statusword || drive::is_energised(done.state());
   table.rows.push_back({node, done.statusword ? Value(drive::name(done.state())) : Value(), Value(energised),
                         done.outcome ? Value(done_word) : Value("failed"),
-                        done.outcome ? Value() : error_record(done.outcome.error())});
+                        done.outcome ? Value() : show::error_record(done.outcome.error())});
   for (const auto& note : done.notes) context.notices.push_back(fmt::format("node {}: {}", node, note));
   if (energised)
     context.notices.push_back(
@@ -35,33 +37,33 @@ void tell(Context& context, std::uint8_t node, const session::PowerDownResult& d
             : fmt::format("WHETHER NODE {} IS ENERGISED IS NOT KNOWN: TAKE THE POWER AWAY", node));
 }
 
-Value planned(const Context& context, session::PowerAim aim) {
+Value planned(const Context& context, motion::PowerAim aim) {
   std::vector<session::PlannedMessage> messages;
   for (const auto node : context.nodes)
-    for (auto& message : session::planned_power_down(node, aim)) messages.push_back(std::move(message));
-  return planned_messages(context, messages);
+    for (auto& message : motion::planned_power_down(node, aim)) messages.push_back(std::move(message));
+  return show::planned_messages(context, messages);
 }
 
 /// All nodes are told at the same time, whatever becomes of the others.
-Result<Value> run(Context& context, session::PowerAim aim, std::string_view done_word) {
+Result<Value> run(Context& context, motion::PowerAim aim, std::string_view done_word) {
   if (context.dry_run) return planned(context, aim);
   auto table = state_table();
-  std::vector<session::PowerDownPlan> plans;
+  std::vector<motion::PowerDownPlan> plans;
   for (const auto node : context.nodes) {
     plans.emplace_back();
     plans.back().node = node;
     plans.back().aim = aim;
   }
-  const auto done = session::take_down(*context.session, plans);
+  const auto done = motion::take_down(*context.session, plans);
   for (std::size_t i = 0; i < plans.size(); ++i) tell(context, plans[i].node, done[i], done_word, table);
   return Value(std::move(table));
 }
 
 Result<Value> run_disable(Context& context, const Arguments&) {
-  return run(context, session::PowerAim::disable, "disabled");
+  return run(context, motion::PowerAim::disable, "disabled");
 }
 Result<Value> run_quick_stop(Context& context, const Arguments&) {
-  return run(context, session::PowerAim::stop, "stopped");
+  return run(context, motion::PowerAim::stop, "stopped");
 }
 
 }  // namespace

@@ -1,9 +1,11 @@
 #include "base/text.hpp"
-#include "commands/command.hpp"
-#include "commands/drive_rules.hpp"
+#include "command/command.hpp"
+#include "show/drive_rules.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 constexpr Parameter kParameters[] = {
     {.name = "family", .help = "show the rules of this family", .kind = Kind::family},
@@ -14,7 +16,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
     const auto profile = drive::load_profile(arguments.text("family"), context.drive_folders);
     if (!profile) return tl::unexpected<Error>(profile.error());
     for (const auto& warning : profile->warnings) context.notices.push_back(warning);
-    return report::Value(rules_record(*profile, context.chinese));
+    return report::Value(show::rules_record(*profile, context.chinese));
   }
   report::Table table;
   table.columns = {{"family"},

@@ -4,12 +4,14 @@
 #include <iostream>
 
 #include "base/file.hpp"
-#include "commands/command.hpp"
-#include "commands/records.hpp"
+#include "command/command.hpp"
 #include "od/eds.hpp"
+#include "show/records.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 using report::Show;
 
@@ -77,7 +79,7 @@ report::Record record_of(const std::string& path, const Error& error, bool alone
     out.push_back({key, report::Value(), Show::json});
   out.push_back({"findings", report::List{}, Show::json});
   if (!alone) out.push_back({"error", error.message, Show::text});
-  out.push_back({"error", error_record(error), Show::json});
+  out.push_back({"error", show::error_record(error), Show::json});
   return out;
 }
 

@@ -1,16 +1,18 @@
 #include <fmt/format.h>
 
-#include "commands/command.hpp"
-#include "commands/left_energised.hpp"
-#include "commands/motion_options.hpp"
-#include "commands/motion_result.hpp"
-#include "commands/planned_messages.hpp"
-#include "commands/records.hpp"
+#include "command/command.hpp"
+#include "command/motion_options.hpp"
 #include "drive/cia402.hpp"
-#include "session/operation_mode.hpp"
+#include "motion/left_energised.hpp"
+#include "motion/motion_result.hpp"
+#include "motion/operation_mode.hpp"
+#include "show/planned_messages.hpp"
+#include "show/records.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 using report::Show;
 using report::Value;
@@ -18,10 +20,10 @@ using report::Value;
 constexpr Parameter kParameters[] = {kTurnOption};
 
 /// Up to "operation enabled" with harmless targets. On every other way out the drive is de-energised.
-Result<void> energise(Context& context, session::Motion& motion, session::Rehearsal& rehearsal) {
+Result<void> energise(Context& context, motion::Motion& motion, session::Rehearsal& rehearsal) {
   // Answers to other masters that came while a person was thinking are not for what is asked now.
   if (const auto heard = context.session->listen(); !heard) return heard;
-  session::MotionGuard guard(*context.session, motion.units(), motion.node());
+  motion::MotionGuard guard(*context.session, motion.units(), motion.node());
   if (context.dry_run) guard.rehearse(rehearsal);
   if (const auto done = guard.neutral_targets(); !done) return done;
   if (const auto done = guard.start_node(); !done) return done;
@@ -29,20 +31,20 @@ Result<void> energise(Context& context, session::Motion& motion, session::Rehear
   return guard.release();
 }
 
-Result<void> enable_one(Context& context, session::Motion& motion, session::Rehearsal& rehearsal) {
+Result<void> enable_one(Context& context, motion::Motion& motion, session::Rehearsal& rehearsal) {
   if (const auto ready = motion.prepare(); !ready) return tl::unexpected<Error>(ready.error());
   // It stays energised after servoctl has gone, so nothing can watch servoctl.
-  const auto items = session::preflight(*context.session, motion.units(), motion.node(), {}, context.chinese);
+  const auto items = motion::preflight(*context.session, motion.units(), motion.node(), {}, context.chinese);
   if (!items) return tl::unexpected<Error>(items.error());
-  context.tell(preflight_text(*items));
-  if (const auto possible = session::check_preflight(*items, motion.node()); !possible)
+  context.tell(motion::preflight_text(*items));
+  if (const auto possible = motion::check_preflight(*items, motion.node()); !possible)
     return tl::unexpected<Error>(possible.error());
   if (context.dry_run) return energise(context, motion, rehearsal);
-  const auto mode = session::read_mode(*context.session, motion.node());
+  const auto mode = motion::read_mode(*context.session, motion.node());
   if (!mode) return tl::unexpected<Error>(mode.error());
   const auto question = fmt::format(
       "Energise node {} and leave it so, in mode {}? Nothing will watch over it, and the motor may move.",
-      motion.node(), session::mode_text(*context.profile, *mode, context.chinese));
+      motion.node(), motion::mode_text(*context.profile, *mode, context.chinese));
   if (const auto answer = context.confirm(question); !answer) return tl::unexpected<Error>(answer.error());
   return energise(context, motion, rehearsal);
 }
@@ -53,13 +55,13 @@ Result<Value> planned(Context& context, const Arguments& arguments) {
   for (const auto node : context.nodes) {
     auto options = motion_options(context, arguments);
     if (!options) return tl::unexpected<Error>(options.error());
-    session::Motion motion(*context.session, *context.profile, node, std::move(*options));
+    motion::Motion motion(*context.session, *context.profile, node, std::move(*options));
     if (const auto done = enable_one(context, motion, rehearsal); !done) {
       context.errors.push_back(done.error());
       break;
     }
   }
-  return planned_messages(context, rehearsal.messages());
+  return show::planned_messages(context, rehearsal.messages());
 }
 
 Result<Value> run(Context& context, const Arguments& arguments) {
@@ -70,9 +72,9 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   for (const auto node : context.nodes) {
     auto options = motion_options(context, arguments);
     if (!options) return tl::unexpected<Error>(options.error());
-    session::Motion motion(*context.session, *context.profile, node, std::move(*options));
+    motion::Motion motion(*context.session, *context.profile, node, std::move(*options));
     auto done = enable_one(context, motion, unused);
-    session::Power power(*context.session, *context.profile, node);
+    motion::Power power(*context.session, *context.profile, node);
     const auto state = power.state();
     if (done && state && *state != drive::DriveState::operation_enabled)
       done = fail(session::drive_error(
@@ -83,8 +85,8 @@ Result<Value> run(Context& context, const Arguments& arguments) {
     table.rows.push_back({node, state ? Value(drive::name(*state)) : Value(),
                           state ? Value(drive::is_energised(*state)) : Value(),
                           done ? "ENERGISED, and stays so" : "failed",
-                          done ? Value() : error_record(done.error())});
-    if (done) context.notices.push_back(energised_notice(node));
+                          done ? Value() : show::error_record(done.error())});
+    if (done) context.notices.push_back(motion::energised_notice(node));
     if (!done) break;
   }
   return Value(std::move(table));

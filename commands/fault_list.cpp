@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
-#include "commands/command.hpp"
-#include "commands/fault_records.hpp"
-#include "commands/records.hpp"
+#include "command/command.hpp"
+#include "show/fault_records.hpp"
+#include "show/records.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 constexpr Parameter kParameters[] = {
     {.name = "pattern", .help = "a code (0x8130, AL.28) or a word", .kind = Kind::text},
@@ -17,7 +19,7 @@ std::string code_text(const drive::Fault& fault) {
 
 bool wanted(const drive::Fault& fault, std::string_view pattern) {
   for (const auto& text : {code_text(fault), fault.extra, fault.panel, fault.name, fault.name_zh})
-    if (contains_nocase(text, pattern)) return true;
+    if (show::contains_nocase(text, pattern)) return true;
   return false;
 }
 
@@ -29,9 +31,9 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   if (found.empty())
     return fail(Errc::negative, fmt::format("no fault of {} fits '{}'", context.profile->family, pattern),
                 "`fault list` shows all");
-  if (found.size() > kFewFaults) return report::Value(fault_table(found, context.chinese));
+  if (found.size() > show::kFewFaults) return report::Value(show::fault_table(found, context.chinese));
   report::List out;
-  for (const auto* fault : found) out.emplace_back(fault_record(*fault, context.chinese));
+  for (const auto* fault : found) out.emplace_back(show::fault_record(*fault, context.chinese));
   return report::Value(std::move(out));
 }
 

@@ -1,13 +1,15 @@
 #include <fmt/format.h>
 
-#include "commands/command.hpp"
-#include "commands/planned_messages.hpp"
-#include "commands/records.hpp"
+#include "command/command.hpp"
 #include "drive/standard_objects.hpp"
-#include "session/fault_reset.hpp"
+#include "motion/fault_reset.hpp"
+#include "show/planned_messages.hpp"
+#include "show/records.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 using report::Show;
 using report::Value;
@@ -24,14 +26,14 @@ std::string whom(const Context& context) {
 }
 
 void add_failure(Context& context, report::Table& table, std::uint8_t node, const Error& error) {
-  table.rows.push_back({node, "failed", error_record(error)});
+  table.rows.push_back({node, "failed", show::error_record(error)});
   context.errors.push_back(error);
 }
 
 Value planned_resets(Context& context) {
   std::vector<session::PlannedMessage> messages;
   for (const auto node : context.nodes) {
-    const auto planned = session::plan_fault_reset(*context.session, context.profile, node);
+    const auto planned = motion::plan_fault_reset(*context.session, context.profile, node);
     if (!planned) {
       context.errors.push_back(planned.error());
       continue;
@@ -40,7 +42,7 @@ Value planned_resets(Context& context) {
       context.notices.push_back(fmt::format("node {} is in no fault: nothing would be sent", node));
     messages.insert(messages.end(), planned->begin(), planned->end());
   }
-  return planned_messages(context, messages);
+  return show::planned_messages(context, messages);
 }
 
 Result<Value> run_reset(Context& context, const Arguments&) {
@@ -49,11 +51,11 @@ Result<Value> run_reset(Context& context, const Arguments&) {
   if (const auto answer = context.confirm(question); !answer) return tl::unexpected<Error>(answer.error());
   auto table = result_table();
   for (const auto node : context.nodes) {
-    const auto done = session::reset_fault(*context.session, context.profile, node);
+    const auto done = motion::reset_fault(*context.session, context.profile, node);
     if (!done)
       add_failure(context, table, node, done.error());
     else
-      table.rows.push_back({node, *done == session::FaultReset::done ? "reset" : "no fault", Value()});
+      table.rows.push_back({node, *done == motion::FaultReset::done ? "reset" : "no fault", Value()});
   }
   return Value(std::move(table));
 }
@@ -62,7 +64,7 @@ Result<Value> run_clear(Context& context, const Arguments&) {
   std::vector<session::PlannedMessage> planned;
   for (const auto node : context.nodes)
     planned.push_back(session::planned_write({node, objects::kErrorHistory, Bytes{0}}));
-  if (context.dry_run) return planned_messages(context, planned);
+  if (context.dry_run) return show::planned_messages(context, planned);
   const auto question = fmt::format("Clear the fault history of {}?", whom(context));
   if (const auto answer = context.confirm(question); !answer) return tl::unexpected<Error>(answer.error());
   auto table = result_table();

@@ -2,15 +2,17 @@
 #include <algorithm>
 
 #include "canopen/emergency.hpp"
-#include "commands/command.hpp"
-#include "commands/fault_records.hpp"
-#include "commands/reading.hpp"
-#include "commands/records.hpp"
+#include "command/command.hpp"
 #include "drive/cia402.hpp"
 #include "drive/standard_objects.hpp"
+#include "show/fault_records.hpp"
+#include "show/reading.hpp"
+#include "show/records.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 using report::List;
 using report::Record;
@@ -46,13 +48,13 @@ class FaultReport {
     add_history();
     if (failure_) return tl::unexpected<Error>(*failure_);
     // A few are told in full; of many `fault list PANEL` tells more.
-    const bool few = candidates_.size() <= kFewFaults;
+    const bool few = candidates_.size() <= show::kFewFaults;
     for (const auto* fault : candidates_)
       if (few)
-        out_.push_back(
-            {"alarm_" + fault->panel, fault_record(*fault, context_->chinese), Show::text, title_of(*fault)});
+        out_.push_back({"alarm_" + fault->panel, show::fault_record(*fault, context_->chinese), Show::text,
+                        title_of(*fault)});
     if (!candidates_.empty())
-      out_.push_back({"alarms", fault_table(candidates_, context_->chinese),
+      out_.push_back({"alarms", show::fault_table(candidates_, context_->chinese),
                       few ? Show::json : Show::everywhere, "what it may be"});
     return std::move(out_);
   }
@@ -73,7 +75,7 @@ class FaultReport {
            drive::faults_of(context_->profile->faults, context_->profile->rules.emergency, code, vendor))
         if (std::find(candidates_.begin(), candidates_.end(), fault) == candidates_.end())
           candidates_.push_back(fault);
-    return fault_words(context_->profile, context_->chinese, code, vendor);
+    return show::fault_words(context_->profile, context_->chinese, code, vendor);
   }
 
   std::string title_of(const drive::Fault& fault) const {
@@ -153,7 +155,7 @@ class FaultReport {
       const auto vendor = value >> 16U;
       const std::array<std::uint8_t, 5> bytes{static_cast<std::uint8_t>(vendor & 0xFFU),
                                               static_cast<std::uint8_t>(vendor >> 8U)};
-      const auto text = fault_words(context_->profile, context_->chinese, code, bytes);
+      const auto text = show::fault_words(context_->profile, context_->chinese, code, bytes);
       records.emplace_back(Record{{"code", code}, {"vendor", vendor}, {"text", text}});
       table.rows.push_back({i, report::Hex{code, 4}, report::Hex{vendor, 4}, text});
     }

@@ -1,8 +1,10 @@
-#include "commands/command.hpp"
-#include "commands/motion_options.hpp"
+#include "command/command.hpp"
+#include "command/motion_options.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
     {.name = "method", .help = "number or name of 6098h; the drive's own unless said", .kind = Kind::value},
@@ -16,7 +18,7 @@ constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
 }));
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
-  session::Home home;
+  motion::Home home;
   home.method = arguments.text("method");
   home.fast = arguments.text("--speed");
   home.slow = arguments.text("--search");
@@ -26,7 +28,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   home.longest = *longest;
   const auto request = motion_request(context, arguments);
   if (!request) return tl::unexpected<Error>(request.error());
-  return run_motion(context, *request, motion_run(home, session::plan_home, session::run_home));
+  return motion::run_motion(context, *request, motion::motion_run(home, motion::plan_home, motion::run_home));
 }
 
 }  // namespace

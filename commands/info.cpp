@@ -1,14 +1,16 @@
 #include <fmt/format.h>
 
-#include "commands/command.hpp"
-#include "commands/identity.hpp"
-#include "commands/records.hpp"
+#include "command/command.hpp"
 #include "drive/cia402.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/identify.hpp"
+#include "show/identity.hpp"
+#include "show/records.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 using report::Record;
 using report::Value;
@@ -58,7 +60,7 @@ Value one(const session::Identity& node, std::span<const drive::Family> families
         {"family", fmt::format("{} ({}{}), as you said", profile->family, maker, name), report::Show::text});
     out.push_back({"family", profile->family, report::Show::json});
   } else {
-    const auto text = guess_text(guesses);
+    const auto text = show::guess_text(guesses);
     out.push_back({"family",
                    text.empty() ? Value("none fits") : Value(text + "  (a guess, no proof: say -d FAMILY)"),
                    report::Show::text});

@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
 #include "base/number.hpp"
-#include "commands/command.hpp"
-#include "commands/motion_options.hpp"
+#include "command/command.hpp"
+#include "command/motion_options.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
     {.name = "speed",
@@ -31,17 +33,17 @@ class HeldKey {
   HeldKey(std::unique_ptr<command::Keys> keys, session::Session& session)
       : keys_(std::move(keys)), session_(&session) {}
 
-  session::HoldKey operator()() {
+  motion::HoldKey operator()() {
     for (auto key = keys_->take(); key != Keys::Key::none; key = keys_->take()) {
       const bool plus = key == Keys::Key::right || key == Keys::Key::up;
       const bool minus = key == Keys::Key::left || key == Keys::Key::down;
-      if (!plus && !minus) return session::HoldKey::stop;
-      const auto now_held = plus ? session::HoldKey::plus : session::HoldKey::minus;
+      if (!plus && !minus) return motion::HoldKey::stop;
+      const auto now_held = plus ? motion::HoldKey::plus : motion::HoldKey::minus;
       repeats_ = now_held == held_;
       held_ = now_held;
       pressed_ = session_->now();
     }
-    if (session_->now() - pressed_ > (repeats_ ? kRepeat : kFirstRepeat)) held_ = session::HoldKey::none;
+    if (session_->now() - pressed_ > (repeats_ ? kRepeat : kFirstRepeat)) held_ = motion::HoldKey::none;
     return held_;
   }
 
@@ -51,13 +53,13 @@ class HeldKey {
 
   std::unique_ptr<command::Keys> keys_;
   session::Session* session_;
-  session::HoldKey held_ = session::HoldKey::none;
+  motion::HoldKey held_ = motion::HoldKey::none;
   bool repeats_ = false;
   TimePoint pressed_{};
 };
 
-Result<session::Jog> parse_jog(const Arguments& arguments) {
-  session::Jog jog;
+Result<motion::Jog> parse_jog(const Arguments& arguments) {
+  motion::Jog jog;
   jog.speed = arguments.text("speed");
   const auto length = duration_option(arguments, "--for");
   if (!length) return tl::unexpected<Error>(length.error());
@@ -78,9 +80,9 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   if (!jog) return tl::unexpected<Error>(jog.error());
   const bool by_key = !jog->length && !jog->turns;
   const auto missing = fail(Errc::usage, "how long?", "add --for 2s or --turns 3; keys need a terminal");
-  MotionRun motion;
-  motion.plan = [&](session::Motion& m) { return session::plan_jog(m, *jog); };
-  motion.run = [&](session::Motion& m, const session::MotionPlan& plan) {
+  motion::MotionRun motion;
+  motion.plan = [&](motion::Motion& m) { return motion::plan_jog(m, *jog); };
+  motion.run = [&](motion::Motion& m, const motion::MotionPlan& plan) {
     if (by_key) {
       auto keys = context.front_end->open_keys();
       if (keys == nullptr) return m.finish(missing);
@@ -90,7 +92,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
       auto held = std::make_shared<HeldKey>(std::move(keys), m.session());
       jog->keys = [held] { return (*held)(); };
     }
-    auto done = session::run_jog(m, *jog, plan);
+    auto done = motion::run_jog(m, *jog, plan);
     jog->keys = {};
     return done;
   };
@@ -99,7 +101,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
     return missing;
   const auto request = motion_request(context, arguments);
   if (!request) return tl::unexpected<Error>(request.error());
-  return run_motion(context, *request, motion);
+  return motion::run_motion(context, *request, motion);
 }
 
 }  // namespace

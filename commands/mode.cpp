@@ -1,16 +1,18 @@
 #include <fmt/format.h>
 
 #include "base/text.hpp"
-#include "commands/command.hpp"
-#include "commands/planned_messages.hpp"
-#include "commands/records.hpp"
+#include "command/command.hpp"
 #include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
-#include "session/operation_mode.hpp"
-#include "session/power.hpp"
+#include "motion/operation_mode.hpp"
+#include "motion/power.hpp"
+#include "show/planned_messages.hpp"
+#include "show/records.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 using report::Show;
 using report::Value;
@@ -47,9 +49,8 @@ struct Wanted {
 Result<void> check_change(Context& context, const Wanted& wanted) {
   auto& session = *context.session;
   const auto& profile = *context.profile;
-  if (const auto known = session::check_mode(session, profile, wanted.node, wanted.mode); !known)
-    return known;
-  session::Power power(session, profile, wanted.node);
+  if (const auto known = motion::check_mode(session, profile, wanted.node, wanted.mode); !known) return known;
+  motion::Power power(session, profile, wanted.node);
   const auto state = power.state();
   if (!state) return tl::unexpected<Error>(state.error());
   if (!drive::is_energised(*state)) return {};
@@ -61,7 +62,7 @@ Result<void> check_change(Context& context, const Wanted& wanted) {
 
 Result<void> change(Context& context, const Wanted& wanted) {
   if (const auto possible = check_change(context, wanted); !possible) return possible;
-  return session::set_mode(*context.session, *context.profile, wanted.node, wanted.mode);
+  return motion::set_mode(*context.session, *context.profile, wanted.node, wanted.mode);
 }
 
 Value planned(Context& context, std::int8_t mode) {
@@ -70,9 +71,9 @@ Value planned(Context& context, std::int8_t mode) {
     if (const auto possible = check_change(context, {node, mode}); !possible)
       context.errors.push_back(possible.error());
     else
-      messages.push_back(session::planned_write(session::mode_write(*context.profile, node, mode)));
+      messages.push_back(session::planned_write(motion::mode_write(*context.profile, node, mode)));
   }
-  return planned_messages(context, messages);
+  return show::planned_messages(context, messages);
 }
 
 Result<Value> run(Context& context, const Arguments& arguments) {
@@ -91,17 +92,17 @@ Result<Value> run(Context& context, const Arguments& arguments) {
                    {"error", "", Show::json}};
   for (const auto node : context.nodes) {
     const auto done = wanted ? change(context, {node, *wanted}) : Result<void>{};
-    const auto mode = session::read_mode(*context.session, node);
+    const auto mode = motion::read_mode(*context.session, node);
     if (!done) context.errors.push_back(done.error());
     if (done && !mode) context.errors.push_back(mode.error());
     const auto* failure = !done ? &done.error() : !mode ? &mode.error() : nullptr;
-    table.rows.push_back(
-        {node, mode ? Value(session::mode_text(*context.profile, *mode, context.chinese)) : Value(),
-         mode ? Value(*mode) : Value(),
-         failure != nullptr ? "failed"
-         : wanted           ? "set"
-                            : "",
-         failure != nullptr ? error_record(*failure) : Value()});
+    table.rows.push_back({node,
+                          mode ? Value(motion::mode_text(*context.profile, *mode, context.chinese)) : Value(),
+                          mode ? Value(*mode) : Value(),
+                          failure != nullptr ? "failed"
+                          : wanted           ? "set"
+                                             : "",
+                          failure != nullptr ? show::error_record(*failure) : Value()});
   }
   return Value(std::move(table));
 }

@@ -2,16 +2,18 @@
 #include <cmath>
 
 #include "base/number.hpp"
-#include "commands/bus_load.hpp"
-#include "commands/command.hpp"
-#include "commands/duration_option.hpp"
-#include "commands/frame_filter.hpp"
-#include "commands/listening.hpp"
-#include "commands/notice.hpp"
+#include "command/command.hpp"
+#include "command/duration_option.hpp"
+#include "command/frame_filter.hpp"
 #include "session/open_bus.hpp"
+#include "show/notice.hpp"
+#include "traffic/bus_load.hpp"
+#include "traffic/listening.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 using canopen::NodeEvent;
 using report::Value;
@@ -47,7 +49,7 @@ Result<std::uint32_t> bitrate_option(const Arguments& arguments) {
 }
 
 /// Puts the PDOs of the nodes into the book as the drives tell them.
-Result<void> ask_mappings(Context& context, PdoBook& book) {
+Result<void> ask_mappings(Context& context, show::PdoBook& book) {
   if (context.nodes.empty() || context.nodes.front() == 0)
     return fail(Errc::usage, "--ask needs to know which nodes", "add -n 1 or a list");
   auto answers = session::read_pdo_values(*context.session, context.profile, context.nodes);
@@ -63,14 +65,14 @@ bool is_loss(const NodeEvent& event) { return std::holds_alternative<NodeEvent::
 
 class Monitor {
  public:
-  Monitor(Context& context, FrameLog& log, std::uint32_t bitrate)
+  Monitor(Context& context, traffic::FrameLog& log, std::uint32_t bitrate)
       : context_(&context),
         log_(&log),
         load_(bitrate, context.session->now()),
         begin_(context.session->now()) {}
 
   Result<void> run(std::optional<Duration> length) {
-    Listener listener;
+    traffic::Listener listener;
     listener.on_frame = [this](const can::Frame& frame, TimePoint time) {
       load_.add(frame, time);
       log_->add(time - begin_, context_->session->url(), frame);
@@ -80,7 +82,7 @@ class Monitor {
       log_->flush();
     };
     context_->session->bus().gather(kDelay);
-    const auto ended = listen(*context_->session, length, listener);
+    const auto ended = traffic::listen(*context_->session, length, listener);
     context_->session->bus().gather(Duration::zero());
     return ended;
   }
@@ -112,15 +114,15 @@ class Monitor {
     for (const auto& event : context_->session->take_events()) {
       if (!is_loss(event)) continue;
       ++lost_;
-      auto text = notice_text(event, context_->profile, context_->chinese);
+      auto text = show::notice_text(event, context_->profile, context_->chinese);
       text = "ALARM " + text.substr(text.find(": ") + 2);
       log_->remark(event.time - begin_, "alarm", event.node, text, "heartbeat-lost");
     }
   }
 
   Context* context_;
-  FrameLog* log_;
-  BusLoad load_;
+  traffic::FrameLog* log_;
+  traffic::BusLoad load_;
   TimePoint begin_;
   std::size_t lost_ = 0;
 };
@@ -134,7 +136,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   if (!bitrate) return tl::unexpected<Error>(bitrate.error());
   if (const auto link = session::link_of(context.session->url()); *bitrate == 0 && link)
     bitrate = link->bitrate.value_or(0);
-  FrameLog log(context, std::move(*filter), arguments.has("--raw"));
+  traffic::FrameLog log(context, std::move(*filter), arguments.has("--raw"));
   if (arguments.has("--ask"))
     if (const auto asked = ask_mappings(context, log.decoder().pdos()); !asked)
       return tl::unexpected<Error>(asked.error());

@@ -1,8 +1,10 @@
-#include "commands/command.hpp"
-#include "commands/motion_options.hpp"
+#include "command/command.hpp"
+#include "command/motion_options.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
     {.name = "target",
@@ -18,13 +20,13 @@ constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
 }));
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
-  session::Move move;
+  motion::Move move;
   move.target = arguments.text("target");
   move.relative = arguments.has("--relative");
   move.speed = arguments.text("--speed");
   const auto request = motion_request(context, arguments);
   if (!request) return tl::unexpected<Error>(request.error());
-  return run_motion(context, *request, motion_run(move, session::plan_move, session::run_move));
+  return motion::run_motion(context, *request, motion::motion_run(move, motion::plan_move, motion::run_move));
 }
 
 }  // namespace

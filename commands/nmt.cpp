@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 #include <algorithm>
 
-#include "commands/command.hpp"
+#include "command/command.hpp"
 #include "drive/standard_objects.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 using canopen::NmtCommand;
 using report::Value;

@@ -4,15 +4,17 @@
 
 #include "base/number.hpp"
 #include "canopen/cob_id.hpp"
-#include "commands/command.hpp"
-#include "commands/duration_option.hpp"
-#include "commands/listening.hpp"
-#include "commands/notice.hpp"
+#include "command/command.hpp"
+#include "command/duration_option.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/scan.hpp"
+#include "show/notice.hpp"
+#include "traffic/listening.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 using canopen::NodeEvent;
 using report::Show;
@@ -116,7 +118,7 @@ class Log {
       row->gone = lost;
       row->emergencies += std::holds_alternative<canopen::Emergency>(event.what) ? event.times : 0;
       const std::chrono::duration<double> time = event.time - begin_;
-      const auto text = notice_text(event, context_->profile, context_->chinese);
+      const auto text = show::notice_text(event, context_->profile, context_->chinese);
       report::Record record{
           {"time", time.count()}, {"node", event.node}, {"event", event_name(event)}, {"text", text}};
       context_->emit(record, fmt::format("{:10.3f}  {}", time.count(), text));

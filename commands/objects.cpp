@@ -4,13 +4,15 @@
 #include "base/file.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
-#include "commands/command.hpp"
-#include "commands/reading.hpp"
-#include "commands/records.hpp"
+#include "command/command.hpp"
 #include "od/eds.hpp"
+#include "show/reading.hpp"
+#include "show/records.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 using report::Show;
 using report::Value;
@@ -21,7 +23,7 @@ constexpr Parameter kParameters[] = {
 
 Value default_of(const std::optional<od::NodeValue>& value) {
   if (!value) return {};
-  if (!value->plus_node_id) return od_value(value->value);
+  if (!value->plus_node_id) return show::od_value(value->value);
   const auto* number = std::get_if<std::uint64_t>(&value->value);
   return number != nullptr ? fmt::format("$NODEID+0x{:X}", *number)
                            : "$NODEID+" + od::to_string(value->value);
@@ -39,10 +41,10 @@ bool wanted(std::string_view pattern, const od::Object& object, const od::Entry&
   const auto address = to_string(entry.address);
   const auto name = object.name + " " + entry.name + " " + drive::entry_name(object, entry);
   if (pattern.find('*') != std::string_view::npos)
-    return fits(pattern, address) || fits(pattern, entry.name) ||
-           fits(pattern, drive::entry_name(object, entry));
+    return show::fits(pattern, address) || show::fits(pattern, entry.name) ||
+           show::fits(pattern, drive::entry_name(object, entry));
   if (const auto exact = parse_object_address(pattern)) return exact->index == entry.address.index;
-  return contains_nocase(name, pattern) || contains_nocase(entry.name_zh, pattern);
+  return show::contains_nocase(name, pattern) || show::contains_nocase(entry.name_zh, pattern);
 }
 
 /// What the data sheet says beside the dictionary; nothing where there is none.
@@ -93,16 +95,16 @@ report::List row(const Context& context, const od::Object& object, const od::Ent
           default_of(entry.low),
           default_of(entry.high),
           report::text_or_null(std::string(od::name(meaning.effect))),
-          labels_record(labels, false),
+          show::labels_record(labels, false),
           report::text_or_null(parameter != nullptr ? parameter->note : entry.note),
           parameter != nullptr ? Value(parameter->id) : Value(),
           report::text_or_null(std::string(encoding)),
           report::text_or_null(note_zh),
           doubts.sign(),
           !doubts.assumed.empty(),
-          marks_record(doubts.assumed),
+          show::marks_record(doubts.assumed),
           !doubts.contradicted.empty(),
-          marks_record(doubts.contradicted)};
+          show::marks_record(doubts.contradicted)};
 }
 
 /// What the values of an object stand for: a line each.

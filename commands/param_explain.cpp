@@ -1,9 +1,11 @@
-#include "commands/command.hpp"
-#include "commands/records.hpp"
+#include "command/command.hpp"
 #include "drive/naming.hpp"
+#include "show/records.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 constexpr Parameter kParameters[] = {
     {.name = "id", .help = "panel number or name: Pn0202", .kind = Kind::parameter, .required = true},
@@ -12,7 +14,7 @@ constexpr Parameter kParameters[] = {
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   const auto parameter = drive::resolve_parameter(*context.profile, arguments.text("id"));
   if (!parameter) return tl::unexpected<Error>(parameter.error());
-  return report::Value(parameter_record(**parameter, context.chinese));
+  return report::Value(show::parameter_record(**parameter, context.chinese));
 }
 
 }  // namespace

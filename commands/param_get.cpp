@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
-#include "commands/command.hpp"
-#include "commands/reading.hpp"
-#include "commands/records.hpp"
+#include "command/command.hpp"
+#include "show/reading.hpp"
+#include "show/records.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 constexpr Parameter kParameters[] = {
     {.name = "id",
@@ -28,7 +30,7 @@ Result<std::vector<drive::Target>> wanted(const drive::Profile& profile, std::sp
     }
     const auto before = out.size();
     for (const auto& parameter : profile.parameters)
-      if (fits(word, parameter.id) && parameter.object && od::readable(parameter.access))
+      if (show::fits(word, parameter.id) && parameter.object && od::readable(parameter.access))
         out.push_back(drive::target_at(&profile, *parameter.object));
     if (out.size() == before)
       return fail(Errc::usage, fmt::format("no readable parameter fits '{}'", word),
@@ -46,17 +48,17 @@ Result<void> check(Context& context, const Arguments& arguments) {
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   const auto targets = wanted(*context.profile, arguments.all("id"));
   if (!targets) return tl::unexpected<Error>(targets.error());
-  std::vector<Reading> readings;
+  std::vector<show::Reading> readings;
   std::vector<session::SdoRequest> requests;
   for (const auto node : context.nodes) {
     for (const auto& target : *targets) {
       readings.push_back({node, target, {}, Bytes{}});
-      requests.push_back({.node = node, .object = target.address, .size = size_of(readings.back())});
+      requests.push_back({.node = node, .object = target.address, .size = show::size_of(readings.back())});
     }
   }
   auto answers = context.session->transfer(requests);
   for (std::size_t i = 0; i < readings.size(); ++i) readings[i].bytes = std::move(answers[i]);
-  return report::Value(reading_table(context, readings));
+  return report::Value(show::reading_table(context, readings));
 }
 
 }  // namespace

@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
 #include "base/text.hpp"
-#include "commands/command.hpp"
-#include "commands/records.hpp"
+#include "command/command.hpp"
+#include "show/records.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 constexpr Parameter kParameters[] = {
     {.name = "pattern", .help = "a group (gain, terminal), a number with * (Pn02*)", .kind = Kind::text},
@@ -17,7 +19,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   std::vector<std::string> groups;
   for (const auto& parameter : context.profile->parameters) {
     if (groups.empty() || groups.back() != parameter.group) groups.push_back(parameter.group);
-    if (pattern.empty() || equals_nocase(parameter.group, pattern) || fits(pattern, parameter.id) ||
+    if (pattern.empty() || equals_nocase(parameter.group, pattern) || show::fits(pattern, parameter.id) ||
         drive::canonical_id(parameter.id) == drive::canonical_id(pattern))
       found.push_back(&parameter);
   }
@@ -25,7 +27,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
     return fail(
         Errc::negative, fmt::format("no parameter of {} fits '{}'", context.profile->family, pattern),
         groups.empty() ? "this family has no table of panel parameters" : "groups: " + one_of(groups));
-  return report::Value(parameter_table(found, context.chinese));
+  return report::Value(show::parameter_table(found, context.chinese));
 }
 
 }  // namespace

@@ -2,11 +2,13 @@
 #include <algorithm>
 
 #include "base/text.hpp"
-#include "commands/command.hpp"
-#include "commands/records.hpp"
+#include "command/command.hpp"
+#include "show/records.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 constexpr Parameter kParameters[] = {
     {.name = "word",
@@ -18,11 +20,12 @@ constexpr Parameter kParameters[] = {
 
 /// How well the parameter fits one word: 0 in its number or name, 1 in a label, 2 in the note, 3 not at all.
 int rank(const od::Parameter& p, std::string_view word) {
-  if (contains_nocase(p.id, word) || contains_nocase(p.name, word) || contains_nocase(p.name_zh, word))
+  if (show::contains_nocase(p.id, word) || show::contains_nocase(p.name, word) ||
+      show::contains_nocase(p.name_zh, word))
     return 0;
   for (const auto& label : p.labels)
-    if (contains_nocase(label.label, word) || contains_nocase(label.label_zh, word)) return 1;
-  return contains_nocase(p.note, word) || contains_nocase(p.note_zh, word) ? 2 : 3;
+    if (show::contains_nocase(label.label, word) || show::contains_nocase(label.label_zh, word)) return 1;
+  return show::contains_nocase(p.note, word) || show::contains_nocase(p.note_zh, word) ? 2 : 3;
 }
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
@@ -42,7 +45,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
     return fail(Errc::negative,
                 fmt::format("no parameter of {} speaks of '{}'", context.profile->family, said),
                 "try a shorter word, or the Chinese or English one");
-  return report::Value(parameter_table(best, context.chinese));
+  return report::Value(show::parameter_table(best, context.chinese));
 }
 
 }  // namespace

@@ -1,13 +1,15 @@
 #include <fmt/format.h>
 #include <algorithm>
 
-#include "commands/assignments.hpp"
-#include "commands/change.hpp"
-#include "commands/command.hpp"
-#include "commands/setting_options.hpp"
+#include "command/assignments.hpp"
+#include "command/command.hpp"
+#include "command/setting_options.hpp"
+#include "settings/change.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 constexpr Parameter kParameters[] = {
     {.name = "assignment",
@@ -26,7 +28,8 @@ Result<void> check(Context& context, const Arguments& arguments) {
     const auto target = drive::resolve_panel(*context.profile, assignment.id);
     if (!target) return tl::unexpected<Error>(target.error());
     for (const auto node : context.nodes)
-      if (const auto fits = check_change(context, node, *target, assignment.value, {}); !fits) return fits;
+      if (const auto fits = settings::check_change(context, node, *target, assignment.value, {}); !fits)
+        return fits;
   }
   return {};
 }
@@ -34,25 +37,25 @@ Result<void> check(Context& context, const Arguments& arguments) {
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   const auto assignments = parse_assignments(arguments.all("assignment"));
   if (!assignments) return tl::unexpected<Error>(assignments.error());
-  std::vector<Change> changes;
+  std::vector<settings::Change> changes;
   for (const auto node : context.nodes) {
     for (const auto& assignment : *assignments) {
       const auto target = drive::resolve_panel(*context.profile, assignment.id);
       if (!target) return tl::unexpected<Error>(target.error());
-      auto change = make_change(context, node, *target, assignment.value, {});
+      auto change = settings::make_change(context, node, *target, assignment.value, {});
       if (!change) return tl::unexpected<Error>(change.error());
       changes.push_back(std::move(*change));
     }
   }
-  WriteOptions options{.keep = arguments.has("--keep"), .unlock = arguments.has("--unlock")};
-  if (context.dry_run) return planned_changes(context, changes, options);
-  if (const auto confirmed = confirm_changes(context, changes); !confirmed)
+  settings::WriteOptions options{.keep = arguments.has("--keep"), .unlock = arguments.has("--unlock")};
+  if (context.dry_run) return settings::planned_changes(context, changes, options);
+  if (const auto confirmed = settings::confirm_changes(context, changes); !confirmed)
     return tl::unexpected<Error>(confirmed.error());
   // A write-only parameter starts an action and has nothing to read back.
-  options.read_back = std::all_of(changes.begin(), changes.end(), [](const Change& c) {
+  options.read_back = std::all_of(changes.begin(), changes.end(), [](const settings::Change& c) {
     return od::readable(drive::meaning(c.target, c.node).access);
   });
-  return write_changes(context, changes, options);
+  return settings::write_changes(context, changes, options);
 }
 
 Result<std::vector<settings::NamedValue>> setting_values(const Arguments& arguments) {

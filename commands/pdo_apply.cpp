@@ -3,16 +3,18 @@
 
 #include "base/file.hpp"
 #include "base/text.hpp"
-#include "commands/backup_file.hpp"
-#include "commands/change.hpp"
-#include "commands/command.hpp"
-#include "commands/pdo_recipes.hpp"
-#include "commands/setting_options.hpp"
+#include "command/command.hpp"
+#include "command/setting_options.hpp"
 #include "od/eds.hpp"
+#include "pdo/pdo_recipes.hpp"
 #include "session/pdo_setup.hpp"
+#include "settings/backup_file.hpp"
+#include "settings/change.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 using session::Values;
 
@@ -44,13 +46,13 @@ drive::PdoFile recipes_of(const drive::Profile* profile, std::string family, con
                           std::uint8_t node) {
   drive::PdoFile out;
   out.family = std::move(family);
-  const PresentPdos source{node, values, session::pdos_of(values)};
-  for (const auto& pdo : source.pdos) out.pdos.push_back(recipe_of(profile, source, pdo));
+  const pdo::PresentPdos source{node, values, session::pdos_of(values)};
+  for (const auto& pdo : source.pdos) out.pdos.push_back(pdo::recipe_of(profile, source, pdo));
   return out;
 }
 
 Result<drive::PdoFile> from_backup(const Context& context, const std::filesystem::path& path) {
-  const auto backup = read_backup(path);
+  const auto backup = settings::read_backup(path);
   if (!backup) return tl::unexpected<Error>(backup.error());
   Values values;
   for (const auto& entry : backup->entries)
@@ -74,11 +76,11 @@ Result<drive::PdoFile> from_dictionary(const Context& context, const std::filesy
 Result<drive::PdoFile> read(const Context& context, const std::filesystem::path& path) {
   const auto extension = lower(path.extension().string());
   if (extension == ".eds" || extension == ".dcf") return from_dictionary(context, path);
-  if (extension == ".toml") return read_pdo_file(path);
+  if (extension == ".toml") return pdo::read_pdo_file(path);
   const auto text = read_file(path);
   if (!text) return tl::unexpected<Error>(text.error());
   return text->find("\"servoctl_backup\"") != std::string::npos ? from_backup(context, path)
-                                                                : read_pdo_file(path);
+                                                                : pdo::read_pdo_file(path);
 }
 
 Result<drive::PdoFile> fitting(const Context& context, const Arguments& arguments) {
@@ -101,15 +103,15 @@ Result<void> check(Context& context, const Arguments& arguments) {
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   const auto file = fitting(context, arguments);
   if (!file) return tl::unexpected<Error>(file.error());
-  const PdoEdit edit = [&](const PresentPdos& present) -> Result<WantedPdos> {
-    auto wanted = follow(*context.profile, present, file->pdos);
+  const pdo::PdoEdit edit = [&](const pdo::PresentPdos& present) -> Result<pdo::WantedPdos> {
+    auto wanted = pdo::follow(*context.profile, present, file->pdos);
     if (wanted) return wanted;
     auto error = wanted.error();
     error.message = fmt::format("{}{}: {}", arguments.text("file"),
                                 error.line ? fmt::format(":{}", *error.line) : std::string(), error.message);
     return tl::unexpected<Error>(std::move(error));
   };
-  return change_pdos(
+  return pdo::change_pdos(
       context, edit,
       {.keep = arguments.has("--keep"), .unlock = arguments.has("--unlock"), .file = arguments.text("file")});
 }

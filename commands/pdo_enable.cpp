@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
-#include "commands/change.hpp"
-#include "commands/pdo_changing.hpp"
-#include "commands/setting_options.hpp"
+#include "command/setting_options.hpp"
+#include "pdo/pdo_changing.hpp"
+#include "settings/change.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 using canopen::Pdo;
 
@@ -17,19 +19,19 @@ constexpr Parameter kParameters[] = {
 
 enum class Action : std::uint8_t { enable, disable, clear };
 
-Result<void> act(const Context& context, const PresentPdos& present, Action action, Pdo pdo,
-                 WantedPdos& out) {
+Result<void> act(const Context& context, const pdo::PresentPdos& present, Action action, Pdo pdo,
+                 pdo::WantedPdos& out) {
   const bool linked = present.values.count({pdo.communication_index(), 1}) > 0;
   const auto name = canopen::name(pdo.direction, pdo.number);
   if (action == Action::enable && pdo.entries.empty())
     return fail(Errc::usage, name + " carries nothing yet", fmt::format("`pdo map {} OBJECT…`", name));
   if (action == Action::clear) pdo.entries.clear();
   if (linked && action == Action::enable)
-    if (const auto on = switch_on(pdo, present.node); !on) return on;
+    if (const auto on = pdo::switch_on(pdo, present.node); !on) return on;
   if (linked && action != Action::enable) pdo.cob_id |= canopen::kPdoInvalid;
   if (!linked)
     if (const auto done =
-            assign_pdo(*context.profile, present, pdo, action == Action::enable, out.assignments);
+            pdo::assign_pdo(*context.profile, present, pdo, action == Action::enable, out.assignments);
         !done)
       return done;
   out.pdos.push_back(std::move(pdo));
@@ -38,24 +40,25 @@ Result<void> act(const Context& context, const PresentPdos& present, Action acti
 
 Result<void> check(Context&, const Arguments& arguments) {
   for (const auto& word : arguments.all("pdo"))
-    if (!canopen::parse_pdo_name(word)) return tl::unexpected<Error>(find_pdo({}, word).error());
+    if (!canopen::parse_pdo_name(word)) return tl::unexpected<Error>(pdo::find_pdo({}, word).error());
   return {};
 }
 
 template <Action action>
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   if (const auto fits = check(context, arguments); !fits) return tl::unexpected<Error>(fits.error());
-  const PdoEdit edit = [&](const PresentPdos& present) -> Result<WantedPdos> {
-    WantedPdos out;
+  const pdo::PdoEdit edit = [&](const pdo::PresentPdos& present) -> Result<pdo::WantedPdos> {
+    pdo::WantedPdos out;
     for (const auto& word : arguments.all("pdo")) {
-      const auto pdo = find_pdo(present, word);
+      const auto pdo = pdo::find_pdo(present, word);
       if (!pdo) return tl::unexpected<Error>(pdo.error());
       if (const auto done = act(context, present, action, *pdo, out); !done)
         return tl::unexpected<Error>(done.error());
     }
     return out;
   };
-  return change_pdos(context, edit, {.keep = arguments.has("--keep"), .unlock = arguments.has("--unlock")});
+  return pdo::change_pdos(context, edit,
+                          {.keep = arguments.has("--keep"), .unlock = arguments.has("--unlock")});
 }
 
 template <Action action>

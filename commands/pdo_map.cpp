@@ -3,14 +3,16 @@
 
 #include "base/duration.hpp"
 #include "base/number.hpp"
-#include "commands/change.hpp"
-#include "commands/command.hpp"
-#include "commands/pdo_changing.hpp"
-#include "commands/pdo_check.hpp"
-#include "commands/setting_options.hpp"
+#include "command/command.hpp"
+#include "command/setting_options.hpp"
+#include "pdo/pdo_changing.hpp"
+#include "settings/change.hpp"
+#include "show/pdo_check.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 using canopen::Pdo;
 using canopen::PdoEntry;
@@ -72,7 +74,7 @@ Result<std::optional<std::uint16_t>> steps_option(const Arguments& arguments, st
 Result<Options> parse_options(const drive::Profile& profile, const Arguments& arguments) {
   Options out;
   for (const auto& word : arguments.all("object")) {
-    const auto entry = parse_mapped(profile, word);
+    const auto entry = pdo::parse_mapped(profile, word);
     if (!entry) return tl::unexpected<Error>(entry.error());
     out.entries.push_back(*entry);
   }
@@ -90,7 +92,7 @@ Result<Options> parse_options(const drive::Profile& profile, const Arguments& ar
   out.event = *event;
   out.cob_id = arguments.text("--cob-id");
   if (!out.cob_id.empty())
-    if (const auto can_id = parse_can_id(out.cob_id, 0); !can_id)
+    if (const auto can_id = pdo::parse_can_id(out.cob_id, 0); !can_id)
       return tl::unexpected<Error>(can_id.error());
   return out;
 }
@@ -139,7 +141,7 @@ Result<void> check(Context& context, const Arguments& arguments) {
   const auto options = parse_options(*context.profile, arguments);
   if (!options) return tl::unexpected<Error>(options.error());
   auto pdo = canopen::parse_pdo_name(arguments.text("pdo"));
-  if (!pdo) return tl::unexpected<Error>(find_pdo({}, arguments.text("pdo")).error());
+  if (!pdo) return tl::unexpected<Error>(pdo::find_pdo({}, arguments.text("pdo")).error());
   pdo->entries = options->entries;
   if (options->type) {
     pdo->type = *options->type;
@@ -147,14 +149,14 @@ Result<void> check(Context& context, const Arguments& arguments) {
   }
   if (!options->cob_id.empty())
     for (const auto node : context.nodes)
-      if (const auto can_id = parse_pdo_can_id(options->cob_id, node); !can_id) {
+      if (const auto can_id = pdo::parse_pdo_can_id(options->cob_id, node); !can_id) {
         auto error = can_id.error();
         error.message =
             fmt::format("node {}, {}: {}", node, canopen::name(pdo->direction, pdo->number), error.message);
         error.node = node;
         return fail(std::move(error));
       }
-  return check_mapping(*context.profile, *pdo);
+  return show::check_mapping(*context.profile, *pdo);
 }
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
@@ -164,8 +166,8 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   const bool absolute = !options->cob_id.empty() && options->cob_id.front() != '$';
   if (absolute && context.nodes.size() > 1)
     return fail(Errc::usage, "one CAN-ID for several nodes is a conflict", "--cob-id '$NODEID+0x180'");
-  const PdoEdit edit = [&](const PresentPdos& present) -> Result<WantedPdos> {
-    auto pdo = find_pdo(present, arguments.text("pdo"));
+  const pdo::PdoEdit edit = [&](const pdo::PresentPdos& present) -> Result<pdo::WantedPdos> {
+    auto pdo = pdo::find_pdo(present, arguments.text("pdo"));
     if (!pdo) return tl::unexpected<Error>(pdo.error());
     pdo->entries = options->entries;
     if (options->type) pdo->type = *options->type;
@@ -177,15 +179,16 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
     const bool linked = present.values.count({pdo->communication_index(), 1}) > 0;
     if (!linked && !options->cob_id.empty()) return fail(Errc::usage, "this drive's PDOs have no COB-ID");
     if (!options->cob_id.empty()) {
-      const auto can_id = parse_pdo_can_id(options->cob_id, present.node);
+      const auto can_id = pdo::parse_pdo_can_id(options->cob_id, present.node);
       if (!can_id) return tl::unexpected<Error>(can_id.error());
       pdo->set_can_id(*can_id);
     }
     if (linked)
-      if (const auto on = switch_on(*pdo, present.node); !on) return tl::unexpected<Error>(on.error());
-    return WantedPdos{{std::move(*pdo)}};
+      if (const auto on = pdo::switch_on(*pdo, present.node); !on) return tl::unexpected<Error>(on.error());
+    return pdo::WantedPdos{{std::move(*pdo)}};
   };
-  return change_pdos(context, edit, {.keep = arguments.has("--keep"), .unlock = arguments.has("--unlock")});
+  return pdo::change_pdos(context, edit,
+                          {.keep = arguments.has("--keep"), .unlock = arguments.has("--unlock")});
 }
 
 }  // namespace

@@ -2,13 +2,15 @@
 #include <algorithm>
 
 #include "base/text.hpp"
-#include "commands/change.hpp"
-#include "commands/command.hpp"
-#include "commands/pdo_recipes.hpp"
-#include "commands/setting_options.hpp"
+#include "command/command.hpp"
+#include "command/setting_options.hpp"
+#include "pdo/pdo_recipes.hpp"
+#include "settings/change.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 constexpr Parameter kParameters[] = {
     {.name = "preset", .help = "pp, pv, pt, home, ip, csp, csv, cst: what the family has", .required = true},
@@ -38,10 +40,11 @@ Result<void> check(Context& context, const Arguments& arguments) {
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   const auto preset = preset_of(context, arguments);
   if (!preset) return tl::unexpected<Error>(preset.error());
-  const PdoEdit edit = [&](const PresentPdos& present) {
-    return follow(*context.profile, present, (*preset)->pdos);
+  const pdo::PdoEdit edit = [&](const pdo::PresentPdos& present) {
+    return pdo::follow(*context.profile, present, (*preset)->pdos);
   };
-  return change_pdos(context, edit, {.keep = arguments.has("--keep"), .unlock = arguments.has("--unlock")});
+  return pdo::change_pdos(context, edit,
+                          {.keep = arguments.has("--keep"), .unlock = arguments.has("--unlock")});
 }
 
 }  // namespace

@@ -2,13 +2,15 @@
 
 #include "base/file.hpp"
 #include "base/text.hpp"
-#include "commands/command.hpp"
-#include "commands/pdo_recipes.hpp"
-#include "commands/pdo_report.hpp"
+#include "command/command.hpp"
+#include "pdo/pdo_recipes.hpp"
 #include "session/pdo_setup.hpp"
+#include "show/pdo_report.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 constexpr Parameter kParameters[] = {
     {.name = "file", .help = "pdos.toml or pdos.json", .kind = Kind::file, .required = true},
@@ -24,17 +26,17 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   const auto node = context.nodes.front();
   const auto read = session::read_pdo_values(*context.session, context.profile, context.nodes).front();
   if (!read) return tl::unexpected<Error>(read.error());
-  const PresentPdos present{node, *read, session::pdos_of(*read)};
+  const pdo::PresentPdos present{node, *read, session::pdos_of(*read)};
   drive::PdoFile file;
   if (context.profile != nullptr) file.family = context.profile->family;
   std::vector<std::vector<std::string>> names;
   for (const auto& pdo : present.pdos) {
-    file.pdos.push_back(recipe_of(context.profile, present, pdo));
+    file.pdos.push_back(pdo::recipe_of(context.profile, present, pdo));
     names.emplace_back();
     for (const auto& entry : pdo.entries)
-      names.back().push_back(mapped_name(context.profile, entry, context.chinese));
+      names.back().push_back(show::mapped_name(context.profile, entry, context.chinese));
   }
-  const auto text = extension == ".json" ? pdo_json(file) : pdo_toml(file, names);
+  const auto text = extension == ".json" ? pdo::pdo_json(file) : pdo::pdo_toml(file, names);
   if (!context.dry_run)
     if (const auto written = write_file_atomically(path, text); !written)
       return tl::unexpected<Error>(written.error());

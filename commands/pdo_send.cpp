@@ -2,14 +2,16 @@
 #include <algorithm>
 
 #include "base/text.hpp"
-#include "commands/change.hpp"
-#include "commands/command.hpp"
-#include "commands/pdo_use.hpp"
+#include "command/command.hpp"
 #include "drive/standard_objects.hpp"
+#include "pdo/pdo_use.hpp"
 #include "session/nmt_pause.hpp"
+#include "settings/change.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 using canopen::NmtState;
 using report::Value;
@@ -25,7 +27,7 @@ constexpr Parameter kParameters[] = {
      .many = true},
 };
 
-Result<void> check_usable(const PdoView& view) {
+Result<void> check_usable(const show::PdoView& view) {
   if (view.pdo.direction == canopen::PdoDirection::transmit)
     return fail(Errc::usage, fmt::format("{} is sent by the drive", view.name), "an RPDO can be sent to it");
   if (!view.pdo.is_valid())
@@ -40,7 +42,7 @@ Result<void> check_usable(const PdoView& view) {
   return {};
 }
 
-Result<void> check_count(const PdoView& view, std::size_t given) {
+Result<void> check_count(const show::PdoView& view, std::size_t given) {
   if (given == view.fields.size()) return {};
   std::vector<std::string> names;
   for (const auto& field : view.fields) names.push_back(field.name);
@@ -57,7 +59,8 @@ struct Message {
   can::Frame frame;
   std::string text;
 };
-Result<Message> make_message(Context& context, const PdoView& view, std::span<const std::string> values) {
+Result<Message> make_message(Context& context, const show::PdoView& view,
+                             std::span<const std::string> values) {
   if (const auto right = check_count(view, values.size()); !right)
     return tl::unexpected<Error>(right.error());
   std::vector<Bytes> data;
@@ -68,17 +71,17 @@ Result<Message> make_message(Context& context, const PdoView& view, std::span<co
       continue;
     }
     const auto& field = view.fields[next];
-    auto change = make_change(context, view.node, field.target, values[next], field.type);
+    auto change = settings::make_change(context, view.node, field.target, values[next], field.type);
     if (!change) return tl::unexpected<Error>(change.error());
     data.push_back(std::move(change->data));
     ++next;
   }
   Message out{canopen::pdo_frame(view.can_id(), canopen::pack_pdo(view.pdo.entries, data)), {}};
-  append_values(view, out.frame.payload(), context.chinese, out.text);
+  show::append_values(view, out.frame.payload(), context.chinese, out.text);
   return out;
 }
 
-Result<void> check_operational(Context& context, const PdoView& view) {
+Result<void> check_operational(Context& context, const show::PdoView& view) {
   const auto state = session::ask_nmt_state(*context.session, view.node, !context.dry_run);
   if (!state) return tl::unexpected<Error>(state.error());
   if (!*state) {
@@ -93,19 +96,19 @@ Result<void> check_operational(Context& context, const PdoView& view) {
               fmt::format("`nmt start -n {}` makes it operational", view.node));
 }
 
-report::Written written_values(const PdoView& view, const can::Frame& frame) {
+report::Written written_values(const show::PdoView& view, const can::Frame& frame) {
   report::Written out;
   report::JsonWriter json(out.json);
-  write_values(view, frame.payload(), json);
+  show::write_values(view, frame.payload(), json);
   return out;
 }
 
 Result<Value> run(Context& context, const Arguments& arguments) {
   if (context.nodes.size() != 1)
     return fail(Errc::usage, "`pdo send` is for one node at a time", "name one node, such as -n 1");
-  const auto views = read_views(context, context.nodes.front());
+  const auto views = pdo::read_views(context, context.nodes.front());
   if (!views) return tl::unexpected<Error>(views.error());
-  const auto found = find_view(*views, context.nodes.front(), arguments.text("pdo"));
+  const auto found = pdo::find_view(*views, context.nodes.front(), arguments.text("pdo"));
   if (!found) return tl::unexpected<Error>(found.error());
   const auto& view = **found;
   if (const auto usable = check_usable(view); !usable) return tl::unexpected<Error>(usable.error());

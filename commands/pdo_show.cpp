@@ -2,14 +2,16 @@
 #include <algorithm>
 
 #include "base/text.hpp"
-#include "commands/command.hpp"
-#include "commands/pdo_record.hpp"
-#include "commands/pdo_report.hpp"
-#include "commands/records.hpp"
+#include "command/command.hpp"
+#include "pdo/pdo_record.hpp"
 #include "session/pdo_setup.hpp"
+#include "show/pdo_report.hpp"
+#include "show/records.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 using canopen::Pdo;
 using canopen::PdoDirection;
@@ -49,7 +51,8 @@ bool mapping_differs(const Values& present, const Values& factory, const Pdo& pd
 
 std::string factory_mapping(const Context& context, const Pdo& factory) {
   std::string out;
-  for (const auto& entry : factory.entries) append(out, mapped_name(context.profile, entry, context.chinese));
+  for (const auto& entry : factory.entries)
+    append(out, show::mapped_name(context.profile, entry, context.chinese));
   return out.empty() ? "nothing mapped" : out;
 }
 
@@ -64,10 +67,11 @@ std::vector<Difference> differences(const Context& context, const NodePdos& node
   };
   std::vector<Difference> out;
   if (other(1))
-    out.push_back({"cob_id", fmt::format("{} {}", can_id_text(factory, node.node),
+    out.push_back({"cob_id", fmt::format("{} {}", show::can_id_text(factory, node.node),
                                          factory.is_valid() ? "valid" : "not valid")});
   if (other(2)) out.push_back({"type", fmt::format("type {}", factory.type)});
-  if (other(3)) out.push_back({"inhibit_ms", "inhibit time " + inhibit_text(factory.inhibit.value_or(0))});
+  if (other(3))
+    out.push_back({"inhibit_ms", "inhibit time " + show::inhibit_text(factory.inhibit.value_or(0))});
   if (other(5)) out.push_back({"event_ms", fmt::format("event timer {} ms", factory.event.value_or(0))});
   if (other(6)) out.push_back({"sync_start", fmt::format("SYNC start {}", factory.sync_start.value_or(0))});
   if (mapping_differs(node.values, node.factory, pdo))
@@ -79,7 +83,7 @@ std::vector<Difference> differences(const Context& context, const NodePdos& node
 std::vector<std::string> conflicts(const NodePdos& mine, const Pdo& pdo, const std::vector<NodePdos>& all) {
   std::vector<std::string> out;
   if (!pdo.is_valid()) return out;
-  const auto text = can_id_text(pdo.cob_id);
+  const auto text = show::can_id_text(pdo.cob_id);
   if (const auto service = canopen::service_of(pdo.can_id()); !service.empty())
     out.push_back(fmt::format("{} is the CAN-ID of {}", text, service));
   const bool sent = pdo.direction == PdoDirection::transmit;
@@ -105,8 +109,8 @@ Record node_record(const Context& context, const NodePdos& mine, const std::vect
   for (const auto& pdo : mine.pdos) {
     const auto name = canopen::name(pdo.direction, pdo.number);
     const bool assigned = std::count(mine.assigned.begin(), mine.assigned.end(), pdo.mapping_index()) > 0;
-    auto record = pdo_record(context.profile, pdo, mine.node, context.chinese);
-    auto lines = pdo_lines(context.profile, pdo, mine.node, context.chinese);
+    auto record = show::pdo_record(context.profile, pdo, mine.node, context.chinese);
+    auto lines = show::pdo_lines(context.profile, pdo, mine.node, context.chinese);
     if (assigned) lines.front() += ", assigned";
     List differing;
     std::string factory;
@@ -133,7 +137,7 @@ Record node_record(const Context& context, const NodePdos& mine, const std::vect
 
 Result<Value> run(Context& context, const Arguments&) {
   const auto read = session::read_pdo_values(*context.session, context.profile, context.nodes);
-  tell_cut_off_changes(context);
+  pdo::tell_cut_off_changes(context);
   std::vector<NodePdos> all;
   for (std::size_t i = 0; i < read.size(); ++i) {
     if (!read[i]) {

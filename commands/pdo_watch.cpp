@@ -1,15 +1,17 @@
 #include <fmt/format.h>
 #include <algorithm>
 
-#include "commands/command.hpp"
-#include "commands/duration_option.hpp"
-#include "commands/listening.hpp"
-#include "commands/pdo_use.hpp"
-#include "commands/rhythm_table.hpp"
-#include "commands/sample_writer.hpp"
+#include "command/command.hpp"
+#include "command/duration_option.hpp"
+#include "pdo/pdo_use.hpp"
+#include "show/sample_writer.hpp"
+#include "traffic/listening.hpp"
+#include "traffic/rhythm_table.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 using report::Value;
 
@@ -23,7 +25,7 @@ constexpr Parameter kParameters[] = {
 
 /// One PDO that is watched, and how often it came.
 struct Watched {
-  PdoView view;
+  show::PdoView view;
   Rhythm rhythm = {};
 };
 
@@ -31,10 +33,10 @@ struct Watched {
 Result<std::vector<Watched>> pdos_of(Context& context, const Arguments& arguments) {
   std::vector<Watched> out;
   for (const auto node : context.nodes) {
-    const auto views = read_views(context, node);
+    const auto views = pdo::read_views(context, node);
     if (!views) return tl::unexpected<Error>(views.error());
     for (const auto& name : arguments.all("pdo")) {
-      const auto view = find_view(*views, node, name);
+      const auto view = pdo::find_view(*views, node, name);
       if (!view) return tl::unexpected<Error>(view.error());
       if (!(*view)->pdo.is_valid())
         return fail(Errc::negative, fmt::format("node {}: {} is not in use", node, (*view)->name),
@@ -51,16 +53,16 @@ Result<std::vector<Watched>> pdos_of(Context& context, const Arguments& argument
 report::Table summary(std::span<const Watched> watched) {
   report::Table table;
   table.columns = {{"node"}, {"pdo"}};
-  for (auto& column : rhythm_columns()) table.columns.push_back(std::move(column));
+  for (auto& column : traffic::rhythm_columns()) table.columns.push_back(std::move(column));
   for (const auto& entry : watched) {
     report::List row{entry.view.node, entry.view.name};
-    for (auto& cell : rhythm_cells(entry.rhythm)) row.push_back(std::move(cell));
+    for (auto& cell : traffic::rhythm_cells(entry.rhythm)) row.push_back(std::move(cell));
     table.rows.push_back(std::move(row));
   }
   return table;
 }
 
-void show(Context& context, SampleWriter& writer, const Watched& entry, const can::Frame& frame,
+void show(Context& context, show::SampleWriter& writer, const Watched& entry, const can::Frame& frame,
           Duration time) {
   const auto& view = entry.view;
   const auto data = frame.payload();
@@ -72,11 +74,11 @@ void show(Context& context, SampleWriter& writer, const Watched& entry, const ca
       json.member("pdo", view.name);
       json.member("bytes", to_hex(data));
       json.key("values");
-      write_values(view, data, json);
+      show::write_values(view, data, json);
     });
   }
   auto line = fmt::format("{:11.6f} {:3} {} ", seconds, view.node, view.name);
-  append_values(view, data, context.chinese, line);
+  show::append_values(view, data, context.chinese, line);
   writer.add_line(line);
 }
 
@@ -90,8 +92,8 @@ Result<Value> run(Context& context, const Arguments& arguments) {
                 "`pdo show` tells them, `pdo enable` opens one");
   auto& session = *context.session;
   const auto begin = session.now();
-  SampleWriter writer(context);
-  Listener listener;
+  show::SampleWriter writer(context);
+  traffic::Listener listener;
   listener.on_pause = [&] { writer.flush(); };
   listener.on_frame = [&](const can::Frame& frame, TimePoint time) {
     if (frame.remote || frame.error) return;
@@ -101,7 +103,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
       show(context, writer, entry, frame, time - begin);
     }
   };
-  if (const auto ended = listen(session, *length, listener); !ended)
+  if (const auto ended = traffic::listen(session, *length, listener); !ended)
     return tl::unexpected<Error>(ended.error());
   const bool silent = std::all_of(watched->begin(), watched->end(),
                                   [](const Watched& entry) { return entry.rhythm.count() == 0; });

@@ -1,12 +1,14 @@
-#include "commands/command.hpp"
-#include "commands/file_transfer.hpp"
-#include "commands/reading.hpp"
-#include "commands/records.hpp"
-#include "commands/transfer_option.hpp"
-#include "commands/type_option.hpp"
+#include "command/command.hpp"
+#include "command/transfer_option.hpp"
+#include "command/type_option.hpp"
+#include "settings/file_transfer.hpp"
+#include "show/reading.hpp"
+#include "show/records.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 constexpr Parameter kParameters[] = {
     {.name = "object",
@@ -48,29 +50,29 @@ Result<report::Value> run_to_file(Context& context, const Arguments& arguments) 
                 "one line for each object and node, each with a file of its own");
   const auto target = drive::resolve(context.profile, arguments.text("object"));
   if (!target) return tl::unexpected<Error>(target.error());
-  return read_to_file(context, context.nodes.front(), *target, read_transfer(context, arguments, true),
-                      arguments.text("--to"));
+  return settings::read_to_file(context, context.nodes.front(), *target,
+                                read_transfer(context, arguments, true), arguments.text("--to"));
 }
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   if (arguments.has("--to")) return run_to_file(context, arguments);
   const auto type = parse_type_option(arguments);
   if (!type) return tl::unexpected<Error>(type.error());
-  std::vector<Reading> readings;
+  std::vector<show::Reading> readings;
   std::vector<session::SdoRequest> requests;
   for (const auto node : context.nodes) {
     for (const auto& word : arguments.all("object")) {
       const auto target = readable_target(context, node, word);
       if (!target) return tl::unexpected<Error>(target.error());
       readings.push_back({node, *target, *type, Bytes{}});
-      const auto fixed_size = size_of(readings.back());
+      const auto fixed_size = show::size_of(readings.back());
       const bool large = drive::meaning(*target, node).type == od::DataType::domain;
       requests.push_back({node, target->address, {}, read_transfer(context, arguments, large), fixed_size});
     }
   }
   auto answers = context.session->transfer(requests);
   for (std::size_t i = 0; i < readings.size(); ++i) readings[i].bytes = std::move(answers[i]);
-  return report::Value(reading_table(context, readings));
+  return report::Value(show::reading_table(context, readings));
 }
 
 }  // namespace

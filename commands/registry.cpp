@@ -1,10 +1,11 @@
-#include "commands/command.hpp"
+#include "command/registry.hpp"
 
 #include <algorithm>
 
-#include "commands/output_form.hpp"
+namespace servoctl {
+namespace commands {
 
-namespace servoctl::commands {
+using command::Command;
 
 extern const Command kScan;
 extern const Command kInfo;
@@ -76,120 +77,81 @@ extern const Command kSim;
 extern const Command kHelp;
 extern const Command kCompletion;
 
-namespace {
+}  // namespace commands
 
-constexpr std::string_view kLanguages[] = {"en", "zh"};
-
-constexpr Parameter kGlobal[] = {
-    {.name = "--bus",
-     .help = "bus: can0, local:NAME, sim:gsd600@1 (default $SERVOCTL_BUS)",
-     .kind = Kind::bus,
-     .short_name = "-b"},
-    {.name = "--node",
-     .help = "node-ID, a list 1,3,5-8 or all (default $SERVOCTL_NODE)",
-     .kind = Kind::nodes,
-     .short_name = "-n"},
-    {.name = "--drive",
-     .help = "drive family or an .eds file (default $SERVOCTL_DRIVE)",
-     .kind = Kind::family,
-     .short_name = "-d"},
-    {.name = "--timeout", .help = "longest wait for one answer (default 500ms)", .kind = Kind::duration},
-    {.name = "--retries",
-     .help = "further tries of a read without answer (default 1); a write is never repeated",
-     .kind = Kind::number},
-    {.name = "--json", .help = "one JSON document instead of text", .kind = Kind::flag},
-    {.name = "--output",
-     .help = "text, json, or jsonl for one document a sample",
-     .kind = Kind::choice,
-     .choices = kOutputForms,
-     .short_name = "-o"},
-    {.name = "--lang",
-     .help = "language of names: en or zh (default $SERVOCTL_LANG)",
-     .kind = Kind::choice,
-     .choices = kLanguages},
-    {.name = "--yes", .help = "answer yes to what would be asked", .kind = Kind::flag, .short_name = "-y"},
-    {.name = "--force-family",
-     .help = "go on although the identity of the drive contradicts -d; --yes never says so",
-     .kind = Kind::flag},
-    {.name = "--read-only", .help = "refuse everything that changes a drive", .kind = Kind::flag},
-    {.name = "--dry-run", .help = "show the frames, send nothing that changes a drive", .kind = Kind::flag},
-    {.name = "--trace", .help = "write every frame into a file (candump -L form)", .kind = Kind::file},
-    {.name = "--help", .help = "show the help of the command", .kind = Kind::flag, .short_name = "-h"},
-};
-
-}  // namespace
+namespace command {
 
 std::span<const Command* const> registry() {
   static constexpr const Command* kAll[] = {
-      &kScan,
-      &kInfo,
-      &kStatus,
-      &kRead,
-      &kWrite,
-      &kObjects,
-      &kParamList,
-      &kParamGet,
-      &kParamSet,
-      &kParamSearch,
-      &kParamExplain,
-      &kBackup,
-      &kDiff,
-      &kVerify,
-      &kRestore,
-      &kClone,
-      &kStore,
-      &kDefaults,
-      &kFaultShow,
-      &kFaultList,
-      &kFaultReset,
-      &kFaultClearHistory,
-      &kEnable,
-      &kDisable,
-      &kQuickStopCommand,
-      &kMode,
-      &kJog,
-      &kMove,
-      &kHome,
-      &kTorque,
-      &kUnitsShow,
-      &kUnitsLearn,
-      &kUnitsForget,
-      &kNmtStart,
-      &kNmtStop,
-      &kNmtPreop,
-      &kNmtReset,
-      &kNmtResetComm,
-      &kNmtWatch,
-      &kPdoShow,
-      &kPdoMap,
-      &kPdoEnable,
-      &kPdoDisable,
-      &kPdoClear,
-      &kPdoPreset,
-      &kPdoApply,
-      &kPdoSave,
-      &kPdoWatch,
-      &kPdoSend,
-      &kTestComm,
-      &kTestIo,
-      &kTestJog,
-      &kTestHome,
-      &kTestAll,
-      &kReport,
-      &kSyncOnce,
-      &kSyncStart,
-      &kSyncStop,
-      &kWatch,
-      &kScope,
-      &kMonitor,
-      &kDecode,
-      &kReplay,
-      &kDrives,
-      &kEdsCheck,
-      &kRun,
-      &kSim,
-      &kHelp,
-      &kCompletion,
+      &commands::kScan,
+      &commands::kInfo,
+      &commands::kStatus,
+      &commands::kRead,
+      &commands::kWrite,
+      &commands::kObjects,
+      &commands::kParamList,
+      &commands::kParamGet,
+      &commands::kParamSet,
+      &commands::kParamSearch,
+      &commands::kParamExplain,
+      &commands::kBackup,
+      &commands::kDiff,
+      &commands::kVerify,
+      &commands::kRestore,
+      &commands::kClone,
+      &commands::kStore,
+      &commands::kDefaults,
+      &commands::kFaultShow,
+      &commands::kFaultList,
+      &commands::kFaultReset,
+      &commands::kFaultClearHistory,
+      &commands::kEnable,
+      &commands::kDisable,
+      &commands::kQuickStopCommand,
+      &commands::kMode,
+      &commands::kJog,
+      &commands::kMove,
+      &commands::kHome,
+      &commands::kTorque,
+      &commands::kUnitsShow,
+      &commands::kUnitsLearn,
+      &commands::kUnitsForget,
+      &commands::kNmtStart,
+      &commands::kNmtStop,
+      &commands::kNmtPreop,
+      &commands::kNmtReset,
+      &commands::kNmtResetComm,
+      &commands::kNmtWatch,
+      &commands::kPdoShow,
+      &commands::kPdoMap,
+      &commands::kPdoEnable,
+      &commands::kPdoDisable,
+      &commands::kPdoClear,
+      &commands::kPdoPreset,
+      &commands::kPdoApply,
+      &commands::kPdoSave,
+      &commands::kPdoWatch,
+      &commands::kPdoSend,
+      &commands::kTestComm,
+      &commands::kTestIo,
+      &commands::kTestJog,
+      &commands::kTestHome,
+      &commands::kTestAll,
+      &commands::kReport,
+      &commands::kSyncOnce,
+      &commands::kSyncStart,
+      &commands::kSyncStop,
+      &commands::kWatch,
+      &commands::kScope,
+      &commands::kMonitor,
+      &commands::kDecode,
+      &commands::kReplay,
+      &commands::kDrives,
+      &commands::kEdsCheck,
+      &commands::kRun,
+      &commands::kSim,
+      &commands::kHelp,
+      &commands::kCompletion,
   };
   return kAll;
 }
@@ -200,6 +162,5 @@ const Command* find_command(std::string_view path) {
   return found == all.end() ? nullptr : *found;
 }
 
-std::span<const Parameter> global_options() { return kGlobal; }
-
-}  // namespace servoctl::commands
+}  // namespace command
+}  // namespace servoctl

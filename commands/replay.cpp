@@ -4,15 +4,17 @@
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "canopen/sdo_abort.hpp"
-#include "commands/command.hpp"
-#include "commands/frame_decoder.hpp"
-#include "commands/left_energised.hpp"
-#include "commands/records.hpp"
-#include "commands/replay_plan.hpp"
-#include "commands/replay_run.hpp"
+#include "command/command.hpp"
+#include "motion/left_energised.hpp"
+#include "show/records.hpp"
+#include "traffic/frame_decoder.hpp"
+#include "traffic/replay_plan.hpp"
+#include "traffic/replay_run.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 using report::Value;
 
@@ -25,22 +27,23 @@ constexpr Parameter kParameters[] = {
     {.name = "--only",
      .help = "only this service, such as sdo (may be given several times)",
      .kind = Kind::choice,
-     .choices = kServices,
+     .choices = traffic::kServices,
      .repeats = true},
     {.name = "--master",
      .help = "only what a master sends: NMT, SYNC, TIME, SDO requests, RPDOs",
      .kind = Kind::flag},
 };
 
-std::string question(const ReplayPlan& plan, std::string_view file, std::string_view bus) {
+std::string question(const traffic::ReplayPlan& plan, std::string_view file, std::string_view bus) {
   std::string services;
   for (const auto& [service, count] : plan.services) append(services, fmt::format("{} {}", count, service));
   auto out =
       fmt::format("Send the {} frames of {} on {} again ({})?", plan.frames.size(), file, bus, services);
   if (!plan.moving.empty())
-    out += fmt::format(" {} of them can move a motor: {}.", plan.dangerous(), kinds_text(plan.moving));
+    out +=
+        fmt::format(" {} of them can move a motor: {}.", plan.dangerous(), traffic::kinds_text(plan.moving));
   if (!plan.lasting.empty())
-    out += fmt::format(" Some last or restart a drive: {}.", kinds_text(plan.lasting));
+    out += fmt::format(" Some last or restart a drive: {}.", traffic::kinds_text(plan.lasting));
   return out;
 }
 
@@ -53,25 +56,25 @@ Result<double> speed_of(const Arguments& arguments) {
   return *speed;
 }
 
-report::Table kinds_table(const FrameKinds& kinds) {
+report::Table kinds_table(const traffic::FrameKinds& kinds) {
   report::Table out;
   out.columns = {{"what"}, {"frames"}};
   for (const auto& [kind, count] : kinds) out.rows.push_back({kind, count});
   return out;
 }
 
-std::string failure_text(const Context& context, const ReplayFailure& failure) {
+std::string failure_text(const Context& context, const traffic::ReplayFailure& failure) {
   const auto label = drive::target_at(context.profile, failure.object).label();
   return fmt::format("{} {}{} of node {} {}", failure.write ? "write of" : "read of",
                      to_string(failure.object), label.empty() ? "" : " " + label, failure.node,
                      failure.abort_code
                          ? fmt::format("refused: {} (abort 0x{:08X})",
-                                       abort_words(context, *failure.abort_code), *failure.abort_code)
+                                       show::abort_words(context, *failure.abort_code), *failure.abort_code)
                          : std::string("not answered"));
 }
 
 /// What became of the SDO requests; exit code 1 where one was in vain.
-void tell_failures(Context& context, const ReplayRun& run) {
+void tell_failures(Context& context, const traffic::ReplayRun& run) {
   if (run.answered_by_recording() > 0)
     context.notices.push_back(fmt::format(
         "SDO requests answered by the recording alone, by no drive: {}; --master leaves such answers out",
@@ -90,7 +93,7 @@ void tell_failures(Context& context, const ReplayRun& run) {
   context.errors.push_back(std::move(error));
 }
 
-report::Table failures_table(const Context& context, const std::vector<ReplayFailure>& failures) {
+report::Table failures_table(const Context& context, const std::vector<traffic::ReplayFailure>& failures) {
   report::Table out;
   out.columns = {{"node"},
                  {"object", "", report::Show::text},
@@ -106,13 +109,14 @@ report::Table failures_table(const Context& context, const std::vector<ReplayFai
                         report::text_or_null(drive::target_at(context.profile, failure.object).label()),
                         failure.write ? "write" : "read",
                         abort ? Value(fmt::format("0x{:08X}", *abort)) : Value(),
-                        abort ? abort_words(context, *abort) : "none"});
+                        abort ? show::abort_words(context, *abort) : "none"});
   }
   return out;
 }
 
 /// Drives that are moved and are not there cannot be stopped, and do not move either.
-void remember_energised(Context& context, const ReplayPlan& plan, const ReplayDrives& drives) {
+void remember_energised(Context& context, const traffic::ReplayPlan& plan,
+                        const traffic::ReplayDrives& drives) {
   for (const auto node : plan.nodes) {
     if (drives.present.count(node) > 0)
       context.session->energised().insert(node);
@@ -122,36 +126,36 @@ void remember_energised(Context& context, const ReplayPlan& plan, const ReplayDr
   }
 }
 
-Result<void> send(Context& context, const ReplayPlan& plan, const ReplayDrives& drives, double speed,
-                  report::Record& answer) {
+Result<void> send(Context& context, const traffic::ReplayPlan& plan, const traffic::ReplayDrives& drives,
+                  double speed, report::Record& answer) {
   auto& session = *context.session;
   const auto hold = session.protect(plan.moving.empty() ? session::Care::none : session::Care::guarded);
   remember_energised(context, plan, drives);
-  ReplayRun replay(session);
+  traffic::ReplayRun replay(session);
   const auto done = replay.run(plan.frames, speed);
   if (!done) {
     // Over a lost bus nothing can be stopped: the front end says so, and tries when it is back.
-    if (done.error().code != Errc::bus) stop_left_energised(context);
+    if (done.error().code != Errc::bus) motion::stop_left_energised(context);
     auto error = done.error();
     error.message =
         fmt::format("{}; {} of {} frames were sent", error.message, replay.sent(), plan.frames.size());
     return fail(std::move(error));
   }
   answer.push_back({"sent", replay.sent()});
-  tell_left_energised(context);
+  motion::tell_left_energised(context);
   tell_failures(context, replay);
   if (!replay.failures().empty()) answer.push_back({"failures", failures_table(context, replay.failures())});
   return {};
 }
 
 /// A recording is sent to the drives it was made with: where a family is named, they are of it.
-Result<void> hold_drives(Context& context, const ReplayDrives& drives) {
+Result<void> hold_drives(Context& context, const traffic::ReplayDrives& drives) {
   const std::vector<std::uint8_t> nodes(drives.present.begin(), drives.present.end());
   return context.hold_family(nodes, context.profile, true);
 }
 
-void tell_plan(Context& context, const ReplayPlan& plan, std::string_view file) {
-  for (auto& notice : notices(file, plan.strays)) context.notices.push_back(std::move(notice));
+void tell_plan(Context& context, const traffic::ReplayPlan& plan, std::string_view file) {
+  for (auto& notice : traffic::notices(file, plan.strays)) context.notices.push_back(std::move(notice));
   if (plan.extended > 0)
     context.notices.push_back(
         plan.extended == 1
@@ -169,14 +173,14 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   const auto file = arguments.text("file");
   const auto speed = speed_of(arguments);
   if (!speed) return tl::unexpected<Error>(speed.error());
-  const auto text = read_recording(file);
+  const auto text = traffic::read_recording(file);
   if (!text) return tl::unexpected<Error>(text.error());
-  const auto drives = find_drives(context, *text);
+  const auto drives = traffic::find_drives(context, *text);
   if (!drives) return tl::unexpected<Error>(drives.error());
-  const auto plan = plan_replay(
+  const auto plan = traffic::plan_replay(
       context, {.only = arguments.all("--only"), .of_master = arguments.has("--master")}, *text, *drives);
   tell_plan(context, plan, file);
-  if (plan.seen == 0) return no_frames(file);
+  if (plan.seen == 0) return traffic::no_frames(file);
   if (plan.frames.size() > 1 && plan.frames.back().time == Duration::zero())
     return fail(Errc::usage,
                 fmt::format("{} has no times: it cannot be told when its frames are to go", file),

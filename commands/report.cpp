@@ -5,16 +5,19 @@
 #include "base/calendar.hpp"
 #include "base/file.hpp"
 #include "base/text.hpp"
-#include "commands/comm_trial.hpp"
-#include "commands/command.hpp"
-#include "commands/drive_report.hpp"
-#include "commands/earlier_tests.hpp"
-#include "commands/output_form.hpp"
-#include "commands/verdict.hpp"
+#include "command/command.hpp"
+#include "command/output_form.hpp"
+#include "command/registry.hpp"
 #include "session/open_bus.hpp"
+#include "trial/comm_trial.hpp"
+#include "trial/drive_report.hpp"
+#include "trial/earlier_tests.hpp"
+#include "trial/verdict.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 using report::List;
 using report::Record;
@@ -77,7 +80,7 @@ class Collection {
   Collection(Context& context, const std::vector<TestResult>& earlier)
       : context_(&context), earlier_(&earlier) {}
 
-  Result<Report> make(std::string title) {
+  Result<trial::Report> make(std::string title) {
     out_.title = title.empty() ? say("Commissioning report", "调试报告") : std::move(title);
     const auto time = utc_now_text();
     auto bus = part("bus", say("Bus", "总线"), "scan", {}, {});
@@ -106,7 +109,7 @@ class Collection {
 
  private:
   std::string say(std::string_view english, std::string_view chinese) const {
-    return commands::say(*context_, english, chinese);
+    return trial::say(*context_, english, chinese);
   }
 
   std::string tests_text() const {
@@ -130,8 +133,8 @@ class Collection {
 
   /// Runs a command for one drive (for the bus where there is none). A difference or a fault is what a report
   /// is there to tell: no error of it.
-  Result<ReportPart> part(std::string id, std::string title, std::string_view command,
-                          std::optional<std::uint8_t> node, const Arguments& arguments) {
+  Result<trial::ReportPart> part(std::string id, std::string title, std::string_view command,
+                                 std::optional<std::uint8_t> node, const Arguments& arguments) {
     Context inner = *context_;
     inner.errors.clear();
     inner.notices.clear();
@@ -139,7 +142,7 @@ class Collection {
     if (node) inner.nodes.push_back(*node);
     auto result = find_command(command)->run(inner, arguments);
     if (!result) inner.errors.push_back(result.error());
-    ReportPart out{std::move(id), std::move(title), {}, std::move(inner.notices)};
+    trial::ReportPart out{std::move(id), std::move(title), {}, std::move(inner.notices)};
     for (auto& error : inner.errors) {
       if (error.code == Errc::bus || error.code == Errc::interrupted) return fail(std::move(error));
       if (error.code == Errc::negative) continue;
@@ -150,7 +153,7 @@ class Collection {
     return out;
   }
 
-  Result<DriveReport> of_drive(std::uint8_t node) {
+  Result<trial::DriveReport> of_drive(std::uint8_t node) {
     struct Wanted {
       std::string_view id;
       std::string_view title;
@@ -164,7 +167,7 @@ class Collection {
         {"settings", "Settings that differ from the factory's", "与出厂值不同的设置", "verify"},
         {"pdos", "Process data (PDO)", "过程数据 (PDO)", "pdo show"},
     };
-    DriveReport out{node, say(fmt::format("Node {}", node), fmt::format("节点 {}", node)), {}, {}};
+    trial::DriveReport out{node, say(fmt::format("Node {}", node), fmt::format("节点 {}", node)), {}, {}};
     Arguments factory;
     factory.add("file", "factory");
     for (const auto& wanted : kParts) {
@@ -182,21 +185,21 @@ class Collection {
 
   /// Of several tests of the communication the last one given counts.
   bool is_superseded(const TestResult& result) const {
-    if (result.test != kCommTestName) return false;
+    if (result.test != trial::kCommTestName) return false;
     const auto last = std::find_if(earlier_->rbegin(), earlier_->rend(), [&](const TestResult& other) {
       return other.test == result.test && other.node == result.node;
     });
     return &*last != &result;
   }
 
-  Result<void> add_tests(std::uint8_t node, DriveReport& drive) {
+  Result<void> add_tests(std::uint8_t node, trial::DriveReport& drive) {
     const bool tested = std::any_of(earlier_->begin(), earlier_->end(), [&](const TestResult& result) {
-      return result.node == node && result.test == kCommTestName;
+      return result.node == node && result.test == trial::kCommTestName;
     });
     if (!tested) {
-      auto comm = test_communication(*context_, node, {});
+      auto comm = trial::test_communication(*context_, node, {});
       if (!comm) return tl::unexpected<Error>(comm.error());
-      comm->origin = origin_of(*context_, node);
+      comm->origin = trial::origin_of(*context_, node);
       drive.tests.push_back(std::move(*comm));
     }
     for (const auto& result : *earlier_)
@@ -205,14 +208,14 @@ class Collection {
       ++tests_;
       if (passed(result)) continue;
       ++failed_;
-      context_->errors.push_back(failure(result));
+      context_->errors.push_back(trial::failure(result));
     }
     return {};
   }
 
   Context* context_;
   const std::vector<TestResult>* earlier_;
-  Report out_;
+  trial::Report out_;
   std::size_t answered_ = 0;
   std::size_t tests_ = 0;
   std::size_t failed_ = 0;
@@ -226,7 +229,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   if (!form) return tl::unexpected<Error>(form.error());
   std::vector<report::TestResult> earlier;
   for (const auto& tests : arguments.all("--tests")) {
-    auto read = read_tests(tests);
+    auto read = trial::read_tests(tests);
     if (!read) return tl::unexpected<Error>(read.error());
     for (auto& result : *read) earlier.push_back(std::move(result));
   }
@@ -234,10 +237,12 @@ Result<Value> run(Context& context, const Arguments& arguments) {
     if (std::find(context.nodes.begin(), context.nodes.end(), result.node) == context.nodes.end())
       context.notices.push_back(fmt::format(
           "the test {} of node {} is not in the report: -n does not name it", result.test, result.node));
-  if (const auto same = check_tested(context, earlier); !same) return tl::unexpected<Error>(same.error());
+  if (const auto same = trial::check_tested(context, earlier); !same)
+    return tl::unexpected<Error>(same.error());
   const auto made = Collection(context, earlier).make(std::string(arguments.text("--title")));
   if (!made) return tl::unexpected<Error>(made.error());
-  const auto text = *form == Form::html ? report_page(context, *made) : report_json(context, *made);
+  const auto text =
+      *form == Form::html ? trial::report_page(context, *made) : trial::report_json(context, *made);
   const auto written = write_file_atomically(file, text);
   if (!written) return tl::unexpected<Error>(written.error());
   report::Record out{{"file", file.string()}, {"nodes", made->drives.size()}};

@@ -1,14 +1,16 @@
 #include <fmt/format.h>
 
-#include "commands/change.hpp"
-#include "commands/command.hpp"
-#include "commands/restore_journal.hpp"
-#include "commands/restoring.hpp"
-#include "commands/selection.hpp"
-#include "commands/setting_options.hpp"
+#include "command/command.hpp"
+#include "command/setting_options.hpp"
+#include "settings/change.hpp"
+#include "settings/restore_journal.hpp"
+#include "settings/restoring.hpp"
+#include "settings/selection.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 using report::Value;
 
@@ -25,12 +27,12 @@ constexpr Parameter kParameters[] = {
 };
 
 /// Takes away what does not belong to the part.
-Result<void> keep_part(const Context& context, Backup& backup, const std::string& file,
+Result<void> keep_part(const Context& context, settings::Backup& backup, const std::string& file,
                        std::string_view only) {
-  const auto part = selection_of(*context.profile, only);
+  const auto part = settings::selection_of(*context.profile, only);
   if (!part) return tl::unexpected<Error>(part.error());
   if (!*part) return {};
-  std::erase_if(backup.entries, [&](const Backup::Entry& entry) { return !(*part)(entry.object); });
+  std::erase_if(backup.entries, [&](const settings::Backup::Entry& entry) { return !(*part)(entry.object); });
   if (!backup.entries.empty()) return {};
   return fail(Errc::usage, fmt::format("{} has nothing of '{}'", file, only));
 }
@@ -41,20 +43,22 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   if (const auto alone = check_resume(arguments); !alone) return tl::unexpected<Error>(alone.error());
   const std::string file(arguments.text("file"));
   const auto node = context.nodes.front();
-  auto backup = read_backup(context, file, context.front_end, node, arguments.has("--skip-invalid"));
+  auto backup =
+      settings::read_backup(context, file, context.front_end, node, arguments.has("--skip-invalid"));
   if (backup)
     if (const auto kept = keep_part(context, *backup, file, arguments.text("--only")); !kept)
       return tl::unexpected<Error>(kept.error());
   if (!backup) return tl::unexpected<Error>(backup.error());
-  auto done = put_into(context, *backup, file, node, fmt::format("{}.before-node-{}.json", file, node),
-                       {.choice = {.with_address = arguments.has("--with-address"),
-                                   .force = arguments.has("--force"),
-                                   .skip_invalid = arguments.has("--skip-invalid")},
-                        .roll_back = !arguments.has("--no-rollback"),
-                        .keep = arguments.has("--keep"),
-                        .unlock = arguments.has("--unlock"),
-                        .resume = arguments.has("--resume")},
-                       journal_of(file));
+  auto done =
+      settings::put_into(context, *backup, file, node, fmt::format("{}.before-node-{}.json", file, node),
+                         {.choice = {.with_address = arguments.has("--with-address"),
+                                     .force = arguments.has("--force"),
+                                     .skip_invalid = arguments.has("--skip-invalid")},
+                          .roll_back = !arguments.has("--no-rollback"),
+                          .keep = arguments.has("--keep"),
+                          .unlock = arguments.has("--unlock"),
+                          .resume = arguments.has("--resume")},
+                         settings::journal_of(file));
   if (!done) return tl::unexpected<Error>(done.error());
   return std::move(done->answer);
 }

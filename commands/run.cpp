@@ -1,7 +1,9 @@
-#include "commands/command.hpp"
+#include "command/command.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 constexpr Parameter kParameters[] = {
     {.name = "file",

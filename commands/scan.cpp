@@ -3,12 +3,14 @@
 #include <numeric>
 
 #include "canopen/cob_id.hpp"
-#include "commands/command.hpp"
-#include "commands/identity.hpp"
+#include "command/command.hpp"
 #include "session/identify.hpp"
+#include "show/identity.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 Result<report::Value> run(Context& context, const Arguments&) {
   auto nodes = context.nodes_typed ? context.nodes : std::vector<std::uint8_t>();
@@ -30,7 +32,7 @@ Result<report::Value> run(Context& context, const Arguments&) {
   }
   const auto families = drive::find_families(context.drive_folders);
   session::look_for_families(*context.session, *found, families);
-  return report::Value(identity_table(*found, families));
+  return report::Value(show::identity_table(*found, families));
 }
 
 }  // namespace

@@ -7,16 +7,18 @@
 
 #include "base/file.hpp"
 #include "base/text.hpp"
-#include "commands/command.hpp"
-#include "commands/duration_option.hpp"
-#include "commands/listening.hpp"
-#include "commands/sampler.hpp"
-#include "commands/scope_mapping.hpp"
+#include "command/command.hpp"
+#include "command/duration_option.hpp"
+#include "pdo/scope_mapping.hpp"
 #include "report/svg.hpp"
 #include "session/option_scope.hpp"
+#include "traffic/listening.hpp"
+#include "traffic/sampler.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 using report::Value;
 
@@ -44,7 +46,7 @@ constexpr Duration kPdoPatience = std::chrono::milliseconds(100);
 /// after the other, what none brings. Each value has the time of its own frame.
 class Scope {
  public:
-  Scope(Context& context, Sampler& sampler) : session_(context.session), sampler_(&sampler) {
+  Scope(Context& context, traffic::Sampler& sampler) : session_(context.session), sampler_(&sampler) {
     for (const auto& channel : sampler.channels()) records_.emplace_back(channel);
     last_.resize(records_.size());
   }
@@ -57,10 +59,10 @@ class Scope {
       for (const auto& sample : sampler_->on_frame(frame, time))
         if (time < end) add(sample, time + kPdoPatience);
     });
-    Listener listener;
+    traffic::Listener listener;
     listener.next = [&] { return *std::min_element(due_.begin(), due_.end()); };
     listener.on_time = [&](TimePoint now) { return look(now); };
-    auto ended = listen(*session_, length, listener);
+    auto ended = traffic::listen(*session_, length, listener);
     seconds_ = std::chrono::duration<double>(session_->now() - begin_).count();
     interrupted_ = session_->options().cancelled && session_->options().cancelled();
     if (!ended && ended.error().code == Errc::interrupted) ended = {};
@@ -68,13 +70,13 @@ class Scope {
     return ended;
   }
 
-  std::span<const ChannelRecord> records() const { return records_; }
+  std::span<const traffic::ChannelRecord> records() const { return records_; }
   /// The last sample of each channel.
-  std::span<const Sample> last() const { return last_; }
+  std::span<const traffic::Sample> last() const { return last_; }
   double seconds() const { return seconds_; }
 
  private:
-  void add(const Sample& sample, TimePoint next) {
+  void add(const traffic::Sample& sample, TimePoint next) {
     records_[sample.channel].add(std::chrono::duration<double>(sample.time - begin_).count(), sample);
     last_[sample.channel] = sample;
     due_[sample.channel] = next;
@@ -93,7 +95,8 @@ class Scope {
       if (failed && (first || sample.bytes.error().code == Errc::interrupted))
         return tl::unexpected<Error>(sample.bytes.error());
       if (first)
-        if (const auto number = check_number(sampler_->channels()[i], *sample.bytes); !number) return number;
+        if (const auto number = traffic::check_number(sampler_->channels()[i], *sample.bytes); !number)
+          return number;
       // A TPDO came meanwhile.
       if (due_[i] > now) continue;
       // After the first look the TPDOs get their chance, where there are any.
@@ -105,15 +108,15 @@ class Scope {
 
   Result<void> check_sampled() const {
     const bool any = std::any_of(records_.begin(), records_.end(),
-                                 [](const ChannelRecord& r) { return r.statistics().count() > 0; });
+                                 [](const traffic::ChannelRecord& r) { return r.statistics().count() > 0; });
     if (any || interrupted_) return {};
     return fail(Errc::negative, "nothing was sampled in this time", "a longer --for gives the drive time");
   }
 
   session::Session* session_;
-  Sampler* sampler_;
-  std::vector<ChannelRecord> records_;
-  std::vector<Sample> last_;
+  traffic::Sampler* sampler_;
+  std::vector<traffic::ChannelRecord> records_;
+  std::vector<traffic::Sample> last_;
   std::vector<TimePoint> due_;  ///< When each channel is to be read by SDO.
   TimePoint begin_{};
   double seconds_ = 0;
@@ -123,8 +126,9 @@ class Scope {
 
 /// With --map: spare TPDOs carry the objects until the answer is destroyed. A node where that cannot be is
 /// told, and read by SDO.
-Result<std::vector<std::unique_ptr<ScopeMapping>>> map_objects(Context& context, const Arguments& arguments) {
-  std::vector<std::unique_ptr<ScopeMapping>> out;
+Result<std::vector<std::unique_ptr<pdo::ScopeMapping>>> map_objects(Context& context,
+                                                                    const Arguments& arguments) {
+  std::vector<std::unique_ptr<pdo::ScopeMapping>> out;
   const auto period = duration_option(arguments, "--every");
   if (!period) return tl::unexpected<Error>(period.error());
   if (!arguments.has("--map")) return out;
@@ -140,7 +144,7 @@ Result<std::vector<std::unique_ptr<ScopeMapping>>> map_objects(Context& context,
       !sure)
     return tl::unexpected<Error>(sure.error());
   for (const auto node : context.nodes) {
-    out.push_back(std::make_unique<ScopeMapping>(context, node));
+    out.push_back(std::make_unique<pdo::ScopeMapping>(context, node));
     const auto mapped = out.back()->begin(arguments.all("object"), period->value_or(kDefaultPeriod));
     if (mapped) continue;
     if (mapped.error().code == Errc::interrupted) return tl::unexpected<Error>(mapped.error());
@@ -156,7 +160,8 @@ Result<void> check_names(const Context& context, std::span<const std::string> na
   for (const auto& name : names) {
     const auto target = drive::resolve(context.profile, name);
     if (!target) return tl::unexpected<Error>(target.error());
-    if (const auto number = check_number({context.nodes.front(), *target, name}); !number) return number;
+    if (const auto number = traffic::check_number({context.nodes.front(), *target, name}); !number)
+      return number;
   }
   return {};
 }
@@ -164,7 +169,8 @@ Result<void> check_names(const Context& context, std::span<const std::string> na
 Result<void> write_files(const Arguments& arguments, std::span<const Series> series) {
   if (series.empty()) return {};
   if (arguments.has("--csv"))
-    if (const auto done = write_file_atomically(std::string(arguments.text("--csv")), series_csv(series));
+    if (const auto done =
+            write_file_atomically(std::string(arguments.text("--csv")), traffic::series_csv(series));
         !done)
       return done;
   if (arguments.has("--svg"))
@@ -179,19 +185,19 @@ Result<Value> run(Context& context, const Arguments& arguments) {
     return tl::unexpected<Error>(numbers.error());
   const auto mapping = map_objects(context, arguments);
   if (!mapping) return tl::unexpected<Error>(mapping.error());
-  auto sampler = Sampler::make(context, arguments.all("object"));
+  auto sampler = traffic::Sampler::make(context, arguments.all("object"));
   if (!sampler) return tl::unexpected<Error>(sampler.error());
   Scope scope(context, *sampler);
   const auto recorded = scope.run(length->value_or(kDefaultLength));
   for (const auto& each : *mapping) each->end();
-  const auto series = series_of(scope.records());
+  const auto series = traffic::series_of(scope.records());
   // What was sampled before something broke is worth keeping.
   const auto written = write_files(arguments, series);
   if (!recorded) return tl::unexpected<Error>(recorded.error());
   if (!written) return tl::unexpected<Error>(written.error());
-  for (auto& error : failures_of(scope.last())) context.errors.push_back(std::move(error));
+  for (auto& error : traffic::failures_of(scope.last())) context.errors.push_back(std::move(error));
   report::Record out{{"seconds", std::round(scope.seconds() * 1000) / 1000},
-                     {"objects", sampling_table(scope.records())}};
+                     {"objects", traffic::sampling_table(scope.records())}};
   for (const auto* option : {"--csv", "--svg"})
     if (arguments.has(option) && !series.empty()) out.push_back({option + 2, arguments.text(option)});
   out.push_back({"plot", report::Plot{series},

@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
-#include "commands/command.hpp"
+#include "command/command.hpp"
 #include "session/serve.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 constexpr Parameter kParameters[] = {
     {.name = "drives", .help = "gsd600@1,gsd600@2?state=FILE", .kind = Kind::text, .required = true},

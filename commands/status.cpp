@@ -2,16 +2,18 @@
 #include <algorithm>
 
 #include "canopen/emergency.hpp"
-#include "commands/command.hpp"
-#include "commands/fault_records.hpp"
-#include "commands/records.hpp"
+#include "command/command.hpp"
 #include "drive/cia402.hpp"
 #include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/answer.hpp"
+#include "show/fault_records.hpp"
+#include "show/records.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 using report::Record;
 using report::Show;
@@ -79,7 +81,7 @@ void add_mode_and_fault(Record& out, const Context& context, std::span<const Res
     out.push_back({"mode", Record{{"value", value}, {"label", report::text_or_null(text)}}, Show::json});
   }
   if (const auto code = session::number_in(answers[2])) {
-    const auto text = fault_words(context.profile, context.chinese, static_cast<std::uint16_t>(*code));
+    const auto text = show::fault_words(context.profile, context.chinese, static_cast<std::uint16_t>(*code));
     out.push_back(
         {"fault", *code == 0 ? std::string("none") : fmt::format("0x{:04X} {}", *code, text), Show::text});
     out.push_back(

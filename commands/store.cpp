@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 #include <array>
 
-#include "commands/command.hpp"
-#include "commands/planned_messages.hpp"
-#include "commands/records.hpp"
+#include "command/command.hpp"
+#include "show/planned_messages.hpp"
+#include "show/records.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 using report::Show;
 using report::Value;
@@ -45,7 +47,7 @@ Value planned(Context& context, ParameterGroup group, const Action& action) {
     if (!writes) continue;
     for (const auto& write : *writes) messages.push_back(session::planned_write(write));
   }
-  return planned_messages(context, messages);
+  return show::planned_messages(context, messages);
 }
 
 Result<Value> run(Context& context, const Arguments& arguments, const Action& action, const Words& words) {
@@ -61,7 +63,8 @@ Result<Value> run(Context& context, const Arguments& arguments, const Action& ac
   for (const auto node : context.nodes) {
     const auto done = action.carry_out(*context.session, context.profile, node, *group);
     if (!done) context.errors.push_back(done.error());
-    table.rows.push_back({node, done ? words.done : "failed", done ? Value() : error_record(done.error())});
+    table.rows.push_back(
+        {node, done ? words.done : "failed", done ? Value() : show::error_record(done.error())});
   }
   return Value(std::move(table));
 }

@@ -4,14 +4,16 @@
 
 #include "base/duration.hpp"
 #include "base/number.hpp"
-#include "commands/command.hpp"
-#include "commands/duration_option.hpp"
-#include "commands/listening.hpp"
-#include "commands/sync_end.hpp"
+#include "command/command.hpp"
+#include "command/duration_option.hpp"
 #include "session/option_scope.hpp"
+#include "traffic/listening.hpp"
+#include "traffic/sync_end.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 using report::Value;
 
@@ -114,8 +116,8 @@ Result<Value> run_start(Context& context, const Arguments& arguments) {
                        {"period_ms", period.count(), report::Show::everywhere, "period (ms)"},
                        {"counter", options->last_counter == 0 ? Value() : Value(options->last_counter)}});
   }
-  const auto ended = listen(session, *length, {});
-  auto result = end_sync(session);
+  const auto ended = traffic::listen(session, *length, {});
+  auto result = traffic::end_sync(session);
   for (auto& warning : result.warnings) context.notices.push_back(std::move(warning));
   if (!ended) return tl::unexpected<Error>(ended.error());
   return Value(std::move(result.table));
@@ -127,7 +129,7 @@ Result<Value> run_stop(Context& context, const Arguments&) {
         Errc::usage, "no SYNC is produced here",
         "`sync start` in the same prompt or batch file begins one; another process is ended by Ctrl-C");
   if (context.dry_run) return Value(report::Record{{"sync", "would be ended"}});
-  auto result = end_sync(*context.session);
+  auto result = traffic::end_sync(*context.session);
   for (auto& warning : result.warnings) context.notices.push_back(std::move(warning));
   return Value(std::move(result.table));
 }

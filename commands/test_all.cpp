@@ -1,16 +1,18 @@
 #include <fmt/format.h>
 
 #include "base/file.hpp"
-#include "commands/comm_trial.hpp"
-#include "commands/command.hpp"
-#include "commands/io_trial.hpp"
-#include "commands/motion_options.hpp"
-#include "commands/motion_trials.hpp"
-#include "commands/trial_options.hpp"
-#include "commands/verdict.hpp"
+#include "command/command.hpp"
+#include "command/motion_options.hpp"
+#include "command/trial_options.hpp"
+#include "trial/comm_trial.hpp"
+#include "trial/io_trial.hpp"
+#include "trial/motion_trials.hpp"
+#include "trial/verdict.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 using report::TestResult;
 
@@ -42,12 +44,12 @@ class AllTests {
     if (!jog) return tl::unexpected<Error>(jog.error());
     const auto home = parse_home_test(*arguments_, {});
     if (!home) return tl::unexpected<Error>(home.error());
-    const auto inputs = parse_inputs(*context_, arguments_->text("--expect"));
+    const auto inputs = trial::parse_inputs(*context_, arguments_->text("--expect"));
     if (!inputs) return tl::unexpected<Error>(inputs.error());
     if (const std::string path(arguments_->text("--junit")); !path.empty() && !context_->dry_run)
       if (const auto possible = check_writable(path); !possible)
         return tl::unexpected<Error>(possible.error());
-    if (const auto done = add(test_communication(*context_, node, {})); !done)
+    if (const auto done = add(trial::test_communication(*context_, node, {})); !done)
       return tl::unexpected<Error>(done.error());
     // A motor is not moved by way of a bus that has just failed.
     bool may_move = passed(results_.back());
@@ -63,7 +65,7 @@ class AllTests {
         may_move = false;
       }
     if (!inputs->empty() && may_move)
-      if (const auto done = add(test_inputs(*context_, node, {*inputs})); !done)
+      if (const auto done = add(trial::test_inputs(*context_, node, {*inputs})); !done)
         return tl::unexpected<Error>(done.error());
     // What was found before is told even when a motion is refused, or not confirmed.
     if (may_move)
@@ -72,7 +74,7 @@ class AllTests {
       context_->notices.push_back(
           fmt::format("node {}: nothing was moved, because the test of the communication failed", node));
     if (context_->dry_run) return report::Value(std::move(plans_));
-    return verdicts(*context_, verdict_options(*arguments_), results_);
+    return trial::verdicts(*context_, verdict_options(*arguments_), results_);
   }
 
  private:
@@ -82,7 +84,7 @@ class AllTests {
     return {};
   }
 
-  Result<void> add(Result<MotionTrial> done) {
+  Result<void> add(Result<trial::MotionTrial> done) {
     if (!done) return tl::unexpected<Error>(done.error());
     if (!done->result) {
       plans_.push_back(std::move(done->plan));
@@ -94,9 +96,10 @@ class AllTests {
 
   bool homes() const { return !arguments_->has("--no-home") && context_->profile->rules.motion.homing; }
 
-  Result<void> check(const JogTrial& jog, const HomeTrial& home) const {
-    if (auto possible = check_jog_test(*context_, *request_, jog); !possible || !homes()) return possible;
-    auto possible = check_home_test(*context_, *request_, home);
+  Result<void> check(const trial::JogTrial& jog, const trial::HomeTrial& home) const {
+    if (auto possible = trial::check_jog_test(*context_, *request_, jog); !possible || !homes())
+      return possible;
+    auto possible = trial::check_home_test(*context_, *request_, home);
     if (possible) return possible;
     auto error = possible.error();
     error.message = "the test home could not be run, so nothing is: " + error.message;
@@ -104,16 +107,16 @@ class AllTests {
     return fail(std::move(error));
   }
 
-  Result<void> move(const JogTrial& jog, const HomeTrial& home) {
-    if (const auto done = add(test_jog(*context_, *request_, jog)); !done) return done;
+  Result<void> move(const trial::JogTrial& jog, const trial::HomeTrial& home) {
+    if (const auto done = add(trial::test_jog(*context_, *request_, jog)); !done) return done;
     if (!context_->dry_run && !passed(results_.back())) return {};
     if (!homes()) return {};
-    return add(test_home(*context_, *request_, home));
+    return add(trial::test_home(*context_, *request_, home));
   }
 
   Context* context_;
   const Arguments* arguments_;
-  std::optional<MotionRequest> request_;
+  std::optional<motion::MotionRequest> request_;
   std::vector<TestResult> results_;
   report::List plans_;
 };

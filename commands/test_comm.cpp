@@ -1,11 +1,13 @@
-#include "commands/comm_trial.hpp"
-#include "commands/command.hpp"
-#include "commands/motion_options.hpp"
-#include "commands/trial_options.hpp"
-#include "commands/verdict.hpp"
+#include "command/command.hpp"
+#include "command/motion_options.hpp"
+#include "command/trial_options.hpp"
+#include "trial/comm_trial.hpp"
+#include "trial/verdict.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 constexpr Parameter kParameters[] = {
     {.name = "--count", .help = "reads to make (default 200)", .kind = Kind::number},
@@ -14,7 +16,7 @@ constexpr Parameter kParameters[] = {
 };
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
-  CommTrial test;
+  trial::CommTrial test;
   const auto count = count_option(arguments, "--count", 1, 1'000'000, test.count);
   if (!count) return tl::unexpected<Error>(count.error());
   const auto longest = duration_option(arguments, "--longest");
@@ -22,11 +24,11 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   test = {*count, longest->value_or(test.longest)};
   std::vector<report::TestResult> results;
   for (const auto node : context.nodes) {
-    auto result = test_communication(context, node, test);
+    auto result = trial::test_communication(context, node, test);
     if (!result) return tl::unexpected<Error>(result.error());
     results.push_back(std::move(*result));
   }
-  return verdicts(context, verdict_options(arguments), results);
+  return trial::verdicts(context, verdict_options(arguments), results);
 }
 
 }  // namespace

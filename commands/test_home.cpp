@@ -1,11 +1,13 @@
-#include "commands/command.hpp"
-#include "commands/motion_options.hpp"
-#include "commands/motion_trials.hpp"
-#include "commands/trial_options.hpp"
-#include "commands/verdict.hpp"
+#include "command/command.hpp"
+#include "command/motion_options.hpp"
+#include "command/trial_options.hpp"
+#include "trial/motion_trials.hpp"
+#include "trial/verdict.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
     {.name = "method", .help = "number of 6098h; the drive's present one unless said", .kind = Kind::value},
@@ -23,10 +25,10 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   if (!test) return tl::unexpected<Error>(test.error());
   const auto request = motion_request(context, arguments);
   if (!request) return tl::unexpected<Error>(request.error());
-  auto done = test_home(context, *request, *test);
+  auto done = trial::test_home(context, *request, *test);
   if (!done) return tl::unexpected<Error>(done.error());
   if (!done->result) return std::move(done->plan);
-  return verdicts(context, verdict_options(arguments), {std::move(*done->result)});
+  return trial::verdicts(context, verdict_options(arguments), {std::move(*done->result)});
 }
 
 }  // namespace

@@ -1,11 +1,13 @@
-#include "commands/command.hpp"
-#include "commands/io_trial.hpp"
-#include "commands/motion_options.hpp"
-#include "commands/trial_options.hpp"
-#include "commands/verdict.hpp"
+#include "command/command.hpp"
+#include "command/motion_options.hpp"
+#include "command/trial_options.hpp"
+#include "trial/io_trial.hpp"
+#include "trial/verdict.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 constexpr Parameter kParameters[] = {
     {.name = "--expect",
@@ -17,16 +19,16 @@ constexpr Parameter kParameters[] = {
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   if (context.nodes.size() != 1) return fail(Errc::usage, "'test io' watches one drive", "name it: -n 1");
-  InputTrial test;
-  auto expected = parse_inputs(context, arguments.text("--expect"));
+  trial::InputTrial test;
+  auto expected = trial::parse_inputs(context, arguments.text("--expect"));
   if (!expected) return tl::unexpected<Error>(expected.error());
   test.expected = std::move(*expected);
   const auto length = duration_option(arguments, "--for");
   if (!length) return tl::unexpected<Error>(length.error());
   test.length = length->value_or(test.length);
-  auto result = test_inputs(context, context.nodes.front(), test);
+  auto result = trial::test_inputs(context, context.nodes.front(), test);
   if (!result) return tl::unexpected<Error>(result.error());
-  return verdicts(context, verdict_options(arguments), {std::move(*result)});
+  return trial::verdicts(context, verdict_options(arguments), {std::move(*result)});
 }
 
 }  // namespace

@@ -1,8 +1,10 @@
-#include "commands/command.hpp"
-#include "commands/motion_options.hpp"
+#include "command/command.hpp"
+#include "command/motion_options.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
     {.name = "torque", .help = "5%, 0.2Nm; the sign is the direction", .kind = Kind::value, .required = true},
@@ -14,7 +16,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   if (!arguments.has("--limit"))
     return fail(Errc::usage, "an unloaded motor runs away under torque: it needs a speed limit",
                 "add --limit 60rpm");
-  session::Torque torque;
+  motion::Torque torque;
   torque.torque = arguments.text("torque");
   const auto length = duration_option(arguments, "--for");
   if (!length) return tl::unexpected<Error>(length.error());
@@ -22,7 +24,8 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   torque.length = **length;
   const auto request = motion_request(context, arguments);
   if (!request) return tl::unexpected<Error>(request.error());
-  return run_motion(context, *request, motion_run(torque, session::plan_torque, session::run_torque));
+  return motion::run_motion(context, *request,
+                            motion::motion_run(torque, motion::plan_torque, motion::run_torque));
 }
 
 }  // namespace

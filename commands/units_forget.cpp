@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
-#include "commands/command.hpp"
-#include "commands/kept_turn.hpp"
-#include "commands/records.hpp"
+#include "command/command.hpp"
+#include "motion/kept_turn.hpp"
+#include "show/records.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 using report::Show;
 using report::Value;
@@ -14,7 +16,7 @@ Result<Value> run(Context& context, const Arguments& /*unused*/) {
   report::Table table;
   table.columns = {{"node"}, {"text", "kept counts of a turn", Show::text}, {"forgotten", "", Show::json}};
   for (const auto node : context.nodes) {
-    const TurnFile file(context, node);
+    const motion::TurnFile file(context, node);
     std::error_code error;
     const bool there = !file.path().empty() && std::filesystem::exists(file.path(), error);
     const auto removed = context.dry_run ? Result<bool>(false) : file.remove();

@@ -5,19 +5,21 @@
 #include "base/file.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
-#include "commands/command.hpp"
-#include "commands/drive_rules.hpp"
-#include "commands/kept_turn.hpp"
-#include "commands/motion_options.hpp"
+#include "command/command.hpp"
+#include "command/motion_options.hpp"
+#include "motion/kept_turn.hpp"
 #include "session/identify.hpp"
 #include "session/measure.hpp"
+#include "show/drive_rules.hpp"
 
 namespace servoctl::commands {
 namespace {
 
+using namespace command;
+
+using motion::Learn;
 using report::Record;
 using report::Value;
-using session::Learn;
 
 constexpr Duration kShortest = std::chrono::seconds(2);
 constexpr Duration kLongest = std::chrono::seconds(60);
@@ -44,8 +46,7 @@ Result<double> speed_of(const Arguments& arguments) {
   const auto unit = lower(text).rfind("rpm");
   if (unit != std::string::npos && unit + 3 == text.size()) text = text.substr(0, unit);
   const auto rpm = parse_real(text);
-  if (rpm && std::abs(*rpm) >= session::kLeastLearnRpm && std::abs(*rpm) <= session::kMostLearnRpm)
-    return *rpm;
+  if (rpm && std::abs(*rpm) >= motion::kLeastLearnRpm && std::abs(*rpm) <= motion::kMostLearnRpm) return *rpm;
   return fail(
       Errc::usage,
       fmt::format("--speed: '{}' is not 15rpm to 30rpm, one way or the other", arguments.text("--speed")),
@@ -109,20 +110,20 @@ Result<double> read_gear(Context& context, std::uint8_t node) {
   const auto why = unmet(context, node);
   return refused(node,
                  "the counts of a turn cannot be measured as it is set" + (why.empty() ? why : ": " + why),
-                 std::string(session::kOtherWay));
+                 std::string(motion::kOtherWay));
 }
 
 Result<Learn> learn_of(Context& context, const Arguments& arguments, std::uint8_t node) {
   const auto& rules = context.profile->rules;
   if (rules.learn.speed.empty()) {
     const auto ways = rules.units.find(drive::Measure::increments_per_turn);
-    const auto told = ways == rules.units.end() ? std::string() : ways_text(ways->second);
+    const auto told = ways == rules.units.end() ? std::string() : show::ways_text(ways->second);
     return fail(
         Errc::refused,
         told.empty()
             ? fmt::format("{} has nothing to measure the counts of a turn by", context.profile->family)
             : fmt::format("{} tells the counts of a turn itself: {}", context.profile->family, told),
-        told.empty() ? std::string(session::kOtherWay) : "`units show` reads them");
+        told.empty() ? std::string(motion::kOtherWay) : "`units show` reads them");
   }
   const auto monitor = drive::resolve(context.profile, rules.learn.speed);
   if (!monitor) return tl::unexpected<Error>(monitor.error());
@@ -165,14 +166,14 @@ std::string restart_note(const Context& context) {
                      out);
 }
 
-Result<void> keep(Context& context, std::uint8_t node, const session::LearnReport& done, double gear) {
+Result<void> keep(Context& context, std::uint8_t node, const motion::LearnReport& done, double gear) {
   // What was measured holds for these settings of this drive.
   const auto now = read_gear(context, node);
   if (!now || *now != gear)
     return refused(node, "its gear was changed while it was measured: nothing is kept", "measure again");
   const auto identity = session::read_identity(*context.session, node);
   if (!identity) return tl::unexpected<Error>(identity.error());
-  KeptTurn turn;
+  motion::KeptTurn turn;
   turn.counts = static_cast<std::uint64_t>(std::llround(done.counts->counts));
   turn.measured = static_cast<std::uint64_t>(std::llround(done.measured->increments / gear));
   turn.uncertainty_ppm = static_cast<std::uint64_t>(std::llround(done.measured->uncertainty * 1e6));
@@ -180,7 +181,7 @@ Result<void> keep(Context& context, std::uint8_t node, const session::LearnRepor
   turn.time = utc_now_text();
   turn.family = context.profile->family;
   turn.identity = *identity;
-  auto written = TurnFile(context, node).write(turn);
+  auto written = motion::TurnFile(context, node).write(turn);
   if (written) return written;
   auto error = written.error();
   error.message =
@@ -188,7 +189,7 @@ Result<void> keep(Context& context, std::uint8_t node, const session::LearnRepor
   return tl::unexpected<Error>(std::move(error));
 }
 
-void add_measurement(Value& answer, const session::LearnReport& done, double gear, bool kept) {
+void add_measurement(Value& answer, const motion::LearnReport& done, double gear, bool kept) {
   auto* record = std::get_if<Record>(&answer.data());
   if (record == nullptr) return;
   Record found;
@@ -218,28 +219,28 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   const auto node = request->node;
   const auto learn = learn_of(context, arguments, node);
   if (!learn) return tl::unexpected<Error>(learn.error());
-  const TurnFile file(context, node);
+  const motion::TurnFile file(context, node);
   if (file.path().empty())
     return fail(Errc::refused, "there is no folder to keep in what is measured",
                 "set HOME or XDG_STATE_HOME");
   if (!context.dry_run)
     if (const auto possible = check_writable(file.path()); !possible)
       return tl::unexpected<Error>(possible.error());
-  session::LearnReport done;
+  motion::LearnReport done;
   bool moved = false;
-  MotionRun motion;
+  motion::MotionRun motion;
   motion.in_counts = true;
-  motion.plan = [&](session::Motion& m) {
-    auto plan = session::plan_learn(m, *learn);
+  motion.plan = [&](motion::Motion& m) {
+    auto plan = motion::plan_learn(m, *learn);
     if (plan) plan->tell(restart_note(context));
     return plan;
   };
-  motion.run = [&](session::Motion& m, const session::MotionPlan& plan) {
-    done = session::run_learn(m, *learn, plan);
+  motion.run = [&](motion::Motion& m, const motion::MotionPlan& plan) {
+    done = motion::run_learn(m, *learn, plan);
     moved = true;
     return done.motion;
   };
-  auto answer = run_motion(context, *request, motion);
+  auto answer = motion::run_motion(context, *request, motion);
   if (!answer || !moved) return answer;
   bool kept = false;
   if (done.counts) {

@@ -1,16 +1,18 @@
 #include <fmt/format.h>
 
 #include "base/number.hpp"
-#include "commands/command.hpp"
-#include "commands/drive_rules.hpp"
-#include "commands/identity.hpp"
-#include "commands/kept_turn.hpp"
-#include "commands/motion_options.hpp"
+#include "command/command.hpp"
+#include "command/motion_options.hpp"
 #include "drive/standard_objects.hpp"
+#include "motion/kept_turn.hpp"
 #include "session/measure.hpp"
+#include "show/drive_rules.hpp"
+#include "show/identity.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 using drive::Measure;
 using report::List;
@@ -34,7 +36,7 @@ std::string_view unit_of(Measure measure) {
   return {};
 }
 
-Value kept_record(const KnownTurn& known) {
+Value kept_record(const motion::KnownTurn& known) {
   if (!known.kept) return {};
   const auto& kept = *known.kept;
   return Record{{"counts", kept.counts},
@@ -43,11 +45,11 @@ Value kept_record(const KnownTurn& known) {
                 {"why", kept.reason},
                 {"time", kept.time},
                 {"family", kept.family},
-                {"identity", identity_record(kept.identity)},
+                {"identity", show::identity_record(kept.identity)},
                 {"unused", report::text_or_null(known.unused)}};
 }
 
-std::string kept_text(const KnownTurn& known) {
+std::string kept_text(const motion::KnownTurn& known) {
   return fmt::format("kept: {} counts ({}), measured at {}", known.kept->counts, known.kept->reason,
                      known.kept->time);
 }
@@ -58,7 +60,7 @@ std::string_view position_unit(const drive::Profile& profile) {
 
 /// One measure of one node: what it is, and who tells it.
 List row(const Context& context, std::uint8_t node, Measure measure, std::string_view name,
-         std::optional<double> turn, const KnownTurn& known) {
+         std::optional<double> turn, const motion::KnownTurn& known) {
   const auto ways = context.profile->rules.units.find(measure);
   const bool of_turn = measure == Measure::increments_per_turn;
   const session::MeasureQuestion question[] = {
@@ -74,7 +76,7 @@ List row(const Context& context, std::uint8_t node, Measure measure, std::string
   } else if (told) {
     value = told->value;
     source = told->learned ? "kept" : "drive";
-    from = told->learned ? kept_text(known) : "the drive: " + ways_text(ways->second);
+    from = told->learned ? kept_text(known) : "the drive: " + show::ways_text(ways->second);
   } else if (const auto unit = position_unit(*context.profile); of_turn && unit != "inc") {
     from = "not needed: its positions are in " + std::string(unit);
   } else if (of_turn) {
@@ -107,7 +109,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
       context.errors.push_back(there.error());
       continue;
     }
-    const auto known = find_turn(context, node);
+    const auto known = motion::find_turn(context, node);
     if (!known.unused.empty())
       context.notices.push_back(
           fmt::format("node {}: the counts of a turn that are kept are not used: {}", node, known.unused));

@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
-#include "commands/command.hpp"
-#include "commands/comparison.hpp"
-#include "commands/setting_options.hpp"
+#include "command/command.hpp"
+#include "command/setting_options.hpp"
+#include "settings/comparison.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 using report::Value;
 
@@ -18,10 +20,10 @@ constexpr Parameter kParameters[] = {
 
 Result<Value> run(Context& context, const Arguments& arguments) {
   const auto name = arguments.text("file");
-  std::optional<Backup> backup;
+  std::optional<settings::Backup> backup;
   if (name != kFactory) {
-    auto read =
-        read_backup(context, name, context.front_end, context.nodes.front(), arguments.has("--skip-invalid"));
+    auto read = settings::read_backup(context, name, context.front_end, context.nodes.front(),
+                                      arguments.has("--skip-invalid"));
     if (!read) return tl::unexpected<Error>(read.error());
     if (read->family != context.profile->family)
       return fail(Errc::refused,
@@ -31,7 +33,8 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   }
   report::List out;
   for (const auto node : context.nodes) {
-    const auto expected = backup ? side_of(*backup, std::string(name)) : factory_side(*context.profile, node);
+    const auto expected = backup ? settings::side_of(*backup, std::string(name))
+                                 : settings::factory_side(*context.profile, node);
     std::vector<ObjectAddress> objects;
     for (const auto& value : expected.values) objects.push_back(value.first);
     const auto read = session::read_objects(*context.session, node, objects);
@@ -39,11 +42,12 @@ Result<Value> run(Context& context, const Arguments& arguments) {
       context.errors.push_back(read.error());
       continue;
     }
-    Side actual{fmt::format("node {}", node), node, {}};
+    settings::Side actual{fmt::format("node {}", node), node, {}};
     for (const auto& entry : *read)
       if (entry.bytes) actual.values.emplace(entry.object, *entry.bytes);
-    auto comparison = compare(context.profile, expected, actual, true, context.chinese);
-    if (comparison.different > 0) context.errors.push_back(differences_error(comparison, expected, actual));
+    auto comparison = settings::compare(context.profile, expected, actual, true, context.chinese);
+    if (comparison.different > 0)
+      context.errors.push_back(settings::differences_error(comparison, expected, actual));
     report::Record record{{"node", node}};
     for (auto& field : comparison.record) record.push_back(std::move(field));
     out.emplace_back(std::move(record));

@@ -1,16 +1,18 @@
 #include <fmt/format.h>
 #include <algorithm>
 
-#include "commands/command.hpp"
-#include "commands/duration_option.hpp"
-#include "commands/listening.hpp"
-#include "commands/records.hpp"
-#include "commands/sample_writer.hpp"
-#include "commands/sampler.hpp"
+#include "command/command.hpp"
+#include "command/duration_option.hpp"
 #include "session/option_scope.hpp"
+#include "show/records.hpp"
+#include "show/sample_writer.hpp"
+#include "traffic/listening.hpp"
+#include "traffic/sampler.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 using report::Value;
 
@@ -31,7 +33,7 @@ constexpr Parameter kParameters[] = {
 /// Samples as they are shown: the values of one node at one time.
 class Watching {
  public:
-  Watching(Context& context, Sampler& sampler, bool changes)
+  Watching(Context& context, traffic::Sampler& sampler, bool changes)
       : context_(&context), sampler_(&sampler), changes_(changes), writer_(context) {
     for (const auto& channel : sampler.channels()) records_.emplace_back(channel);
   }
@@ -40,7 +42,7 @@ class Watching {
   Result<void> look(Duration since) {
     const auto samples = sampler_->take();
     const auto failed =
-        std::find_if(samples.begin(), samples.end(), [](const Sample& s) { return !s.bytes; });
+        std::find_if(samples.begin(), samples.end(), [](const traffic::Sample& s) { return !s.bytes; });
     const bool interrupted = failed != samples.end() && failed->bytes.error().code == Errc::interrupted;
     if (interrupted || (looks_++ == 0 && failed != samples.end()))
       return tl::unexpected<Error>(failed->bytes.error());
@@ -53,20 +55,20 @@ class Watching {
   }
 
   Value result(bool plot) {
-    for (auto& error : failures_of(before_)) context_->errors.push_back(std::move(error));
-    report::Record out{{"objects", sampling_table(records_)}};
-    if (plot) out.push_back({"plot", report::Plot{series_of(records_)}, report::Show::text});
+    for (auto& error : traffic::failures_of(before_)) context_->errors.push_back(std::move(error));
+    report::Record out{{"objects", traffic::sampling_table(records_)}};
+    if (plot) out.push_back({"plot", report::Plot{traffic::series_of(records_)}, report::Show::text});
     if (context_->keeps_samples) out.push_back({"samples", writer_.take_kept()});
     return out;
   }
 
  private:
-  bool has_changed(std::size_t i, const std::vector<Sample>& samples) const {
+  bool has_changed(std::size_t i, const std::vector<traffic::Sample>& samples) const {
     if (before_.empty() || before_[i].bytes.has_value() != samples[i].bytes.has_value()) return true;
     return samples[i].bytes && *samples[i].bytes != *before_[i].bytes;
   }
 
-  void show(std::uint8_t node, double seconds, const std::vector<Sample>& samples) {
+  void show(std::uint8_t node, double seconds, const std::vector<traffic::Sample>& samples) {
     report::List values;
     std::string line = fmt::format("{:10.3f}", seconds);
     if (context_->nodes.size() > 1) line += fmt::format(" {:3}", node);
@@ -89,25 +91,26 @@ class Watching {
       writer_.add_line(line);
   }
 
-  static std::string text_of(const Channel& channel, const Sample& sample) {
+  static std::string text_of(const traffic::Channel& channel, const traffic::Sample& sample) {
     if (!sample.bytes) return channel.name + " -";
     const auto value =
-        decode_value({channel.node, channel.target, {}, Bytes{}, channel.bridge}, *sample.bytes);
+        show::decode_value({channel.node, channel.target, {}, Bytes{}, channel.bridge}, *sample.bytes);
     auto out = channel.name + " " + value.text;
     if (const auto* label = std::get_if<std::string>(&value.label.data())) out += " " + *label;
     return out;
   }
 
-  static report::Record record_of(const Channel& channel, const Sample& sample) {
+  static report::Record record_of(const traffic::Channel& channel, const traffic::Sample& sample) {
     const auto& address = channel.target.address;
     report::Record out{{"index", address.index},
                        {"sub", address.sub},
                        {"name", report::text_or_null(channel.target.label())}};
     if (!sample.bytes) {
-      out.push_back({"error", error_record(sample.bytes.error())});
+      out.push_back({"error", show::error_record(sample.bytes.error())});
       return out;
     }
-    auto value = decode_value({channel.node, channel.target, {}, Bytes{}, channel.bridge}, *sample.bytes);
+    auto value =
+        show::decode_value({channel.node, channel.target, {}, Bytes{}, channel.bridge}, *sample.bytes);
     out.push_back({"value", std::move(value.value)});
     out.push_back({"raw", std::move(value.raw)});
     out.push_back({"unit", report::text_or_null(value.unit)});
@@ -118,11 +121,11 @@ class Watching {
   }
 
   Context* context_;
-  Sampler* sampler_;
+  traffic::Sampler* sampler_;
   bool changes_;
-  SampleWriter writer_;
-  std::vector<ChannelRecord> records_;
-  std::vector<Sample> before_;
+  show::SampleWriter writer_;
+  std::vector<traffic::ChannelRecord> records_;
+  std::vector<traffic::Sample> before_;
   std::size_t looks_ = 0;
 };
 
@@ -131,7 +134,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   if (!every) return tl::unexpected<Error>(every.error());
   const auto length = duration_option(arguments, "--for");
   if (!length) return tl::unexpected<Error>(length.error());
-  auto sampler = Sampler::make(context, arguments.all("object"));
+  auto sampler = traffic::Sampler::make(context, arguments.all("object"));
   if (!sampler) return tl::unexpected<Error>(sampler.error());
   auto& session = *context.session;
   const auto period = every->value_or(kDefaultEvery);
@@ -140,7 +143,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   auto next = begin;
   const session::Hearing hearing(
       session, [&](const can::Frame& frame, TimePoint time) { (void)sampler->on_frame(frame, time); });
-  Listener listener;
+  traffic::Listener listener;
   listener.next = [&] { return next; };
   listener.on_time = [&](TimePoint now) -> Result<void> {
     const auto looked = watching.look(now - begin);
@@ -148,7 +151,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
     next += (std::max(session.now() - next, Duration::zero()) / period + 1) * period;
     return looked;
   };
-  const auto ended = listen(session, *length, listener);
+  const auto ended = traffic::listen(session, *length, listener);
   if (!ended && ended.error().code != Errc::interrupted) return tl::unexpected<Error>(ended.error());
   return watching.result(arguments.has("--plot"));
 }

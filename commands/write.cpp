@@ -1,12 +1,14 @@
-#include "commands/change.hpp"
-#include "commands/command.hpp"
-#include "commands/file_transfer.hpp"
-#include "commands/setting_options.hpp"
-#include "commands/transfer_option.hpp"
-#include "commands/type_option.hpp"
+#include "command/command.hpp"
+#include "command/setting_options.hpp"
+#include "command/transfer_option.hpp"
+#include "command/type_option.hpp"
+#include "settings/change.hpp"
+#include "settings/file_transfer.hpp"
 
 namespace servoctl::commands {
 namespace {
+
+using namespace command;
 
 constexpr std::string_view kPath = "write";
 
@@ -34,14 +36,14 @@ Result<void> check_one_source(const Arguments& arguments) {
               "write OBJECT VALUE, or write OBJECT --from FILE");
 }
 
-Result<Change> change_of(Context& context, const Arguments& arguments, std::uint8_t node,
-                         const drive::Target& target, std::optional<od::DataType> type) {
+Result<settings::Change> change_of(Context& context, const Arguments& arguments, std::uint8_t node,
+                                   const drive::Target& target, std::optional<od::DataType> type) {
   auto change = arguments.has("--from")
-                    ? change_from_file(context.profile, node, target, arguments.text("--from"))
-                    : make_change(context, node, target, arguments.text("value"), type);
+                    ? settings::change_from_file(context.profile, node, target, arguments.text("--from"))
+                    : settings::make_change(context, node, target, arguments.text("value"), type);
   if (!change) return change;
   const auto transfer = write_transfer(context, arguments, change->data.size());
-  if (!transfer) return tl::unexpected<Error>(located(transfer.error(), node, target.address));
+  if (!transfer) return tl::unexpected<Error>(show::located(transfer.error(), node, target.address));
   change->transfer = *transfer;
   return change;
 }
@@ -54,7 +56,8 @@ Result<void> check(Context& context, const Arguments& arguments) {
   if (!target) return tl::unexpected<Error>(target.error());
   if (arguments.has("--from")) return {};
   for (const auto node : context.nodes)
-    if (const auto fits = check_change(context, node, *target, arguments.text("value"), *type); !fits)
+    if (const auto fits = settings::check_change(context, node, *target, arguments.text("value"), *type);
+        !fits)
       return fits;
   return {};
 }
@@ -65,19 +68,20 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   if (const auto one = check_one_source(arguments); !one) return tl::unexpected<Error>(one.error());
   const auto target = drive::resolve(context.profile, arguments.text("object"));
   if (!target) return tl::unexpected<Error>(target.error());
-  std::vector<Change> changes;
+  std::vector<settings::Change> changes;
   for (const auto node : context.nodes) {
     auto change = change_of(context, arguments, node, *target, *type);
     if (!change) return tl::unexpected<Error>(change.error());
     changes.push_back(std::move(*change));
   }
-  const WriteOptions options{
+  const settings::WriteOptions options{
       .read_back = false, .keep = arguments.has("--keep"), .unlock = arguments.has("--unlock")};
-  if (context.dry_run) return planned_changes(context, changes, options);
-  if (const auto confirmed = confirm_changes(context, changes); !confirmed)
+  if (context.dry_run) return settings::planned_changes(context, changes, options);
+  if (const auto confirmed = settings::confirm_changes(context, changes); !confirmed)
     return tl::unexpected<Error>(confirmed.error());
-  return arguments.has("--from") ? write_from_file(context, changes, arguments.text("--from"), options)
-                                 : write_changes(context, changes, options);
+  return arguments.has("--from")
+             ? settings::write_from_file(context, changes, arguments.text("--from"), options)
+             : settings::write_changes(context, changes, options);
 }
 
 Result<std::vector<settings::NamedValue>> setting_values(const Arguments& arguments) {

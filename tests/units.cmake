@@ -45,6 +45,7 @@ servoctl_tests(drive servoctl_drive)
 servoctl_tests(report servoctl_report)
 servoctl_tests(sim servoctl_sim)
 servoctl_tests(session servoctl_session)
+servoctl_tests(motion servoctl_motion)
 servoctl_tests(commands servoctl_commands)
 servoctl_tests(cli servoctl_cli)
 

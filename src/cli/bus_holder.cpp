@@ -10,10 +10,10 @@
 #include "base/text.hpp"
 #include "can/descriptor.hpp"
 #include "can/socketcan.hpp"
-#include "commands/left_energised.hpp"
-#include "commands/sync_end.hpp"
+#include "motion/left_energised.hpp"
+#include "motion/power.hpp"
 #include "session/link_wait.hpp"
-#include "session/power.hpp"
+#include "traffic/sync_end.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -133,7 +133,7 @@ Result<void> BusHolder::connect_again(const std::string& url, const std::set<std
 void BusHolder::stop_sync() {
   if (!session_ || session_->sync() == nullptr) return;
   const auto count = session_->sync()->rhythm.count();
-  for (const auto& warning : commands::end_sync(*session_).warnings)
+  for (const auto& warning : traffic::end_sync(*session_).warnings)
     console_->err("warning: " + warning + "\n");
   console_->err(fmt::format("notice: SYNC is no longer produced on {}, after {}\n", session_->url(), count));
 }
@@ -146,16 +146,16 @@ Duration BusHolder::serve() {
 }
 
 void BusHolder::stop_and_disable() {
-  for (const auto& [node, done] : session::de_energise(*session_)) {
+  for (const auto& [node, done] : motion::de_energise(*session_)) {
     if (done)
-      console_->err("notice: " + commands::disabled_notice(node) + "\n");
+      console_->err("notice: " + motion::disabled_notice(node) + "\n");
     else
       warn(node, done.error().message);
   }
 }
 
 void BusHolder::warn(std::uint8_t node, std::string_view why) {
-  console_->err("error: " + commands::power_warning(node, why) + "\n");
+  console_->err("error: " + motion::power_warning(node, why) + "\n");
 }
 
 }  // namespace servoctl::cli

@@ -7,8 +7,8 @@
 #include <set>
 #include <string>
 
-#include "cli/console.hpp"
 #include "cli/settings.hpp"
+#include "cli/terminal/console.hpp"
 #include "session/open_bus.hpp"
 #include "session/session.hpp"
 

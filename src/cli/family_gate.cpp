@@ -120,16 +120,16 @@ Result<void> FamilyGate::hold_one(const session::Identity& identity, const drive
   return {};
 }
 
-FamilyGate::Weight weight_of(const commands::Command& command, const commands::Arguments& arguments) {
+FamilyGate::Weight weight_of(const command::Command& command, const command::Arguments& arguments) {
   switch (command.family) {
-    case commands::FamilyCheck::by_effect: break;
-    case commands::FamilyCheck::always:
-      return command.effect_with(arguments) >= commands::Effect::writes ? FamilyGate::Weight::changes
-                                                                        : FamilyGate::Weight::answers;
-    case commands::FamilyCheck::never: return FamilyGate::Weight::reads;
+    case command::FamilyCheck::by_effect: break;
+    case command::FamilyCheck::always:
+      return command.effect_with(arguments) >= command::Effect::writes ? FamilyGate::Weight::changes
+                                                                       : FamilyGate::Weight::answers;
+    case command::FamilyCheck::never: return FamilyGate::Weight::reads;
   }
-  return command.effect_with(arguments) >= commands::Effect::writes ? FamilyGate::Weight::changes
-                                                                    : FamilyGate::Weight::reads;
+  return command.effect_with(arguments) >= command::Effect::writes ? FamilyGate::Weight::changes
+                                                                   : FamilyGate::Weight::reads;
 }
 
 }  // namespace servoctl::cli

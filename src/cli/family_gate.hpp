@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "commands/command.hpp"
+#include "command/command.hpp"
 #include "session/session.hpp"
 
 namespace servoctl::cli {
@@ -46,6 +46,6 @@ class FamilyGate {
 };
 
 /// How much a command weighs with these arguments, by its data.
-FamilyGate::Weight weight_of(const commands::Command& command, const commands::Arguments& arguments);
+FamilyGate::Weight weight_of(const command::Command& command, const command::Arguments& arguments);
 
 }  // namespace servoctl::cli

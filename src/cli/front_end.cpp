@@ -10,15 +10,15 @@
 #include <iostream>
 
 #include "base/printable.hpp"
-#include "cli/batch_command.hpp"
-#include "cli/console.hpp"
-#include "cli/input_lines.hpp"
+#include "cli/batch/batch_command.hpp"
+#include "cli/batch/input_lines.hpp"
 #include "cli/line_runner.hpp"
 #include "cli/parse.hpp"
-#include "cli/prompt.hpp"
 #include "cli/shell.hpp"
-#include "cli/signals.hpp"
 #include "cli/state_folder.hpp"
+#include "cli/terminal/console.hpp"
+#include "cli/terminal/prompt.hpp"
+#include "cli/terminal/signals.hpp"
 
 namespace servoctl::cli {
 namespace {

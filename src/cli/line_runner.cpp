@@ -1,7 +1,7 @@
 #include "cli/line_runner.hpp"
 
-#include "cli/batch_command.hpp"
-#include "cli/prompt_words.hpp"
+#include "cli/batch/batch_command.hpp"
+#include "cli/terminal/prompt_words.hpp"
 #include "cli/words.hpp"
 
 namespace servoctl::cli {

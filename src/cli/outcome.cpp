@@ -1,7 +1,7 @@
 #include "cli/outcome.hpp"
 
 #include "base/printable.hpp"
-#include "commands/records.hpp"
+#include "show/records.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -27,7 +27,7 @@ report::Record envelope(const Outcome& outcome) {
                      {"ok", outcome.errors.empty()},
                      {"bus", outcome.uses_bus ? report::text_or_null(outcome.settings.bus) : Value()}};
   if (!outcome.errors.empty())
-    out.push_back({"error", commands::error_record(outcome.errors.front(), outcome.abort_words)});
+    out.push_back({"error", show::error_record(outcome.errors.front(), outcome.abort_words)});
   out.push_back({"result", outcome.result});
   report::List notices;
   for (const auto& notice : outcome.notices) notices.emplace_back(notice);

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "base/result.hpp"
-#include "cli/console.hpp"
 #include "cli/settings.hpp"
+#include "cli/terminal/console.hpp"
 #include "report/value.hpp"
 
 namespace servoctl::cli {

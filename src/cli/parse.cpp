@@ -6,18 +6,19 @@
 #include <limits>
 
 #include "base/text.hpp"
-#include "commands/help.hpp"
+#include "command/help_text.hpp"
+#include "command/registry.hpp"
 
 namespace servoctl::cli {
 namespace {
 
-using commands::Command;
-using commands::Kind;
-using commands::Parameter;
+using command::Command;
+using command::Kind;
+using command::Parameter;
 
 const Parameter* global_option(std::string_view word) {
   const auto name = word.substr(0, word.find('='));
-  for (const auto& option : commands::global_options())
+  for (const auto& option : command::global_options())
     if (option.name == name || (!option.short_name.empty() && option.short_name == name)) return &option;
   return nullptr;
 }
@@ -52,13 +53,13 @@ class Parser {
     app_.set_help_flag();
     app_.allow_extras();
     for (const auto& parameter : command.parameters) bind(parameter);
-    for (const auto& parameter : commands::global_options())
-      if (!commands::has_own(command, parameter)) bind(parameter);
+    for (const auto& parameter : command::global_options())
+      if (!command::has_own(command, parameter)) bind(parameter);
   }
 
   /// Behind the first `--` stand values of arguments, whatever they look like: CLI11 does not see them. Where
   /// no argument is left to take one, options may follow: `jog -- -30rpm --for 2s`.
-  Result<commands::Arguments> parse(std::vector<std::string> words) {
+  Result<command::Arguments> parse(std::vector<std::string> words) {
     const auto mark = std::find(words.begin(), words.end(), "--");
     std::vector<std::string> values(mark == words.end() ? mark : mark + 1, words.end());
     words.erase(mark, words.end());
@@ -145,8 +146,8 @@ class Parser {
     return false;
   }
 
-  Result<commands::Arguments> collect() const {
-    commands::Arguments out;
+  Result<command::Arguments> collect() const {
+    command::Arguments out;
     for (const auto& entry : bound_) {
       const auto& parameter = *entry.parameter;
       if (entry.values.empty() && entry.option->count() == 0) {
@@ -196,7 +197,7 @@ class Parser {
 tl::unexpected<Error> unknown_command(const std::vector<std::string>& words, std::size_t first) {
   std::vector<std::string> paths;
   std::vector<std::string> in_group;
-  for (const auto* command : commands::registry()) {
+  for (const auto* command : command::registry()) {
     paths.emplace_back(command->path);
     if (split(command->path, ' ').size() > 1 && split(command->path, ' ').front() == words[first])
       in_group.emplace_back(command->path);
@@ -215,7 +216,7 @@ tl::unexpected<Error> unknown_command(const std::vector<std::string>& words, std
 CommandMatch match_command(const std::vector<std::string>& words) {
   CommandMatch best;
   best.first = first_plain_word(words);
-  for (const auto* command : commands::registry()) {
+  for (const auto* command : command::registry()) {
     const auto used = words_that_fit(command->path, words, best.first);
     if (used > best.used) {
       best.command = command;
@@ -231,7 +232,7 @@ Result<ParsedLine> parse_line(const std::vector<std::string>& words) {
     for (const auto& word : words)
       if (global_option(word) == nullptr && word.starts_with('-')) {
         std::vector<std::string> known;
-        for (const auto& option : commands::global_options()) known.emplace_back(option.name);
+        for (const auto& option : command::global_options()) known.emplace_back(option.name);
         return fail(Errc::usage, fmt::format("there is no option '{}'", word), did_you_mean(word, known));
       }
     return fail(Errc::usage, "a command is missing", "`help` lists the commands");

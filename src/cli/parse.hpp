@@ -4,14 +4,14 @@
 #include <vector>
 
 #include "base/result.hpp"
-#include "commands/command.hpp"
+#include "command/command.hpp"
 
 namespace servoctl::cli {
 
 /// A command line taken apart.
 struct ParsedLine {
-  const commands::Command* command = nullptr;
-  commands::Arguments arguments;  ///< Of the command and of the global options.
+  const command::Command* command = nullptr;
+  command::Arguments arguments;  ///< Of the command and of the global options.
 };
 
 /// Finds the command (global options may stand before it) and its arguments. Errc::usage with the nearest
@@ -24,7 +24,7 @@ bool asks_for_help(const std::vector<std::string>& words);
 /// The command the words name, global options left out: the longest path that fits. `used` counts the words
 /// it takes, `first` is the position of its first word. Null when there is none.
 struct CommandMatch {
-  const commands::Command* command = nullptr;
+  const command::Command* command = nullptr;
   std::size_t first = 0;
   std::size_t used = 0;
 };

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include "base/printable.hpp"
-#include "cli/setting_lines.hpp"
+#include "cli/batch/setting_lines.hpp"
 #include "cli/shell.hpp"
 
 namespace servoctl::cli {
 
-RunningLine::RunningLine(Shell& shell, const Settings& settings, commands::Context& context)
+RunningLine::RunningLine(Shell& shell, const Settings& settings, command::Context& context)
     : shell_(&shell), settings_(&settings), context_(&context) {
   context.audience = this;
   context.front_end = this;

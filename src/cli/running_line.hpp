@@ -8,7 +8,7 @@
 
 #include "cli/family_gate.hpp"
 #include "cli/settings.hpp"
-#include "commands/command.hpp"
+#include "command/command.hpp"
 
 namespace servoctl::cli {
 
@@ -19,7 +19,7 @@ class Shell;
 class RunningLine final : public show::Audience, public command::FrontEnd {
  public:
   /// All outlive it.
-  RunningLine(Shell& shell, const Settings& settings, commands::Context& context);
+  RunningLine(Shell& shell, const Settings& settings, command::Context& context);
 
   Result<void> confirm(std::string_view question) override;
   void emit(const report::Record& sample, std::string_view line) override;
@@ -42,7 +42,7 @@ class RunningLine final : public show::Audience, public command::FrontEnd {
  private:
   Shell* shell_;
   const Settings* settings_;
-  commands::Context* context_;
+  command::Context* context_;
 };
 
 }  // namespace servoctl::cli

@@ -8,7 +8,7 @@
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "canopen/cob_id.hpp"
-#include "commands/output_form.hpp"
+#include "command/output_form.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -35,7 +35,7 @@ Settings settings_from_environment() {
   return out;
 }
 
-Result<Settings> apply_options(Settings base, const commands::Arguments& arguments) {
+Result<Settings> apply_options(Settings base, const command::Arguments& arguments) {
   const auto text = [&](std::string_view name, std::string& into) {
     if (arguments.has(name)) into = std::string(arguments.text(name));
   };
@@ -60,7 +60,7 @@ Result<Settings> apply_options(Settings base, const commands::Arguments& argumen
     base.retries = static_cast<std::uint32_t>(*retries);
   }
   // Where a command writes a file, its own --output may name that.
-  if (const auto form = arguments.text("--output"); commands::is_output_form(form)) {
+  if (const auto form = arguments.text("--output"); command::is_output_form(form)) {
     base.json = form != "text";
     base.samples = form == "jsonl";
   }

@@ -8,7 +8,7 @@
 
 #include "base/result.hpp"
 #include "base/time.hpp"
-#include "commands/command.hpp"
+#include "command/command.hpp"
 
 namespace servoctl::cli {
 
@@ -34,7 +34,7 @@ struct Settings {
 Settings settings_from_environment();
 
 /// `base` with the global options of one line on top. Errc::usage for a value that is none.
-Result<Settings> apply_options(Settings base, const commands::Arguments& arguments);
+Result<Settings> apply_options(Settings base, const command::Arguments& arguments);
 
 /// Reads `1`, `1,3,5-8` (rising, without doubles) or `all` ({0}). Errc::usage for anything else or an ID
 /// outside 1..127.

@@ -11,18 +11,18 @@
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "canopen/cob_id.hpp"
-#include "cli/signals.hpp"
-#include "commands/help.hpp"
-#include "commands/notice.hpp"
-#include "commands/records.hpp"
+#include "cli/terminal/signals.hpp"
+#include "command/help_text.hpp"
 #include "session/identify.hpp"
 #include "session/scan.hpp"
+#include "show/notice.hpp"
+#include "show/records.hpp"
 
 namespace servoctl::cli {
 namespace {
 
-using commands::Effect;
-using commands::Needs;
+using command::Effect;
+using command::Needs;
 using report::Value;
 
 bool wants_json(const std::vector<std::string>& words) {
@@ -39,7 +39,7 @@ bool wants_json(const std::vector<std::string>& words) {
 
 }  // namespace
 
-Result<void> check_allowed(const commands::Command& command, const commands::Arguments& arguments,
+Result<void> check_allowed(const command::Command& command, const command::Arguments& arguments,
                            const Settings& settings) {
   if (command.of_front_end)
     return fail(Errc::usage, fmt::format("'{}' cannot be a line of a batch file", command.path),
@@ -51,7 +51,7 @@ Result<void> check_allowed(const commands::Command& command, const commands::Arg
   return {};
 }
 
-Error no_node(const commands::Command& command) {
+Error no_node(const command::Command& command) {
   return fail(Errc::usage, fmt::format("'{}' needs a node", command.path),
               "add -n 1 (or a list, or all); `scan` shows who is there")
       .value();
@@ -113,14 +113,14 @@ Outcome Shell::help(const std::vector<std::string>& words, Settings settings) {
   const std::string path = match.command != nullptr     ? std::string(match.command->path)
                            : match.first < words.size() ? words[match.first]
                                                         : std::string();
-  auto text = commands::help_text(path, console_->width());
+  auto text = command::help_text(path, console_->width());
   if (!text) return failed(text.error(), std::move(settings));
   settings.json = false;
   if (!text->empty() && text->back() == '\n') text->pop_back();
   return {.command = "help", .settings = std::move(settings), .result = std::move(*text)};
 }
 
-Result<Value> Shell::execute(Run& run, const commands::Arguments& arguments) {
+Result<Value> Shell::execute(Run& run, const command::Arguments& arguments) {
   if (const auto ready = prepare(run, arguments); !ready) return tl::unexpected<Error>(ready.error());
   auto& context = run.context;
   context.nodes_typed = run.settings.nodes_typed;
@@ -135,7 +135,7 @@ Result<Value> Shell::execute(Run& run, const commands::Arguments& arguments) {
   return run.command->run(context, arguments);
 }
 
-Result<void> Shell::prepare(Run& run, const commands::Arguments& arguments) {
+Result<void> Shell::prepare(Run& run, const command::Arguments& arguments) {
   const auto& command = *run.command;
   if (const auto allowed = check_allowed(command, arguments, run.settings); !allowed) return allowed;
   if (!run.settings.drive.empty() || includes(command.needs, Needs::dictionary))
@@ -237,8 +237,7 @@ std::vector<std::string> Shell::take_notices(const drive::Profile* profile, bool
   for (const auto report : session->take_reports())
     out.push_back(session->url() + ": " + std::string(can::text(report)));
   for (auto& notice : session->bus().take_notices()) out.push_back(std::move(notice));
-  for (const auto& event : session->take_events())
-    out.push_back(commands::notice_text(event, profile, chinese));
+  for (const auto& event : session->take_events()) out.push_back(show::notice_text(event, profile, chinese));
   return out;
 }
 
@@ -262,7 +261,7 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
   if (const auto untold = console_->take_untold(); untold > 0)
     run.context.notices.push_back(
         fmt::format("{} messages were not shown, because nobody read them in time", untold));
-  for (auto& error : errors) commands::name_abort(run.context, error);
+  for (auto& error : errors) show::name_abort(run.context, error);
   if (auto failure = bus_.take_trace_failure()) {
     // The line was carried out; those that follow are too.
     if (stays_open_) {
@@ -274,7 +273,7 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
   }
   // A lost interface does not come back by itself: the next line opens it again.
   if (!errors.empty() && errors.front().code == Errc::bus) bus_.lose();
-  auto words = errors.empty() ? std::string() : commands::abort_words(run.context, errors.front());
+  auto words = errors.empty() ? std::string() : show::abort_words(run.context, errors.front());
   return {.command = std::string(run.command->path),
           .settings = std::move(run.settings),
           .uses_bus = includes(run.command->needs, Needs::bus) || run.context.session != nullptr,

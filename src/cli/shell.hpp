@@ -11,22 +11,22 @@
 #include <vector>
 
 #include "cli/bus_holder.hpp"
-#include "cli/console.hpp"
 #include "cli/outcome.hpp"
 #include "cli/parse.hpp"
-#include "cli/progress.hpp"
 #include "cli/running_line.hpp"
 #include "cli/settings.hpp"
+#include "cli/terminal/console.hpp"
+#include "cli/terminal/progress.hpp"
 #include "session/session.hpp"
 #include "sim/sim_bus.hpp"
 
 namespace servoctl::cli {
 
 /// Whether the command may run at all: --read-only refuses what changes a drive, and a line is no batch file.
-Result<void> check_allowed(const commands::Command& command, const commands::Arguments& arguments,
+Result<void> check_allowed(const command::Command& command, const command::Arguments& arguments,
                            const Settings& settings);
 /// The command was given no node.
-Error no_node(const commands::Command& command);
+Error no_node(const command::Command& command);
 
 /// Runs command lines, one after the other: opens what a command needs, runs it, renders its result. Keeps
 /// the bus and the drive data open from one line to the next. Every front end runs its lines here.
@@ -86,17 +86,17 @@ class Shell {
 
  private:
   struct Run {
-    Run(Shell& shell, const commands::Command& of, Settings as)
+    Run(Shell& shell, const command::Command& of, Settings as)
         : command(&of), settings(std::move(as)), line(shell, settings, context) {}
-    const commands::Command* command;
+    const command::Command* command;
     Settings settings;
-    commands::Context context;
+    command::Context context;
     RunningLine line;
   };
 
   session::Options session_options();
-  Result<report::Value> execute(Run& run, const commands::Arguments& arguments);
-  Result<void> prepare(Run& run, const commands::Arguments& arguments);
+  Result<report::Value> execute(Run& run, const command::Arguments& arguments);
+  Result<void> prepare(Run& run, const command::Arguments& arguments);
   Result<void> prepare_profile(Run& run);
   Result<void> prepare_nodes(Run& run);
   void hear_second_node(const Run& run);

@@ -7,7 +7,7 @@
 
 #include "drive/standard_objects.hpp"
 #include "session/option_scope.hpp"
-#include "session/power.hpp"
+#include "session/drive_error.hpp"
 #include "session/setting_write.hpp"
 
 namespace servoctl::session {

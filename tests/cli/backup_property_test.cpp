@@ -9,18 +9,18 @@
 #include <map>
 #include <random>
 
-#include "cli/batch.hpp"
+#include "cli/batch/batch.hpp"
+#include "cli/batch/setting_lines.hpp"
 #include "cli/line_runner.hpp"
 #include "cli/parse.hpp"
-#include "cli/setting_lines.hpp"
 #include "cli/shell.hpp"
 #include "cli/words.hpp"
-#include "commands/backup_formats.hpp"
-#include "commands/comparison.hpp"
-#include "commands/restoring.hpp"
 #include "drive/naming.hpp"
 #include "drive/quantity.hpp"
 #include "recording_console.hpp"
+#include "settings/backup_formats.hpp"
+#include "settings/comparison.hpp"
+#include "settings/restoring.hpp"
 #include "sim/sim_bus.hpp"
 #include "sim/sim_drive.hpp"
 #include "tests/session/troubled_bus.hpp"
@@ -32,10 +32,10 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
-using commands::Backup;
-using commands::BackupFormat;
 using session::Trouble;
 using session::TroubledBus;
+using settings::Backup;
+using settings::BackupFormat;
 
 const std::vector<fs::path>& folders() {
   static const std::vector<fs::path> all{fs::path(source_dir()) / "eds",
@@ -74,25 +74,25 @@ class World : public settings::LineReader {
 
   Backup backup() {
     const std::uint8_t nodes[] = {1};
-    return commands::make_backup(context,
+    return settings::make_backup(context,
                                  session::take_snapshots(session(), *profile_, nodes, {}).front().value());
   }
   Result<std::string> text(const Backup& backup, BackupFormat format) {
-    return commands::backup_text(context, backup, format, "drive");
+    return settings::backup_text(context, backup, format, "drive");
   }
   Result<Backup> read(std::string text, BackupFormat format) {
-    return commands::read_backup(context, {"drive", std::move(text), format, this}, profile_, 1);
+    return settings::read_backup(context, {"drive", std::move(text), format, this}, profile_, 1);
   }
-  Result<commands::Restored> restore(const Backup& backup) {
+  Result<settings::Restored> restore(const Backup& backup) {
     context.errors.clear();
     // A password that the bus cannot give is told, and nothing written.
     const auto& store = profile_->rules.store;
     const auto* password = profile_->parameter(store.unlock);
-    commands::RestoringOptions how;
+    settings::RestoringOptions how;
     how.unlock = password != nullptr && password->object && store.unlock_open;
     // Each restore for itself: one that could not be undone would keep the next from its start.
     fs::remove(journal_);
-    return commands::put_into(context, backup, "drive", 1, folder_ / "before.json", how);
+    return settings::put_into(context, backup, "drive", 1, folder_ / "before.json", how);
   }
   /// What a drive that is set holds and one that a backup is put into holds differ in these.
   std::map<ObjectAddress, Bytes> values(const Backup& of) {
@@ -109,7 +109,7 @@ class World : public settings::LineReader {
   sim::SimDrive& drive() { return drive_; }
   bool is_cut_off() const { return fs::exists(journal_); }
 
-  commands::Context context;
+  command::Context context;
 
  private:
   Shell& shell() {
@@ -149,7 +149,7 @@ sim::Memory::Cells any_drive(const drive::Profile& profile, std::mt19937& random
   for (const auto& setting : drive::settings_of(profile)) {
     if (!setting.left_out.empty() || random() % 2 == 0) continue;
     const auto object = setting.entry->address;
-    if (commands::is_address(&profile, object)) continue;
+    if (settings::is_address(&profile, object)) continue;
     // How it answers at all: heartbeats and SYNC of any length would only fill the bus.
     if (object.index >= 0x1000 && object.index < 0x1400) continue;
     out[object] = any_value(setting.entry->type, random);
@@ -200,7 +200,7 @@ TEST_P(Families, PutWhatIsWithinLimitsIntoAFactoryDriveAndNameTheRest) {
       ASSERT_TRUE(done) << done.error().message;
       const bool same = target.drive().value(entry.object) == *entry.bytes;
       const bool told = !target.context.errors.empty();
-      EXPECT_TRUE(same || told || commands::is_address(&profile_of(GetParam()), entry.object))
+      EXPECT_TRUE(same || told || settings::is_address(&profile_of(GetParam()), entry.object))
           << to_string(entry.object) << " was not written, and nothing says so";
       EXPECT_TRUE(told || !target.is_cut_off()) << to_string(entry.object);
       taken += same ? 1U : 0U;
@@ -217,7 +217,7 @@ TEST(ABackup, LeavesOutACobIdThatNoDriveMayHaveAndIsTaken) {
   World world("dm", {{{0x1801, 1}, store_le(0x601, 4)}});
   ASSERT_EQ(load_le(world.drive().value({0x1801, 1})), 0x601U);
   const auto backup = world.backup();
-  commands::tell_left_out(world.context, backup);
+  settings::tell_left_out(world.context, backup);
   ASSERT_EQ(world.context.notices.size(), 1U);
   EXPECT_NE(world.context.notices[0].find("CAN-ID 0x601 is that of SDO"), std::string::npos)
       << world.context.notices[0];
@@ -312,7 +312,7 @@ RC_GTEST_PROP(AnyText, InALineIsOneValueOfOneWriteAndNoOption,
   std::mt19937 random(seed);
   const auto text = before + any_text(random);
   const Bytes bytes(text.begin(), text.end());
-  const auto line = commands::commented_line(&profile_of("lab"), 1, {0x2000, 0}, bytes);
+  const auto line = settings::commented_line(&profile_of("lab"), 1, {0x2000, 0}, bytes);
   const auto batch = parse_batch(line + "\nread 0x1000\n");
   RC_ASSERT(batch.errors.empty());
   RC_ASSERT(batch.statements.size() == 2U);

@@ -1,8 +1,8 @@
 // What `expect` asks, and of which parts of a result.
 #include <gtest/gtest.h>
 
-#include "cli/expression.hpp"
-#include "cli/result_path.hpp"
+#include "cli/batch/expression.hpp"
+#include "cli/batch/result_path.hpp"
 
 namespace servoctl::cli {
 namespace {

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "cli/batch_plan.hpp"
-#include "cli/gateway_line.hpp"
+#include "cli/batch/batch_plan.hpp"
+#include "cli/batch/gateway_line.hpp"
 #include "tests/source_dir.hpp"
 
 namespace servoctl::cli {

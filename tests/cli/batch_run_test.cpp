@@ -5,7 +5,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "cli/batch_command.hpp"
+#include "cli/batch/batch_command.hpp"
 #include "cli/line_runner.hpp"
 #include "recording_console.hpp"
 #include "tests/source_dir.hpp"

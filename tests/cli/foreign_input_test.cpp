@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 #include "backup_fixture.hpp"
-#include "commands/backup_file.hpp"
+#include "settings/backup_file.hpp"
 
 namespace servoctl::cli {
 namespace {

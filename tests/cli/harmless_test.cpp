@@ -8,8 +8,9 @@
 #include <sstream>
 
 #include "can/trace.hpp"
-#include "cli/batch_command.hpp"
-#include "commands/command.hpp"
+#include "cli/batch/batch_command.hpp"
+#include "command/command.hpp"
+#include "command/registry.hpp"
 #include "recording_console.hpp"
 #include "tests/source_dir.hpp"
 
@@ -168,7 +169,7 @@ class Harmless : public testing::TestWithParam<std::string> {
 
   void expect_harmless(const std::string& option, bool each_is_understood) {
     std::size_t in_all = 0;
-    for (const auto* command : commands::registry()) {
+    for (const auto* command : command::registry()) {
       const auto sample = kSamples.find(std::string(command->path));
       ASSERT_NE(sample, kSamples.end()) << "give '" << command->path << "' a sample line";
       const auto code = perform(sample->second, option);

@@ -9,10 +9,11 @@
 #include <regex>
 #include <set>
 
-#include "cli/batch_command.hpp"
+#include "cli/batch/batch_command.hpp"
 #include "cli/line_runner.hpp"
 #include "cli/parse.hpp"
 #include "cli/words.hpp"
+#include "command/registry.hpp"
 #include "recording_console.hpp"
 #include "tests/source_dir.hpp"
 
@@ -116,7 +117,7 @@ TEST(Hints, NameCommandsThatAreUnderstood) {
         continue;
       } else if (lacks_words(*words)) {
         // A command that is only named.
-        EXPECT_NE(commands::find_command(text), nullptr) << text;
+        EXPECT_NE(command::find_command(text), nullptr) << text;
         continue;
       }
       ++commands;

@@ -5,9 +5,9 @@
 #include <filesystem>
 
 #include "base/text.hpp"
-#include "cli/completer.hpp"
 #include "cli/line_runner.hpp"
 #include "cli/parse.hpp"
+#include "cli/terminal/completer.hpp"
 #include "cli/words.hpp"
 #include "recording_console.hpp"
 #include "tests/source_dir.hpp"

@@ -1,4 +1,4 @@
-#include "cli/live_output.hpp"
+#include "cli/terminal/live_output.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

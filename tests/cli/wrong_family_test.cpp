@@ -13,6 +13,7 @@
 #include "can/trace.hpp"
 #include "cli/shell.hpp"
 #include "cli/words.hpp"
+#include "command/registry.hpp"
 #include "recording_console.hpp"
 #include "tests/source_dir.hpp"
 
@@ -165,7 +166,7 @@ class WrongFamily : public testing::Test {
 };
 
 TEST_F(WrongFamily, TheTableHasEveryCommand) {
-  for (const auto* command : commands::registry())
+  for (const auto* command : command::registry())
     EXPECT_TRUE(kLines.count(command->path) + kQuiet.count(command->path) == 1)
         << command->path << ": write here what it does with a family that the drive is not";
 }
@@ -177,12 +178,12 @@ TEST_F(WrongFamily, WritesNothingByAnyCommand) {
       open(drive, named);
       for (const auto& [path, line] : kLines) {
         SCOPED_TRACE("-d " + named + " on " + drive + ": " + line);
-        const auto* command = commands::find_command(path);
-        if (command->family == commands::FamilyCheck::never && path != "info" && path != "test all") continue;
+        const auto* command = command::find_command(path);
+        if (command->family == command::FamilyCheck::never && path != "info" && path != "test all") continue;
         const int code = run(line);
         const bool only_reads =
             !command->reads_without.empty() && line.find(command->reads_without) == std::string::npos;
-        if (kAnswers.count(path) == 0 && (only_reads || command->effect < commands::Effect::writes)) {
+        if (kAnswers.count(path) == 0 && (only_reads || command->effect < command::Effect::writes)) {
           EXPECT_NE(code, 8) << said;
           continue;
         }
@@ -198,8 +199,8 @@ TEST_F(WrongFamily, WritesNothingByAnyCommand) {
 
 TEST_F(WrongFamily, RefusesNoWayOut) {
   for (const auto& [path, line] : kLines) {
-    const auto* command = commands::find_command(path);
-    if (command->family != commands::FamilyCheck::never || path == "info" || path == "test all") continue;
+    const auto* command = command::find_command(path);
+    if (command->family != command::FamilyCheck::never || path == "info" || path == "test all") continue;
     SCOPED_TRACE(line);
     EXPECT_NE(run(line, "da200", "gsd600"), 8) << said;
     if (kWaysOut.count(path) > 0) {

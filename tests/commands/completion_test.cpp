@@ -4,13 +4,15 @@
 
 #include "base/file.hpp"
 #include "base/text.hpp"
-#include "commands/command.hpp"
-#include "commands/completion_words.hpp"
-#include "commands/help.hpp"
-#include "commands/shell_completion.hpp"
+#include "command/command.hpp"
+#include "command/completion_words.hpp"
+#include "command/help_text.hpp"
+#include "command/registry.hpp"
+#include "command/shell_completion.hpp"
 #include "tests/source_dir.hpp"
 
 namespace servoctl::commands {
+using namespace command;
 namespace {
 
 const std::string kFolder = source_dir() + "/completions/";

@@ -6,6 +6,7 @@
 #include "tested_drive.hpp"
 
 namespace servoctl::commands {
+using namespace command;
 namespace {
 
 using namespace std::chrono_literals;

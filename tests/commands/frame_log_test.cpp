@@ -1,5 +1,5 @@
 // What `decode` and `monitor` write for programs.
-#include "commands/frame_log.hpp"
+#include "traffic/frame_log.hpp"
 
 #include <gtest/gtest.h>
 
@@ -90,10 +90,10 @@ Logged write_log(std::string_view interface_name) {
   Logged out;
   Reader reader;
   auto& lines = reader.lines;
-  const auto write = [&](Context& context) {
-    context.profile = &profile;
-    context.audience = &reader;
-    FrameLog log(context, {}, false);
+  const auto write = [&](show::Desk& desk) {
+    desk.profile = &profile;
+    desk.audience = &reader;
+    traffic::FrameLog log(desk, {}, false);
     Duration time{1'700'000'000'000'000};
     for (const auto frame : kLog)
       log.add(time += Duration(100'101), interface_name, *can::parse_frame(frame));
@@ -101,12 +101,12 @@ Logged write_log(std::string_view interface_name) {
     log.flush();
     out.list = report::to_json(log.take_kept());
   };
-  Context one_document;
+  show::Desk one_document;
   one_document.keeps_samples = true;
   write(one_document);
   EXPECT_EQ(lines, "");
   const auto kept = out.list;
-  Context samples;
+  show::Desk samples;
   samples.wants_records = true;
   write(samples);
   out.list = kept;
@@ -125,7 +125,8 @@ TEST(FrameLog, WritesWhatATreeOfValuesWouldGiveForEveryService) {
     EXPECT_EQ(report::to_json(*read), line);
     services.insert(std::get<std::string>(report::find(*read, "service")->data()));
   }
-  for (const auto service : kServices) EXPECT_EQ(services.count(std::string(service)), 1U) << service;
+  for (const auto service : traffic::kServices)
+    EXPECT_EQ(services.count(std::string(service)), 1U) << service;
 }
 
 TEST(FrameLog, KeepsTheSameRecordsForOneDocument) {
@@ -153,9 +154,9 @@ TEST(FrameLog, WritesNamesThatNeedCareAsTheyAre) {
 /// What is said of the last of these frames.
 std::string last_text(std::initializer_list<std::string_view> frames) {
   drive::Profile profile;
-  FrameDecoder::Options options;
+  traffic::FrameDecoder::Options options;
   options.profile = &profile;
-  FrameDecoder decoder(options);
+  traffic::FrameDecoder decoder(options);
   std::string out;
   for (const auto text : frames) out = decoder.decode(*can::parse_frame(text)).text;
   return out;

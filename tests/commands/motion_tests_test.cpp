@@ -6,6 +6,7 @@
 #include "tests/show/audiences.hpp"
 
 namespace servoctl::commands {
+using namespace command;
 namespace {
 
 using namespace std::chrono_literals;

@@ -8,6 +8,7 @@
 #include "tested_drive.hpp"
 
 namespace servoctl::commands {
+using namespace command;
 namespace {
 
 class Neighbours : public TestedDrive {

@@ -1,6 +1,7 @@
 // A change of PDOs whose process is killed at any step leaves a record with which everything is as before.
-#include "commands/command.hpp"
-#include "commands/pdo_record.hpp"
+#include "pdo/pdo_record.hpp"
+#include "command/command.hpp"
+#include "command/registry.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,6 +16,7 @@
 #include "tests/source_dir.hpp"
 
 namespace servoctl::commands {
+using namespace command;
 namespace {
 
 namespace fs = std::filesystem;

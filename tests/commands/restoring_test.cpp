@@ -1,5 +1,5 @@
 // A restore whose process is killed at any step can be gone on with, and can be undone.
-#include "commands/restoring.hpp"
+#include "settings/restoring.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <filesystem>
 
 #include "../session/troubled_bus.hpp"
-#include "commands/restore_journal.hpp"
 #include "drive/quantity.hpp"
+#include "settings/restore_journal.hpp"
 #include "tests/show/audiences.hpp"
 #include "tests/source_dir.hpp"
 
@@ -43,7 +43,7 @@ class World {
     for (const auto& setting : c.settings) {
       const auto target = drive::resolve(&profile_, setting.name).value();
       objects_.push_back(target.address);
-      Backup::Entry entry;
+      settings::Backup::Entry entry;
       entry.object = target.address;
       entry.type = drive::meaning(target, 1).type;
       entry.bytes = od::encode(entry.type, od::Value(setting.wanted)).value();
@@ -60,25 +60,25 @@ class World {
   World& operator=(const World&) = delete;
 
   /// Runs one restore; true when it was not killed and had no error.
-  bool run(const Backup& what, const std::string& title, const fs::path& saved, RestoringOptions options,
-           int kill_at, const fs::path& undoes = {}) {
+  bool run(const settings::Backup& what, const std::string& title, const fs::path& saved,
+           settings::RestoringOptions options, int kill_at, const fs::path& undoes = {}) {
     Trouble trouble;
     trouble.kill_at = kill_at;
     auto bus = std::make_unique<TroubledBus>(bus_, drive_, trouble, 1);
     const auto* counted = bus.get();
     session::Session session(std::move(bus), "sim", {});
-    Context context;
-    context.session = &session;
-    context.profile = &profile_;
-    context.nodes = {1};
+    show::Desk desk;
+    desk.session = &session;
+    desk.profile = &profile_;
+    desk.nodes = {1};
     show::Willing willing;
-    context.audience = &willing;
+    desk.audience = &willing;
     try {
-      const auto done = put_into(context, what, title, 1, saved, options, undoes);
+      const auto done = settings::put_into(desk, what, title, 1, saved, options, undoes);
       frames = counted->frames();
       EXPECT_TRUE(done) << done.error().message;
-      for (const auto& error : context.errors) ADD_FAILURE() << error.message;
-      return done && context.errors.empty();
+      for (const auto& error : desk.errors) ADD_FAILURE() << error.message;
+      return done && desk.errors.empty();
     } catch (const Killed&) {
       return false;
     }
@@ -104,7 +104,7 @@ class World {
   session::Values means() { return read(means_); }
   fs::path saved() const { return folder_ / "drive.json.before-node-1.json"; }
 
-  Backup backup;
+  settings::Backup backup;
   session::Values before;
   session::Values means_before;
   int frames = 0;
@@ -125,8 +125,8 @@ const std::vector<fs::path> World::kFolders = {fs::path(source_dir()) / "eds"};
 
 class KilledRestore : public testing::TestWithParam<Case> {
  protected:
-  RestoringOptions options() const {
-    RestoringOptions out;
+  settings::RestoringOptions options() const {
+    settings::RestoringOptions out;
     out.keep = true;
     out.unlock = GetParam().unlock;
     return out;
@@ -136,22 +136,22 @@ class KilledRestore : public testing::TestWithParam<Case> {
 TEST_P(KilledRestore, IsGoneOnWithFromAnyStep) {
   World measure(GetParam());
   ASSERT_TRUE(measure.run(measure.backup, "drive.json", measure.saved(), options(), -1));
-  EXPECT_FALSE(fs::exists(journal_of(measure.saved())));
+  EXPECT_FALSE(fs::exists(settings::journal_of(measure.saved())));
   int cut_off = 0;
   for (int step = 0; step < measure.frames; ++step) {
     SCOPED_TRACE(step);
     World world(GetParam());
     ASSERT_FALSE(world.run(world.backup, "drive.json", world.saved(), options(), step));
-    if (!fs::exists(journal_of(world.saved()))) {
+    if (!fs::exists(settings::journal_of(world.saved()))) {
       EXPECT_EQ(world.values(), world.before) << "written without a journal";
       continue;
     }
     ++cut_off;
     // The options are those it was begun with, whatever is said now.
-    RestoringOptions resume;
+    settings::RestoringOptions resume;
     resume.resume = true;
     ASSERT_TRUE(world.run(world.backup, "drive.json", world.saved(), resume, -1));
-    EXPECT_FALSE(fs::exists(journal_of(world.saved())));
+    EXPECT_FALSE(fs::exists(settings::journal_of(world.saved())));
     EXPECT_EQ(world.means(), world.means_before);
     world.power_cycle();
     world.expect_values_of_backup();
@@ -166,12 +166,12 @@ TEST_P(KilledRestore, IsUndoneFromAnyStep) {
     SCOPED_TRACE(step);
     World world(GetParam());
     ASSERT_FALSE(world.run(world.backup, "drive.json", world.saved(), options(), step));
-    if (!fs::exists(journal_of(world.saved()))) continue;
-    const auto back = read_backup(world.saved());
+    if (!fs::exists(settings::journal_of(world.saved()))) continue;
+    const auto back = settings::read_backup(world.saved());
     ASSERT_TRUE(back) << back.error().message;
     ASSERT_TRUE(world.run(*back, "before", world.saved().string() + ".before-node-1.json", {}, -1,
-                          journal_of(world.saved())));
-    EXPECT_FALSE(fs::exists(journal_of(world.saved())));
+                          settings::journal_of(world.saved())));
+    EXPECT_FALSE(fs::exists(settings::journal_of(world.saved())));
     EXPECT_EQ(world.values(), world.before);
     EXPECT_EQ(world.means(), world.means_before);
     world.power_cycle();

@@ -13,6 +13,7 @@
 #include "tests/source_dir.hpp"
 
 namespace servoctl::commands {
+using namespace command;
 namespace {
 
 using namespace std::chrono_literals;

@@ -10,11 +10,13 @@
 #include <utility>
 #include <vector>
 
-#include "commands/command.hpp"
+#include "command/command.hpp"
+#include "command/registry.hpp"
 #include "sim/cell.hpp"
 #include "tests/source_dir.hpp"
 
 namespace servoctl::commands {
+using namespace command;
 
 /// A file of this process: tests run beside each other.
 inline std::string own_file(std::string_view name) {

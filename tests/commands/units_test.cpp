@@ -8,14 +8,16 @@
 #include <fstream>
 
 #include "base/file.hpp"
-#include "commands/command.hpp"
-#include "commands/kept_turn.hpp"
+#include "command/command.hpp"
+#include "command/registry.hpp"
+#include "motion/kept_turn.hpp"
 #include "sim/sim_bus.hpp"
 #include "sim/sim_drive.hpp"
 #include "tests/show/audiences.hpp"
 #include "tests/source_dir.hpp"
 
 namespace servoctl::commands {
+using namespace command;
 namespace {
 
 namespace fs = std::filesystem;

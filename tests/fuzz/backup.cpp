@@ -3,14 +3,14 @@
 
 #include "cli/running_line.hpp"
 #include "cli/shell.hpp"
-#include "commands/backup_formats.hpp"
+#include "settings/backup_formats.hpp"
 #include "tests/cli/recording_console.hpp"
 #include "tests/fuzz/fuzz.hpp"
 #include "tests/source_dir.hpp"
 
 using namespace servoctl;
-using commands::Backup;
-using commands::BackupFormat;
+using settings::Backup;
+using settings::BackupFormat;
 
 namespace {
 
@@ -21,12 +21,12 @@ const drive::Profile& profile() {
   return loaded;
 }
 
-commands::Context& context() {
+command::Context& context() {
   static cli::RecordingConsole console;
   static cli::Shell::Options options;
   options.drive_folders = kFolders;
   static cli::Shell shell(console, options);
-  static commands::Context out;
+  static command::Context out;
   static cli::Settings settings;
   static cli::RunningLine line(shell, settings, out);
   out.notices.clear();
@@ -38,13 +38,13 @@ std::map<ObjectAddress, Bytes> values(const Backup& backup) {
   for (const auto& entry : backup.entries)
     // What is outside of the limits stands in a table for readers only.
     if (entry.bytes &&
-        commands::range_missed(profile(), backup.identity.node, entry.object, *entry.bytes).empty())
+        settings::range_missed(profile(), backup.identity.node, entry.object, *entry.bytes).empty())
       out.emplace(entry.object, *entry.bytes);
   return out;
 }
 
 Result<Backup> read(std::string text, BackupFormat format) {
-  return commands::read_backup(context(), {"fuzz", std::move(text), format, context().front_end}, &profile(),
+  return settings::read_backup(context(), {"fuzz", std::move(text), format, context().front_end}, &profile(),
                                1);
 }
 
@@ -65,7 +65,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     if (!setting.left_out.empty())
       fuzz::require(values(*backup).count(setting.entry->address) == 0,
                     "only settings are taken from a file");
-  const auto table = read(commands::csv_text(profile(), *backup), BackupFormat::csv);
+  const auto table = read(settings::csv_text(profile(), *backup), BackupFormat::csv);
   fuzz::require(table && values(*table) == values(*backup), "a table says what was read");
   return 0;
 }

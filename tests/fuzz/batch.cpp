@@ -1,5 +1,5 @@
 // A batch file: taken apart, its loops unrolled, every line of it parsed.
-#include "cli/batch_plan.hpp"
+#include "cli/batch/batch_plan.hpp"
 #include "cli/parse.hpp"
 #include "tests/fuzz/fuzz.hpp"
 

@@ -2,9 +2,9 @@
 #include <array>
 #include <filesystem>
 
-#include "cli/completer.hpp"
 #include "cli/parse.hpp"
 #include "cli/settings.hpp"
+#include "cli/terminal/completer.hpp"
 #include "cli/words.hpp"
 #include "drive/naming.hpp"
 #include "drive/quantity.hpp"

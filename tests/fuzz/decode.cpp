@@ -1,13 +1,13 @@
 // Logs of frames nobody meant: every frame is explained in one line, whatever mappings the log claims.
 #include "base/text.hpp"
 #include "can/trace.hpp"
-#include "commands/frame_decoder.hpp"
 #include "tests/fuzz/fuzz.hpp"
+#include "traffic/frame_decoder.hpp"
 
 using namespace servoctl;
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  commands::FrameDecoder decoder({});
+  traffic::FrameDecoder decoder({});
   for (const auto row : split(fuzz::text(data, size), '\n')) {
     const auto line = can::parse_log_line(row);
     if (!line) continue;

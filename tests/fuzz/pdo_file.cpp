@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <set>
 
-#include "commands/pdo_recipes.hpp"
+#include "pdo/pdo_recipes.hpp"
 #include "session/pdo_setup.hpp"
 #include "tests/fuzz/fuzz.hpp"
 #include "tests/source_dir.hpp"
@@ -20,11 +20,11 @@ const drive::Profile& profile() {
   return loaded;
 }
 
-const commands::PresentPdos& present() {
-  static const commands::PresentPdos out = [] {
+const pdo::PresentPdos& present() {
+  static const pdo::PresentPdos out = [] {
     auto values = session::default_pdo_values(profile(), kNode);
     auto pdos = session::pdos_of(values);
-    return commands::PresentPdos{kNode, std::move(values), std::move(pdos)};
+    return pdo::PresentPdos{kNode, std::move(values), std::move(pdos)};
   }();
   return out;
 }
@@ -34,13 +34,13 @@ const commands::PresentPdos& present() {
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   const auto* name = data[0] % 2 == 0 ? "fuzz.toml" : "fuzz.json";
-  const auto file = commands::parse_pdo_file(fuzz::text(data + 1, size - 1), name);
+  const auto file = pdo::parse_pdo_file(fuzz::text(data + 1, size - 1), name);
   if (!file) {
     fuzz::require(file.error().code == Errc::file, "a file that cannot be read is Errc::file");
     fuzz::require(file.error().message.starts_with(name), "… and says which file");
     return 0;
   }
-  const auto wanted = commands::follow(profile(), present(), file->pdos);
+  const auto wanted = pdo::follow(profile(), present(), file->pdos);
   if (!wanted) {
     fuzz::require(!wanted.error().message.empty(), "what cannot be followed is refused in words");
     return 0;

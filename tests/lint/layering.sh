@@ -14,8 +14,15 @@ declare -A may=(
   [report]="base"
   [sim]="base can canopen od drive"
   [session]="base can canopen od drive sim"
-  [commands]="base can canopen od drive sim session report"
-  [cli]="base can canopen od drive sim session report commands"
+  [show]="base can canopen od drive sim session report"
+  [motion]="base can canopen od drive sim session report show"
+  [settings]="base can canopen od drive sim session report show"
+  [pdo]="base can canopen od drive sim session report show settings"
+  [traffic]="base can canopen od drive sim session report show"
+  [trial]="base can canopen od drive sim session report show motion settings pdo traffic"
+  [command]="base can canopen od drive sim session report show motion settings pdo traffic trial"
+  [commands]="base can canopen od drive sim session report show motion settings pdo traffic trial command"
+  [cli]="base can canopen od drive sim session report show motion settings pdo traffic trial command commands"
   [main.cpp]="cli"
 )
 checked=0
@@ -36,6 +43,18 @@ done < <(grep -rnE '^#include "[a-z]+/' src commands --include='*.cpp' --include
 # canopen knows frames, not buses: no I/O and no clock.
 if grep -rnE '#include "can/(bus|socketcan|local|trace|descriptor)' src/canopen; then echo "canopen must know can/frame.hpp only"; bad=1; fi
 if grep -rnE 'steady_now|steady_clock::now|system_clock' src/canopen src/od src/drive; then echo "no clock in these layers"; bad=1; fi
+
+# What is in commands/ is a command, or the list of them.
+for file in commands/*; do
+  [ "$file" = commands/registry.cpp ] || grep -qE '^(const|constexpr) Command k' "$file" || { echo "$file defines no Command"; bad=1; }
+done
+
+# No room is most of the house.
+all=$(cat $(git ls-files 'src/*.?pp' 'commands/*.?pp') | wc -l)
+for room in src/*/ commands/; do
+  lines=$(cat $(git ls-files "$room*.?pp") | wc -l)
+  [ $((lines * 100)) -le $((all * 15)) ] || { echo "$room holds $lines of $all lines: more than 15 %"; bad=1; }
+done
 
 # The three heavy headers each stand in one file.
 for header in 'CLI/CLI.hpp' 'nlohmann/json.hpp' 'toml++/toml.h'; do

@@ -1,0 +1,15 @@
+#include "base/checksum.hpp"
+
+#include <fmt/format.h>
+
+namespace servoctl {
+
+std::string Checksum::text() const { return fmt::format("fnv1a64:{:016x}", hash_); }
+
+std::string checksum_of(std::string_view text) {
+  Checksum sum;
+  sum.add(text);
+  return sum.text();
+}
+
+}  // namespace servoctl

@@ -1,0 +1,86 @@
+#include "cli/batch/batch_check.hpp"
+
+#include <fmt/format.h>
+#include <unordered_set>
+
+#include "cli/parse.hpp"
+#include "cli/terminal/prompt_words.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+using command::Effect;
+using command::Needs;
+
+constexpr std::size_t kMostErrors = 100;
+
+class Check {
+ public:
+  explicit Check(Shell& shell) : shell_(&shell), settings_(shell.defaults()) {}
+
+  void take(const Step& step) {
+    if (step.kind != Step::Kind::command || is_exit(step.words) || errors_.size() == kMostErrors) return;
+    // What a loop says again is right again, as long as nothing was chosen in between.
+    if (is_choice(step.words)) right_.clear();
+    if (right_.count(step.text) > 0) return;
+    if (const auto checked = check(step.words); checked)
+      right_.insert(step.text);
+    else
+      errors_.add(step.line, step.round, checked.error());
+  }
+
+  std::vector<Error> done() { return errors_.take(); }
+
+ private:
+  Result<void> check(const std::vector<std::string>& words) {
+    auto next = chosen(*shell_, settings_, words);
+    if (!next) return tl::unexpected<Error>(next.error());
+    settings_ = std::move(*next);
+    if (is_choice(words) || asks_for_help(words)) return {};
+    const auto parsed = parse_line(words);
+    if (!parsed) return tl::unexpected<Error>(parsed.error());
+    const auto settings = apply_options(settings_, parsed->arguments);
+    if (!settings) return tl::unexpected<Error>(settings.error());
+    command::Context context;
+    if (const auto ready = prepare(*parsed, *settings, context); !ready) return ready;
+    if (parsed->command->check == nullptr) return {};
+    return parsed->command->check(context, parsed->arguments);
+  }
+
+  Result<void> prepare(const ParsedLine& line, const Settings& settings, command::Context& context) {
+    const auto& command = *line.command;
+    if (const auto allowed = check_allowed(command, line.arguments, settings); !allowed) return allowed;
+    if (includes(command.needs, Needs::node) && settings.nodes.empty()) return fail(no_node(command));
+    if (!settings.nodes.empty()) {
+      auto nodes = parse_nodes(settings.nodes);
+      if (!nodes) return tl::unexpected<Error>(nodes.error());
+      context.nodes = std::move(*nodes);
+    }
+    context.chinese = settings.chinese;
+    context.drive_folders = shell_->drive_folders();
+    if (settings.drive.empty()) {
+      if (!includes(command.needs, Needs::dictionary)) return {};
+      return fail(Errc::usage, fmt::format("'{}' needs to know the drive family", command.path),
+                  "add -d FAMILY, or a line `drive FAMILY` before it; `drives` lists families");
+    }
+    const auto profile = shell_->profile(settings.drive);
+    if (!profile) return tl::unexpected<Error>(profile.error());
+    context.profile = *profile;
+    return {};
+  }
+
+  Shell* shell_;
+  Settings settings_;
+  std::unordered_set<std::string> right_;  ///< Lines that were checked with these settings.
+  LineErrors errors_;
+};
+
+}  // namespace
+
+std::vector<Error> check_steps(Shell& shell, std::span<const Step> steps) {
+  Check check(shell);
+  for (const auto& step : steps) check.take(step);
+  return check.done();
+}
+
+}  // namespace servoctl::cli

@@ -1,0 +1,133 @@
+#include "cli/batch/batch_command.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+
+#include "base/file.hpp"
+#include "cli/batch/batch_check.hpp"
+#include "cli/batch/batch_frames.hpp"
+#include "cli/batch/batch_plan.hpp"
+#include "cli/batch/batch_run.hpp"
+#include "show/records.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+constexpr std::string_view kPath = "run";
+constexpr std::uintmax_t kMostBytes = 16U << 20U;
+
+/// Puts the defaults of the shell back.
+class KeepDefaults {
+ public:
+  explicit KeepDefaults(Shell& shell) : shell_(&shell), defaults_(shell.defaults()) {}
+  KeepDefaults(const KeepDefaults&) = delete;
+  KeepDefaults& operator=(const KeepDefaults&) = delete;
+  ~KeepDefaults() { shell_->defaults() = std::move(defaults_); }
+
+ private:
+  Shell* shell_;
+  Settings defaults_;
+};
+
+Result<std::string> read_batch(const std::string& file, std::istream* input) {
+  if (file != "-") return read_file(file, kMostBytes);
+  if (input == nullptr)
+    return fail(Errc::usage, "standard input is where these lines come from", "name a file");
+  return std::string(std::istreambuf_iterator<char>(*input), {});
+}
+
+Result<Variables> variables_of(const command::Arguments& arguments) {
+  Variables out;
+  for (const auto& assignment : arguments.all("--var"))
+    if (const auto fixed = out.fix(assignment); !fixed) {
+      auto error = fixed.error();
+      error.message = "--var: " + error.message;
+      return tl::unexpected<Error>(std::move(error));
+    }
+  return out;
+}
+
+Outcome checked(const std::string& file, std::size_t lines, std::vector<Error> errors,
+                const Settings& settings) {
+  std::stable_sort(errors.begin(), errors.end(),
+                   [](const Error& a, const Error& b) { return a.line < b.line; });
+  report::List list;
+  for (auto& error : errors) {
+    list.emplace_back(show::error_record(error));
+    error = at_line(file, *error.line, std::move(error));
+  }
+  report::Record result{{"file", file}, {"lines", lines}, {"errors", std::move(list), report::Show::json}};
+  Outcome out{.command = std::string(kPath), .settings = settings, .errors = std::move(errors)};
+  // In text the errors say it all.
+  if (out.errors.empty() || settings.json) out.result = std::move(result);
+  return out;
+}
+
+Outcome planned(std::span<const Step> steps, const Settings& settings) {
+  report::Table table;
+  table.columns = {{"line"}, {"text", "what is run"}};
+  for (const auto& step : steps) table.rows.push_back({step.line, step.text});
+  return {.command = std::string(kPath), .settings = settings, .result = std::move(table)};
+}
+
+/// What would keep the run from coming to its end. A line whose failure does not matter (`on-error continue`)
+/// is not checked beforehand.
+std::vector<Error> errors_before_run(Shell& shell, std::span<const Step> steps, bool all) {
+  auto errors = check_steps(shell, steps);
+  if (all) return errors;
+  std::erase_if(errors, [&](const Error& e) {
+    return std::all_of(steps.begin(), steps.end(),
+                       [&](const Step& s) { return s.line != e.line || s.goes_on; });
+  });
+  return errors;
+}
+
+int run_file(Shell& shell, const command::Arguments& arguments, std::istream* input) {
+  const auto settings = shell.defaults();
+  const std::string file(arguments.text("file"));
+  const auto report = [&](const Error& error) {
+    return show(shell.console(), failed(error, settings, kPath));
+  };
+  auto variables = variables_of(arguments);
+  if (!variables) return report(variables.error());
+  const auto text = read_batch(file, input);
+  if (!text) return report(text.error());
+  const auto name = file == "-" ? std::string("standard input") : file;
+  auto batch = parse_batch(*text);
+  auto plan = plan_batch(batch, std::move(*variables), std::filesystem::path(file).parent_path());
+  auto errors = std::move(batch.errors);
+  const bool only_check = arguments.has("--check");
+  if (arguments.has("--frames") && !settings.dry_run)
+    return report(fail(Errc::usage, "--frames goes with --dry-run", "run FILE --dry-run --frames").value());
+  std::move(plan.errors.begin(), plan.errors.end(), std::back_inserter(errors));
+  auto more = errors_before_run(shell, plan.steps, only_check || settings.dry_run);
+  std::move(more.begin(), more.end(), std::back_inserter(errors));
+  if (only_check || !errors.empty())
+    return show(shell.console(), checked(name, plan.steps.size(), std::move(errors), settings));
+  if (settings.dry_run && arguments.has("--frames"))
+    return show(shell.console(), planned_frames(shell, plan.steps, name));
+  if (settings.dry_run) return show(shell.console(), planned(plan.steps, settings));
+  return run_steps(shell, plan.steps, name);
+}
+
+}  // namespace
+
+bool is_batch(const std::vector<std::string>& words) {
+  const auto match = match_command(words);
+  return match.command != nullptr && match.command->path == kPath && !asks_for_help(words);
+}
+
+int run_batch(Shell& shell, const std::vector<std::string>& words, std::istream* input) {
+  const auto parsed = parse_line(words);
+  // The shell tells what is wrong with the line.
+  if (!parsed) return shell.run(words);
+  auto settings = apply_options(shell.defaults(), parsed->arguments);
+  if (!settings) return shell.run(words);
+  const KeepDefaults keep(shell);
+  shell.defaults() = std::move(*settings);
+  return run_file(shell, parsed->arguments, input);
+}
+
+}  // namespace servoctl::cli

@@ -1,0 +1,186 @@
+#include "cli/batch/batch_run.hpp"
+
+#include <fmt/format.h>
+
+#include "base/printable.hpp"
+#include "cli/terminal/prompt_words.hpp"
+#include "show/records.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+using report::Value;
+
+class BatchRun {
+ public:
+  BatchRun(Shell& shell, std::span<const Step> steps, const std::string& file)
+      : shell_(&shell), file_(&file), settings_(shell.defaults()), count_(steps.size()) {}
+
+  /// False when the run ends here.
+  bool take(const Step& step) {
+    if (shell_->cancelled()) {
+      shell_->let_go();
+      return interrupt(step);
+    }
+    auto outcome = perform(step);
+    const bool ok = outcome.errors.empty();
+    // Ctrl-C ends the run whatever holds for failures.
+    const bool stopped = !ok && outcome.errors.front().code == Errc::interrupted;
+    ++(ok ? done_ : failed_);
+    if (!ok && (!first_error_ || stopped)) first_error_ = in_line(step, outcome.errors.front());
+    const bool goes_on = !stopped && (ok || step.goes_on);
+    // Whoever does not read what went wrong does not hold it up.
+    if (!goes_on) shell_->let_go();
+    tell(step, std::move(outcome));
+    return !is_exit(step.words) && goes_on;
+  }
+
+  bool has_failed() const { return first_error_.has_value(); }
+
+  int finish() {
+    const auto left = count_ - done_ - failed_;
+    if (!settings_.json) {
+      shell_->console().err(fmt::format("{}: {} of {} lines done", printable(*file_), done_, count_) +
+                            (failed_ > 0 ? fmt::format(", {} failed", failed_) : "") +
+                            (left > 0 ? fmt::format(", {} not run", left) : "") + "\n");
+      return first_error_ ? exit_code(first_error_->code) : 0;
+    }
+    report::Record result;
+    if (!settings_.samples) result.push_back({"lines", std::move(records_)});
+    result.push_back({"summary", report::Record{{"lines", count_}, {"done", done_}, {"failed", failed_}}});
+    Outcome outcome{.command = "run", .settings = settings_, .uses_bus = true, .result = std::move(result)};
+    if (first_error_) outcome.errors.push_back(std::move(*first_error_));
+    return show(shell_->console(), outcome);
+  }
+
+ private:
+  Error in_line(const Step& step, Error error) const {
+    return at_line(*file_, step.line, in_round(step.round, std::move(error)));
+  }
+
+  bool interrupt(const Step& step) {
+    first_error_ = in_line(step, interrupted_error());
+    if (!settings_.json) show_remarks(shell_->console(), failed(*first_error_, settings_));
+    return false;
+  }
+
+  static Error interrupted_error() {
+    Error error;
+    error.code = Errc::interrupted;
+    error.message = "interrupted";
+    error.hint = "the lines before it are done, what follows is not";
+    return error;
+  }
+
+  Outcome perform(const Step& step) {
+    switch (step.kind) {
+      case Step::Kind::command: return command(step);
+      case Step::Kind::expect: return expectation(step);
+      case Step::Kind::pause: return pause(step);
+      case Step::Kind::wait: return wait(step);
+    }
+    return {};
+  }
+
+  Outcome command(const Step& step) {
+    if (is_exit(step.words)) return {.command = "exit", .settings = shell_->defaults()};
+    if (auto outcome = choose(*shell_, step.words)) return std::move(*outcome);
+    auto outcome = shell_->perform(step.words);
+    last_ = outcome.result;
+    return outcome;
+  }
+
+  Outcome expectation(const Step& step) const {
+    if (const auto met = expect(step.expression, last_); !met)
+      return failed(met.error(), shell_->defaults(), "expect");
+    return {.command = "expect", .settings = shell_->defaults()};
+  }
+
+  Outcome pause(const Step& step) {
+    Outcome out{.command = "pause", .settings = shell_->defaults()};
+    const auto text = fmt::format("{}", fmt::join(step.words, " "));
+    if (!shell_->console().can_ask()) {
+      out.notices.push_back("no terminal, not paused: " + text);
+      return out;
+    }
+    shell_->console().pause(text);
+    if (shell_->cancelled()) return failed(interrupted_error(), shell_->defaults(), "pause");
+    return out;
+  }
+
+  Outcome wait(const Step& step) {
+    const auto opened = shell_->open(shell_->defaults());
+    if (!opened) return failed(opened.error(), shell_->defaults(), "wait");
+    auto& session = **opened;
+    const auto waited = session.wait([] { return false; }, session.now() + step.duration);
+    Outcome out{.command = "wait", .settings = shell_->defaults()};
+    out.notices = shell_->take_notices(profile(), shell_->defaults().chinese);
+    if (!waited) out.errors.push_back(waited.error());
+    if (!waited && waited.error().code == Errc::bus) shell_->lose_bus();
+    return out;
+  }
+
+  const drive::Profile* profile() {
+    const auto& family = shell_->defaults().drive;
+    const auto loaded = family.empty() ? Result<const drive::Profile*>(nullptr) : shell_->profile(family);
+    return loaded ? *loaded : nullptr;
+  }
+
+  void tell(const Step& step, Outcome outcome) {
+    if (settings_.json) return record(step, outcome);
+    for (auto& error : outcome.errors) error = in_line(step, std::move(error));
+    const bool silent = outcome.errors.empty() && outcome.notices.empty() && outcome.result.is_null();
+    if (!silent) show(shell_->console(), outcome);
+  }
+
+  void record(const Step& step, const Outcome& outcome) {
+    const bool ok = outcome.errors.empty();
+    report::List notices;
+    for (const auto& notice : outcome.notices) notices.emplace_back(notice);
+    report::Record out{{"line", step.line},
+                       {"text", step.text},
+                       {"command", report::text_or_null(outcome.command)},
+                       {"ok", ok},
+                       {"result", outcome.result},
+                       {"error", ok ? Value() : show::error_record(outcome.errors.front())},
+                       {"notices", std::move(notices)}};
+    if (settings_.samples)
+      shell_->console().out(report::to_json(out) + "\n");
+    else
+      records_.emplace_back(std::move(out));
+  }
+
+  Shell* shell_;
+  const std::string* file_;
+  Settings settings_;
+  std::size_t count_;
+  std::size_t done_ = 0;
+  std::size_t failed_ = 0;
+  Value last_;
+  std::optional<Error> first_error_;
+  report::List records_;
+};
+
+}  // namespace
+
+int run_steps(Shell& shell, std::span<const Step> steps, const std::string& file) {
+  const bool produced = shell.session() != nullptr && shell.session()->sync() != nullptr;
+  const bool stayed = shell.stay_open(true);
+  BatchRun run(shell, steps, file);
+  for (const auto& step : steps)
+    if (!run.take(step)) break;
+  // Nobody goes on with what the file began.
+  if (run.has_failed()) shell.let_go();
+  const int code = run.finish();
+  if (!produced) shell.stop_sync();
+  shell.stay_open(stayed);
+  return code;
+}
+
+Error at_line(const std::string& file, std::uint32_t line, Error error) {
+  error.message = fmt::format("{}:{}: {}", file, line, error.message);
+  if (!error.line) error.line = line;
+  return error;
+}
+
+}  // namespace servoctl::cli

@@ -1,0 +1,104 @@
+#include "cli/terminal/console.hpp"
+
+#include <poll.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "base/signal_wait.hpp"
+#include "cli/terminal/signals.hpp"
+#include "cli/terminal/terminal_keys.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+/// For who reads while a drive is energised and nothing is to be done about it.
+constexpr Duration kPatience = std::chrono::seconds(2);
+
+}  // namespace
+
+/// Waits until a line was typed; false after Ctrl-C.
+bool StandardConsole::line_is_there() const {
+  pollfd input{STDIN_FILENO, POLLIN, 0};
+  while (!interrupted()) {
+    const auto time = serve();
+    const auto longest = time == Duration::max() ? std::nullopt : std::optional(time);
+    if (wait_or_signal(std::span(&input, 1), longest) > 0) return true;
+  }
+  return false;
+}
+
+/// Up to Enter, the end of the input, or a signal.
+std::string StandardConsole::typed_line() const {
+  std::string out;
+  if (!line_is_there()) return out;
+  for (int c = std::getchar(); c != EOF && c != '\n'; c = std::getchar()) out += static_cast<char>(c);
+  if (std::feof(stdin) != 0 || std::ferror(stdin) != 0) std::clearerr(stdin);
+  return out;
+}
+
+void StandardConsole::show(LiveOutput& output, std::string_view text) const {
+  if (care_ == session::Care::none && !terminated()) return output.write(text);
+  output.open();
+  // What is to be done about the drive after a signal does not wait for who reads.
+  const bool waits = care_ == session::Care::none || (care_ == session::Care::energised && !interrupted());
+  output.offer(text, waits ? kPatience : Duration::zero());
+}
+
+void StandardConsole::write_out(std::string_view text) { show(out_, text); }
+void StandardConsole::write_err(std::string_view text) { show(err_, text); }
+
+void StandardConsole::set_care(session::Care care) {
+  const bool was_live = std::exchange(care_, care) != session::Care::none;
+  const bool is_live = care != session::Care::none;
+  if (is_live == was_live) return;
+  for (auto* output : {&out_, &err_}) {
+    if (is_live)
+      output->open();
+    else
+      output->close();
+  }
+}
+
+void StandardConsole::finish() {
+  for (auto* output : {&out_, &err_}) {
+    show(*output, {});
+    output->give_up();
+  }
+}
+
+void StandardConsole::show_progress(std::string_view line) {
+  if (::isatty(STDERR_FILENO) == 1) write_err("\r\033[K" + printable(line));
+}
+
+bool StandardConsole::ask(std::string_view question) {
+  if (!can_ask()) return false;
+  err(std::string(question) + " [y/N] ");
+  const auto answer = typed_line();
+  return answer == "y" || answer == "Y" || answer == "yes";
+}
+
+void StandardConsole::pause(std::string_view text) {
+  err(std::string(text) + " [Enter] ");
+  typed_line();
+}
+
+bool StandardConsole::can_ask() const { return ::isatty(STDIN_FILENO) == 1 && ::isatty(STDERR_FILENO) == 1; }
+
+std::unique_ptr<command::Keys> StandardConsole::open_keys() {
+  return can_ask() ? TerminalKeys::open(STDIN_FILENO) : nullptr;
+}
+
+std::size_t StandardConsole::width() const {
+  winsize size{};
+  if (::isatty(STDOUT_FILENO) != 1 || ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0)
+    return 0;
+  return size.ws_col;
+}
+
+}  // namespace servoctl::cli

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string_view>
+#include <utility>
+
+#include "base/printable.hpp"
+#include "base/time.hpp"
+#include "cli/terminal/live_output.hpp"
+#include "command/keys.hpp"
+#include "session/protection.hpp"
+
+namespace servoctl::cli {
+
+/// Where a front end puts its text and asks its questions: the terminal, or a record of a test.
+class Console {
+ public:
+  Console() = default;
+  Console(const Console&) = delete;
+  Console& operator=(const Console&) = delete;
+  virtual ~Console() = default;
+
+  /// Data. Whatever it holds, nothing but printable_lines() of it leaves the program.
+  void out(std::string_view text) { write_out(printable_lines(text)); }
+  /// Errors, notices, progress; as out().
+  void err(std::string_view text) { write_err(printable_lines(text)); }
+  /// Empties the line the cursor is in; only where somebody looks.
+  virtual void wipe_line() {}
+  /// Shows this line in place of the one shown before; an empty one wipes it. Only where somebody looks.
+  virtual void show_progress(std::string_view line) = 0;
+  /// Asks a yes-or-no question; false when there is nobody to ask or the answer is no.
+  virtual bool ask(std::string_view question) = 0;
+  /// Shows the text and waits for Enter; only where can_ask().
+  virtual void pause(std::string_view text) = 0;
+  virtual bool can_ask() const = 0;       ///< Whether there is a person at a terminal.
+  virtual std::size_t width() const = 0;  ///< Columns of the terminal text goes to; 0: no terminal.
+  /// The keys of the terminal as they are pressed, until the answer is destroyed; null where there is none.
+  virtual std::unique_ptr<command::Keys> open_keys() { return nullptr; }
+  /// Whether data can no longer be written: the reader has gone.
+  virtual bool output_lost() const { return false; }
+  /// Told what would be left alone if nobody read what is shown: who reads is not waited for while a drive is
+  /// guarded, and two seconds at most while one is energised.
+  virtual void set_care(session::Care care) { (void)care; }
+  /// How many texts of out() were left out since the last call, because their reader was too slow.
+  virtual std::size_t take_left_out() { return 0; }
+  /// The same for err().
+  virtual std::size_t take_untold() { return 0; }
+
+  /// What is done while the user is waited for; it answers how long it can be left alone. May be empty.
+  void set_service(std::function<Duration()> service) { service_ = std::move(service); }
+
+ protected:
+  virtual void write_out(std::string_view text) = 0;
+  virtual void write_err(std::string_view text) = 0;
+  Duration serve() const { return service_ ? service_() : Duration::max(); }
+
+ private:
+  std::function<Duration()> service_;
+};
+
+/// Standard streams of the process.
+class StandardConsole final : public Console {
+ public:
+  void wipe_line() override { write_out("\r\033[K"); }
+  void show_progress(std::string_view line) override;
+  bool ask(std::string_view question) override;
+  void pause(std::string_view text) override;
+  bool can_ask() const override;
+  std::size_t width() const override;
+  std::unique_ptr<command::Keys> open_keys() override;
+  bool output_lost() const override { return write_error() != 0; }
+  void set_care(session::Care care) override;
+  std::size_t take_left_out() override { return out_.take_left_out(); }
+  std::size_t take_untold() override { return err_.take_left_out(); }
+
+  /// Writes what still waits for its reader; the last call.
+  void finish();
+  /// The first error (errno) that kept data from being written; 0 when all of it was.
+  int write_error() const { return out_.error(); }
+
+ protected:
+  void write_out(std::string_view text) override;
+  void write_err(std::string_view text) override;
+
+ private:
+  bool line_is_there() const;
+  std::string typed_line() const;
+  void show(LiveOutput& output, std::string_view text) const;
+
+  session::Care care_ = session::Care::none;
+  LiveOutput out_{1};
+  LiveOutput err_{2};
+};
+
+}  // namespace servoctl::cli

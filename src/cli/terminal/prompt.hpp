@@ -1,0 +1,13 @@
+#pragma once
+
+#include "cli/shell.hpp"
+#include "cli/terminal/console.hpp"
+
+namespace servoctl::cli {
+
+/// The interactive prompt: line editing, history kept between runs, completion. While the user types the bus
+/// is listened to, and what nodes tell is shown above the line. Returns the exit code: 0, or 130 after
+/// SIGTERM or SIGHUP.
+int run_prompt(Shell& shell, Console& console);
+
+}  // namespace servoctl::cli

@@ -1,0 +1,68 @@
+#include "cli/terminal/prompt_words.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <span>
+
+namespace servoctl::cli {
+namespace {
+
+const PromptWord* find_word(std::span<const PromptWord> all, const std::vector<std::string>& words) {
+  if (words.empty()) return nullptr;
+  const auto found = std::find_if(all.begin(), all.end(), [&](const PromptWord& w) {
+    return w.name == words.front() && !w.argument.empty();
+  });
+  return found == all.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+std::vector<PromptWord> prompt_words() {
+  return {{"use", "NODE", "take this node, list or `all` for the lines that follow"},
+          {"drive", "FAMILY", "take this drive family for the lines that follow"},
+          {"bus", "URL", "go to this bus"},
+          {"exit", "", "leave (also quit, or Ctrl-D)"}};
+}
+
+bool is_exit(const std::vector<std::string>& words) {
+  return words.size() == 1 && (words.front() == "exit" || words.front() == "quit");
+}
+
+bool is_choice(const std::vector<std::string>& words) {
+  const auto all = prompt_words();
+  return find_word(all, words) != nullptr;
+}
+
+Result<Settings> chosen(Shell& shell, Settings defaults, const std::vector<std::string>& words) {
+  const auto all = prompt_words();
+  const auto* word = find_word(all, words);
+  if (word == nullptr) return defaults;
+  if (words.size() != 2)
+    return fail(Errc::usage, fmt::format("'{}' takes one word", word->name),
+                fmt::format("{} {}: {}", word->name, word->argument, word->help));
+  if (word->name == "use") {
+    if (const auto parsed = parse_nodes(words[1]); !parsed) return tl::unexpected<Error>(parsed.error());
+    defaults.nodes = words[1];
+  } else if (word->name == "drive") {
+    if (const auto loaded = shell.profile(words[1]); !loaded) return tl::unexpected<Error>(loaded.error());
+    defaults.drive = words[1];
+  } else {
+    defaults.bus = words[1];
+  }
+  return defaults;
+}
+
+std::optional<Outcome> choose(Shell& shell, const std::vector<std::string>& words) {
+  const auto all = prompt_words();
+  const auto* word = find_word(all, words);
+  if (word == nullptr) return std::nullopt;
+  auto settings = chosen(shell, shell.defaults(), words);
+  if (!settings) return failed(settings.error(), shell.defaults(), word->name);
+  if (word->name == "bus")
+    if (const auto opened = shell.open(*settings); !opened)
+      return failed(opened.error(), shell.defaults(), word->name);
+  shell.defaults() = std::move(*settings);
+  return Outcome{.command = std::string(word->name), .settings = shell.defaults()};
+}
+
+}  // namespace servoctl::cli

@@ -1,0 +1,130 @@
+#include "cli/terminal/signals.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <ctime>
+#include <initializer_list>
+
+#include "base/signal_wait.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+// A signal handler can reach nothing else.
+volatile std::sig_atomic_t g_interrupted = 0;
+volatile std::sig_atomic_t g_terminated = 0;
+volatile std::sig_atomic_t g_protected = 0;
+volatile std::sig_atomic_t g_has_timer = 0;
+timer_t g_timer{};
+
+using Handler = void (*)(int);
+
+/// Ends blocking calls, and is ignored where nobody catches it.
+constexpr int kNudge = SIGURG;
+constexpr long kNudgeEvery = 100'000'000;  ///< Nanoseconds.
+
+bool is_of_keyboard(int signal) { return signal == SIGINT || signal == SIGQUIT; }
+
+/// timer_settime() may be called by a handler.
+void nudge(bool on) {
+  if (g_has_timer == 0) return;
+  itimerspec every{};
+  if (on) every.it_value.tv_nsec = every.it_interval.tv_nsec = kNudgeEvery;
+  ::timer_settime(g_timer, 0, &every, nullptr);
+}
+
+extern "C" void on_signal(int signal) {
+  if (g_interrupted != 0 && is_of_keyboard(signal) && g_protected == 0) ::_exit(130);
+  const int error = errno;
+  g_interrupted = 1;
+  if (signal != SIGINT && signal != SIGTSTP) g_terminated = 1;
+  note_signal();
+  nudge(true);
+  errno = error;
+}
+
+extern "C" void on_nudge(int) {}
+
+/// While it lives no signal comes.
+class Quiet {
+ public:
+  Quiet() {
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before_);
+  }
+  Quiet(const Quiet&) = delete;
+  Quiet& operator=(const Quiet&) = delete;
+  ~Quiet() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+
+ private:
+  sigset_t before_{};
+};
+
+/// What was set before.
+struct sigaction set_handler(int signal, Handler handler) {
+  struct sigaction action {};
+  struct sigaction before {};
+  action.sa_handler = handler;
+  sigemptyset(&action.sa_mask);
+  sigaction(signal, &action, &before);
+  return before;
+}
+
+/// A profiler's own timer stays, and what whoever started us wants ignored.
+void catch_if_deadly(int signal) {
+  struct sigaction now {};
+  if (sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_DFL) set_handler(signal, on_signal);
+}
+
+/// A call that is entered just after a signal would block in spite of it.
+void make_timer() {
+  set_handler(kNudge, on_nudge);
+  sigevent event{};
+  event.sigev_notify = SIGEV_SIGNAL;
+  event.sigev_signo = kNudge;
+  g_has_timer = ::timer_create(CLOCK_MONOTONIC, &event, &g_timer) == 0 ? 1 : 0;
+}
+
+}  // namespace
+
+void install_signal_handlers() {
+  const Quiet quiet;
+  make_timer();
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) set_handler(signal, on_signal);
+  for (const int signal :
+       {SIGQUIT, SIGABRT, SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF, SIGXCPU, SIGIO, SIGPWR, SIGSTKFLT})
+    catch_if_deadly(signal);
+  for (int signal = SIGRTMIN; signal <= SIGRTMAX; ++signal) catch_if_deadly(signal);
+  // The write fails instead, and is told.
+  for (const int signal : {SIGPIPE, SIGXFSZ}) set_handler(signal, SIG_IGN);
+}
+
+void protect_from_signals(bool energised) {
+  static struct sigaction stop, input, output;  // As they were before.
+  const Quiet quiet;
+  if (energised == (g_protected != 0)) return;
+  g_protected = energised ? 1 : 0;
+  if (energised) {
+    stop = set_handler(SIGTSTP, on_signal);
+    input = set_handler(SIGTTIN, SIG_IGN);
+    output = set_handler(SIGTTOU, SIG_IGN);
+    return;
+  }
+  sigaction(SIGTSTP, &stop, nullptr);
+  sigaction(SIGTTIN, &input, nullptr);
+  sigaction(SIGTTOU, &output, nullptr);
+}
+
+bool interrupted() { return g_interrupted != 0; }
+bool terminated() { return g_terminated != 0; }
+
+void clear_interrupt() {
+  const Quiet quiet;
+  g_interrupted = 0;
+  if (g_terminated == 0) nudge(false);
+}
+
+}  // namespace servoctl::cli

@@ -1,0 +1,54 @@
+#include "cli/terminal/terminal_keys.hpp"
+
+#include <poll.h>
+#include <unistd.h>
+
+namespace servoctl::cli {
+namespace {
+
+constexpr int kNothing = -1;
+constexpr int kGone = -2;
+constexpr int kEscape = 0x1B;
+
+}  // namespace
+
+std::unique_ptr<command::Keys> TerminalKeys::open(int descriptor) {
+  termios before{};
+  if (::tcgetattr(descriptor, &before) != 0) return nullptr;
+  auto raw = before;
+  raw.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
+  // Ctrl-S ends the motion as any other key does, and holds nothing back.
+  raw.c_iflag &= ~static_cast<tcflag_t>(IXON);
+  raw.c_cc[VMIN] = 0;
+  raw.c_cc[VTIME] = 0;
+  // What was typed before nobody meant as a key that moves something.
+  if (::tcsetattr(descriptor, TCSAFLUSH, &raw) != 0) return nullptr;
+  return std::unique_ptr<command::Keys>(new TerminalKeys(descriptor, before));
+}
+
+TerminalKeys::~TerminalKeys() { (void)::tcsetattr(descriptor_, TCSAFLUSH, &before_); }
+
+int TerminalKeys::next_byte() {
+  pollfd input{descriptor_, POLLIN, 0};
+  if (::poll(&input, 1, 0) <= 0) return kNothing;
+  unsigned char byte = 0;
+  return ::read(descriptor_, &byte, 1) == 1 ? byte : kGone;
+}
+
+TerminalKeys::Key TerminalKeys::take() {
+  const int first = next_byte();
+  if (first == kNothing) return Key::none;
+  if (first == kGone) return Key::lost;
+  if (first != kEscape) return Key::other;
+  const int second = next_byte();
+  if (second != '[' && second != 'O') return Key::other;  // Cursor keys, or those of application mode.
+  switch (next_byte()) {
+    case 'A': return Key::up;
+    case 'B': return Key::down;
+    case 'C': return Key::right;
+    case 'D': return Key::left;
+    default: return Key::other;
+  }
+}
+
+}  // namespace servoctl::cli

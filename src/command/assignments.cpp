@@ -1,0 +1,23 @@
+#include "command/assignments.hpp"
+
+#include <fmt/format.h>
+
+namespace servoctl::command {
+
+Result<std::vector<Assignment>> parse_assignments(std::span<const std::string> words) {
+  std::vector<Assignment> out;
+  if (words.size() == 2 && words[0].find('=') == std::string::npos) {
+    out.push_back({words[0], words[1]});
+    return out;
+  }
+  for (const auto& word : words) {
+    const auto equals = word.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == word.size())
+      return fail(Errc::usage, fmt::format("'{}' is no assignment", word),
+                  "write `param set Pn0202 2` or `param set Pn0202=2 Pn0215=800`");
+    out.push_back({std::string_view(word).substr(0, equals), std::string_view(word).substr(equals + 1)});
+  }
+  return out;
+}
+
+}  // namespace servoctl::command

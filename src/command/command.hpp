@@ -1,0 +1,94 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "base/result.hpp"
+#include "command/arguments.hpp"
+#include "command/context.hpp"
+#include "report/value.hpp"
+#include "settings/setting_line.hpp"
+
+namespace servoctl::command {
+
+/// What a word of the command line stands for. Decides how it is completed and described, not how it is
+/// parsed: every value reaches the command as text.
+enum class Kind : std::uint8_t {
+  flag,
+  text,
+  number,
+  duration,
+  value,
+  type,
+  object,
+  parameter,
+  nodes,
+  family,
+  bus,
+  file,
+  choice,
+  command
+};
+
+/// One option or positional word of a command.
+struct Parameter {
+  std::string_view name;  ///< `--type` is an option, `object` a positional word.
+  std::string_view help;
+  Kind kind = Kind::text;
+  bool required = false;
+  bool many = false;  ///< Takes all words that follow.
+  std::span<const std::string_view> choices = {};
+  std::string_view short_name = {};  ///< `-n`
+  bool repeats = false;              ///< An option that may be given several times, one value each.
+};
+
+/// What must be there before the command runs; the front end sees to it, not the command. Combined with `|`.
+enum class Needs : std::uint8_t { nothing = 0, dictionary = 1, bus = 2, node = 6 };  // A node needs a bus.
+constexpr Needs operator|(Needs a, Needs b) {
+  return static_cast<Needs>(static_cast<std::uint8_t>(a) | static_cast<std::uint8_t>(b));
+}
+constexpr bool includes(Needs all, Needs part) {
+  return (static_cast<std::uint8_t>(all) & static_cast<std::uint8_t>(part)) ==
+         static_cast<std::uint8_t>(part);
+}
+
+/// What the command may do to a drive. From `stores` on it asks on a terminal and needs --yes elsewhere; from
+/// `writes` on
+/// --read-only refuses it.
+enum class Effect : std::uint8_t { none, reads, writes, stores, resets, moves };
+
+/// When the family that was named is held against what the drives say they are, before anything is sent.
+/// `by_effect`: before what changes something; `always`: before an answer, too, that makes sense for the
+/// family alone; `never`: a way out, which nothing may refuse, or the command sees to it
+/// (Context::hold_family()).
+enum class FamilyCheck : std::uint8_t { by_effect, always, never };
+
+struct Command {
+  std::string_view path;     ///< `param set`; lives in commands/param_set.cpp.
+  std::string_view summary;  ///< One line, no full stop.
+  std::string_view details;  ///< More for `help COMMAND`: what it does, what it answers, examples.
+  std::span<const Parameter> parameters;
+  Needs needs = Needs::nothing;
+  Effect effect = Effect::none;
+  FamilyCheck family = FamilyCheck::by_effect;
+  std::string_view reads_without = {};  ///< Without this parameter it only reads, whatever `effect` says.
+  Result<report::Value> (*run)(Context&, const Arguments&) = nullptr;
+  /// Checks names and values by the dictionary alone (no session in the context), for lines that are to be
+  /// run later; null: there is nothing to check.
+  Result<void> (*check)(Context&, const Arguments&) = nullptr;
+  /// The values it writes, for a batch file that is read as settings; null: it writes none.
+  Result<std::vector<settings::NamedValue>> (*settings)(const Arguments&) = nullptr;
+  bool of_front_end = false;  ///< It runs other command lines: the front end does it, `run` is null.
+
+  /// What it does with these arguments.
+  Effect effect_with(const Arguments& arguments) const {
+    return !reads_without.empty() && !arguments.has(reads_without) ? Effect::reads : effect;
+  }
+};
+
+/// Options every command understands.
+std::span<const Parameter> global_options();
+
+}  // namespace servoctl::command

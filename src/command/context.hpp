@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+
+#include "command/front_end.hpp"
+#include "show/desk.hpp"
+
+namespace servoctl::command {
+
+/// The desk of one command line: with what its words and the front end add.
+struct Context : show::Desk {
+  std::span<const std::filesystem::path> drive_folders;
+  bool nodes_typed = false;       ///< In the line itself; else by `use` or the environment.
+  bool read_only = false;         ///< Nothing in a drive may be changed.
+  bool stays_open = false;        ///< Other lines follow on the same session: a prompt, a batch file.
+  FrontEnd* front_end = nullptr;  ///< Null: there is none, and nothing is held.
+
+  /// As FrontEnd::hold_family().
+  Result<void> hold_family(std::span<const std::uint8_t> of, const drive::Profile* family,
+                           bool changes) const {
+    return front_end == nullptr ? Result<void>() : front_end->hold_family(of, family, changes);
+  }
+};
+
+}  // namespace servoctl::command

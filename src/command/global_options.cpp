@@ -1,0 +1,50 @@
+#include "command/command.hpp"
+#include "command/output_form.hpp"
+
+namespace servoctl::command {
+namespace {
+
+constexpr std::string_view kLanguages[] = {"en", "zh"};
+
+constexpr Parameter kGlobal[] = {
+    {.name = "--bus",
+     .help = "bus: can0, local:NAME, sim:gsd600@1 (default $SERVOCTL_BUS)",
+     .kind = Kind::bus,
+     .short_name = "-b"},
+    {.name = "--node",
+     .help = "node-ID, a list 1,3,5-8 or all (default $SERVOCTL_NODE)",
+     .kind = Kind::nodes,
+     .short_name = "-n"},
+    {.name = "--drive",
+     .help = "drive family or an .eds file (default $SERVOCTL_DRIVE)",
+     .kind = Kind::family,
+     .short_name = "-d"},
+    {.name = "--timeout", .help = "longest wait for one answer (default 500ms)", .kind = Kind::duration},
+    {.name = "--retries",
+     .help = "further tries of a read without answer (default 1); a write is never repeated",
+     .kind = Kind::number},
+    {.name = "--json", .help = "one JSON document instead of text", .kind = Kind::flag},
+    {.name = "--output",
+     .help = "text, json, or jsonl for one document a sample",
+     .kind = Kind::choice,
+     .choices = kOutputForms,
+     .short_name = "-o"},
+    {.name = "--lang",
+     .help = "language of names: en or zh (default $SERVOCTL_LANG)",
+     .kind = Kind::choice,
+     .choices = kLanguages},
+    {.name = "--yes", .help = "answer yes to what would be asked", .kind = Kind::flag, .short_name = "-y"},
+    {.name = "--force-family",
+     .help = "go on although the identity of the drive contradicts -d; --yes never says so",
+     .kind = Kind::flag},
+    {.name = "--read-only", .help = "refuse everything that changes a drive", .kind = Kind::flag},
+    {.name = "--dry-run", .help = "show the frames, send nothing that changes a drive", .kind = Kind::flag},
+    {.name = "--trace", .help = "write every frame into a file (candump -L form)", .kind = Kind::file},
+    {.name = "--help", .help = "show the help of the command", .kind = Kind::flag, .short_name = "-h"},
+};
+
+}  // namespace
+
+std::span<const Parameter> global_options() { return kGlobal; }
+
+}  // namespace servoctl::command

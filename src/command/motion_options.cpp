@@ -1,0 +1,57 @@
+#include "command/motion_options.hpp"
+
+#include <fmt/format.h>
+
+#include "base/number.hpp"
+#include "canopen/cob_id.hpp"
+
+namespace servoctl::command {
+namespace {
+
+std::optional<std::uint64_t> number(const Arguments& arguments, std::string_view name) {
+  const auto value = parse_integer(arguments.text(name));
+  return value && !value->negative ? std::optional(value->magnitude) : std::nullopt;
+}
+
+}  // namespace
+
+Result<std::uint8_t> one_node(const Context& context) {
+  if (context.nodes.size() == 1 && context.nodes.front() != 0) return context.nodes.front();
+  return fail(Errc::usage, "one motor at a time: this command takes one node", "-n 1");
+}
+
+Result<motion::MotionOptions> motion_options(const Context& context, const Arguments& arguments) {
+  motion::MotionOptions out;
+  out.speed_limit = arguments.text("--limit");
+  out.acceleration = arguments.text("--accel");
+  out.max_torque = arguments.text("--max-torque");
+  out.max_following_error = arguments.text("--max-following-error");
+  out.window = arguments.text("--window");
+  out.unheard = [&context] { return context.audience_is_gone(); };
+  for (const auto& [name, place] : {std::pair("--turn", &out.turn), std::pair("--encoder", &out.encoder)}) {
+    if (!arguments.has(name)) continue;
+    const auto counts = number(arguments, name);
+    if (!counts || *counts == 0)
+      return fail(Errc::usage, fmt::format("'{}' is no number of counts", arguments.text(name)),
+                  "such as 131072 for 17 bits");
+    *place = static_cast<double>(*counts);
+  }
+  if (!arguments.has("--master-node")) return out;
+  const auto id = number(arguments, "--master-node");
+  if (!id || *id < canopen::kFirstNode || *id > canopen::kLastNode)
+    return fail(Errc::usage, fmt::format("'{}' is no node-ID", arguments.text("--master-node")),
+                "write 1..127");
+  out.producer = static_cast<std::uint8_t>(*id);
+  return out;
+}
+
+Result<motion::MotionRequest> motion_request(const Context& context, const Arguments& arguments) {
+  const auto node = one_node(context);
+  if (!node) return tl::unexpected<Error>(node.error());
+  auto options = motion_options(context, arguments);
+  if (!options) return tl::unexpected<Error>(options.error());
+  return motion::MotionRequest{*node, std::move(*options), std::string(arguments.text("--csv")),
+                               arguments.has("--plot")};
+}
+
+}  // namespace servoctl::command

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+
+#include "command/duration_option.hpp"
+#include "motion/motion_run.hpp"
+
+/// What jog, move, home and torque have in common on the command line.
+namespace servoctl::command {
+
+inline constexpr Parameter kAccelerationOption{
+    .name = "--accel", .help = "ramps (6083h, 6084h) instead of half a second", .kind = Kind::value};
+inline constexpr Parameter kTurnOption{
+    .name = "--turn",
+    .help = "increments of 6064h in one turn of the motor, if the drive does not tell",
+    .kind = Kind::number};
+/// What every motion takes.
+inline constexpr std::array kMotionOptions{
+    Parameter{
+        .name = "--limit", .help = "greatest speed; raises the safe one knowingly", .kind = Kind::value},
+    Parameter{.name = "--max-torque",
+              .help = "stop above this torque; the ceiling of `torque`",
+              .kind = Kind::value},
+    Parameter{
+        .name = "--max-following-error", .help = "stop above this following error", .kind = Kind::value},
+    Parameter{.name = "--window", .help = "stop when it has moved farther than this", .kind = Kind::value},
+    kTurnOption,
+    Parameter{
+        .name = "--master-node", .help = "servoctl's own node-ID for the watchdog", .kind = Kind::number},
+    Parameter{.name = "--plot", .help = "draw the samples over time at the end", .kind = Kind::flag},
+};
+inline constexpr Parameter kCsvOption{
+    .name = "--csv", .help = "write the samples to this file", .kind = Kind::file};
+
+/// The parameters of a motion command: its own, then what every motion takes.
+template <std::size_t N>
+constexpr std::array<Parameter, N + kMotionOptions.size()> with_motion_options(
+    const std::array<Parameter, N>& own) {
+  std::array<Parameter, N + kMotionOptions.size()> out{};
+  std::copy(kMotionOptions.begin(), kMotionOptions.end(), std::copy(own.begin(), own.end(), out.begin()));
+  return out;
+}
+
+/// The options above, as far as they are given. Errc::usage for a number that is none.
+Result<motion::MotionOptions> motion_options(const Context& context, const Arguments& arguments);
+
+/// The one node that a motion may have. Errc::usage for several: one motor at a time.
+Result<std::uint8_t> one_node(const Context& context);
+
+/// The options above, with the node. Errc::usage as those of one_node() and motion_options().
+Result<motion::MotionRequest> motion_request(const Context& context, const Arguments& arguments);
+
+}  // namespace servoctl::command

@@ -1,0 +1,16 @@
+#include "command/setting_options.hpp"
+
+#include <fmt/format.h>
+
+namespace servoctl::command {
+
+Result<void> check_resume(const Arguments& arguments) {
+  if (!arguments.has("--resume")) return {};
+  for (const auto* option : {"--keep", "--unlock", "--force", "--with-address"})
+    if (arguments.has(option))
+      return fail(Errc::usage, fmt::format("--resume goes on as it was begun: {} has no say", option),
+                  fmt::format("leave {} away", option));
+  return {};
+}
+
+}  // namespace servoctl::command

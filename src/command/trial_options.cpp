@@ -1,0 +1,68 @@
+#include "command/trial_options.hpp"
+
+#include <fmt/format.h>
+
+#include "base/number.hpp"
+#include "command/duration_option.hpp"
+
+namespace servoctl::command {
+namespace {
+
+/// The second half of a shorter one would still be the ramp.
+constexpr Duration kShortest = std::chrono::seconds(1);
+
+/// A number of at least 0; `otherwise` when it is not given. Errc::usage.
+Result<double> number_option(const Arguments& arguments, std::string_view name, double otherwise) {
+  if (!arguments.has(name)) return otherwise;
+  const auto number = parse_real(arguments.text(name));
+  if (!number || *number < 0)
+    return fail(Errc::usage, fmt::format("{}: '{}' is no number of at least 0", name, arguments.text(name)));
+  return *number;
+}
+
+}  // namespace
+
+Result<trial::JogTrial> parse_jog_test(const Arguments& arguments, std::string_view speed) {
+  trial::JogTrial out;
+  out.speed = speed;
+  const auto length = duration_option(arguments, "--for");
+  if (!length) return tl::unexpected<Error>(length.error());
+  out.length = length->value_or(out.length);
+  if (out.length < kShortest)
+    return fail(Errc::usage, "--for is too short to reach the speed", "at least 1s");
+  const auto stop = duration_option(arguments, "--stop-within");
+  if (!stop) return tl::unexpected<Error>(stop.error());
+  out.longest_stop = stop->value_or(out.longest_stop);
+  const auto tolerance = number_option(arguments, "--tolerance", out.tolerance);
+  if (!tolerance) return tl::unexpected<Error>(tolerance.error());
+  out.tolerance = *tolerance;
+  return out;
+}
+
+Result<trial::HomeTrial> parse_home_test(const Arguments& arguments, std::string_view method) {
+  trial::HomeTrial out;
+  out.method = method;
+  const auto repeat = count_option(arguments, "--repeat", 1, 1000, out.repeat);
+  if (!repeat) return tl::unexpected<Error>(repeat.error());
+  out.repeat = *repeat;
+  const auto spread = number_option(arguments, "--spread", out.spread);
+  if (!spread) return tl::unexpected<Error>(spread.error());
+  out.spread = *spread;
+  return out;
+}
+
+Result<std::uint32_t> count_option(const Arguments& arguments, std::string_view name, std::uint32_t least,
+                                   std::uint32_t most, std::uint32_t otherwise) {
+  if (!arguments.has(name)) return otherwise;
+  const auto number = parse_digits(arguments.text(name), 10);
+  if (!number || *number < least || *number > most)
+    return fail(Errc::usage,
+                fmt::format("{}: '{}' is no number of {} to {}", name, arguments.text(name), least, most));
+  return static_cast<std::uint32_t>(*number);
+}
+
+trial::VerdictOptions verdict_options(const Arguments& arguments) {
+  return {.plot = arguments.has("--plot"), .junit = std::string(arguments.text("--junit"))};
+}
+
+}  // namespace servoctl::command

@@ -1,0 +1,19 @@
+#include "command/type_option.hpp"
+
+#include <fmt/format.h>
+#include <string>
+#include <vector>
+
+#include "base/text.hpp"
+
+namespace servoctl::command {
+
+Result<std::optional<od::DataType>> parse_type_option(const Arguments& arguments) {
+  if (!arguments.has("--type")) return std::optional<od::DataType>();
+  const auto text = lower(arguments.text("--type"));
+  if (const auto type = od::parse_data_type(text)) return std::optional(*type);
+  const std::vector<std::string> names(std::begin(kTypeNames), std::end(kTypeNames));
+  return fail(Errc::usage, fmt::format("'{}' is no data type", text), "write " + one_of(names));
+}
+
+}  // namespace servoctl::command

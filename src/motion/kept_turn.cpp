@@ -1,0 +1,167 @@
+#include "motion/kept_turn.hpp"
+
+#include <fmt/format.h>
+
+#include "base/checksum.hpp"
+#include "base/file.hpp"
+#include "base/number.hpp"
+#include "session/identify.hpp"
+#include "show/bus_name.hpp"
+#include "show/field_reader.hpp"
+#include "show/identity.hpp"
+
+namespace servoctl::motion {
+namespace {
+
+using report::Record;
+using report::Value;
+using session::Identity;
+
+constexpr std::uint64_t kVersion = 1;
+constexpr std::uintmax_t kMostBytes = 1U << 16U;
+/// More than any encoder has.
+constexpr std::uint64_t kMostCounts = std::uint64_t{1} << 40U;
+
+/// What the file keeps of an identity; the rest may change without the drive being another one.
+Identity bare(const Identity& from) {
+  Identity out;
+  out.node = from.node;
+  out.device_type = from.device_type;
+  out.vendor_id = from.vendor_id;
+  out.product_code = from.product_code;
+  out.revision = from.revision;
+  out.serial = from.serial;
+  out.device_name = from.device_name;
+  return out;
+}
+
+Record body_of(const KeptTurn& turn, std::uint8_t node) {
+  return {{"servoctl_turn", kVersion},
+          {"node", std::uint64_t{node}},
+          {"family", turn.family},
+          {"identity", show::identity_record(bare(turn.identity))},
+          {"counts", turn.counts},
+          {"measured", turn.measured},
+          {"uncertainty_ppm", turn.uncertainty_ppm},
+          {"reason", turn.reason},
+          {"time", turn.time}};
+}
+
+std::string seal_of(const KeptTurn& turn, std::uint8_t node) {
+  return checksum_of(report::to_json(body_of(turn, node)));
+}
+
+tl::unexpected<Error> damaged(std::string message) {
+  return fail(Errc::file, std::move(message),
+              "`units learn` measures anew, `units forget` takes the file away");
+}
+
+Result<KeptTurn> parse(const Value& document, const std::string& file, std::uint8_t node) {
+  show::FieldReader fields(document, file);
+  KeptTurn out;
+  if (fields.number("servoctl_turn", true).value_or(kVersion) != kVersion) fields.refuse("servoctl_turn");
+  if (fields.number("node", true).value_or(node) != node) fields.refuse("node");
+  out.family = fields.text("family", true);
+  out.counts = fields.number("counts", true).value_or(0);
+  out.measured = fields.number("measured", true).value_or(0);
+  out.uncertainty_ppm = fields.number("uncertainty_ppm", true).value_or(0);
+  out.reason = fields.text("reason", true);
+  out.time = fields.text("time", true);
+  if (out.counts < 2 || out.counts > kMostCounts) fields.refuse("counts");
+  const auto* inside = report::find(document, "identity");
+  const auto identity = inside == nullptr ? std::nullopt : show::identity_of(*inside, node);
+  if (!identity) fields.refuse("identity");
+  const auto seal = fields.text("seal", true);
+  if (fields.error()) return damaged(*fields.error());
+  out.identity = *identity;
+  if (seal != seal_of(out, node))
+    return damaged(fmt::format("{}: its seal does not fit: the file was changed after it was written", file));
+  return out;
+}
+
+/// Such as `its serial number (1018h:04)`; empty when it is the same drive, as far as it tells.
+std::string change_of(const Identity& before, const Identity& now) {
+  if (before.device_type != now.device_type) return "its device type (1000h)";
+  if (before.vendor_id != now.vendor_id) return "its vendor (1018h:01)";
+  if (before.product_code != now.product_code) return "its product code (1018h:02)";
+  if (before.revision != now.revision) return "its revision (1018h:03)";
+  if (before.serial != now.serial) return "its serial number (1018h:04)";
+  // A file holds no bytes that are no text.
+  const auto as_kept = [](const Identity& one) { return report::to_json(Value(one.device_name)); };
+  return as_kept(before) != as_kept(now) ? "its name (1008h)" : std::string();
+}
+
+/// Why what is kept is not to be used; empty when it is.
+std::string reason_against(const show::Desk& desk, std::uint8_t node, const KeptTurn& kept) {
+  if (kept.family != desk.profile->family) return fmt::format("they were measured with -d {}", kept.family);
+  const auto now = session::read_identity(*desk.session, node);
+  if (!now) return now.error().message;
+  const auto change = change_of(kept.identity, *now);
+  return change.empty() ? change : change + " is not the one of the drive that was measured";
+}
+
+}  // namespace
+
+TurnFile::TurnFile(const show::Desk& desk, std::uint8_t node) : node_(node) {
+  if (!desk.state_folder.empty())
+    path_ =
+        desk.state_folder / fmt::format("turn-{}-node-{}.json", show::bus_name(desk.session->url()), node);
+}
+
+Result<std::optional<KeptTurn>> TurnFile::read() const {
+  std::error_code error;
+  if (path_.empty() || !std::filesystem::exists(std::filesystem::symlink_status(path_, error)))
+    return std::optional<KeptTurn>();
+  const auto text = read_file(path_, kMostBytes);
+  if (!text) return tl::unexpected<Error>(text.error());
+  const auto document = report::parse_json(*text, path_.string());
+  if (!document) return damaged(document.error().message);
+  auto turn = parse(*document, path_.string(), node_);
+  if (!turn) return tl::unexpected<Error>(turn.error());
+  return std::optional(std::move(*turn));
+}
+
+Result<void> TurnFile::write(const KeptTurn& turn) const {
+  auto document = body_of(turn, node_);
+  document.push_back({"seal", seal_of(turn, node_)});
+  return write_file_atomically(path_, report::to_json(document) + "\n");
+}
+
+Result<bool> TurnFile::remove() const {
+  if (path_.empty()) return false;
+  std::error_code error;
+  const bool removed = std::filesystem::remove(path_, error);
+  if (error) return fail(Errc::file, fmt::format("{}: {}", path_.string(), error.message()));
+  return removed;
+}
+
+KnownTurn find_turn(const show::Desk& desk, std::uint8_t node) {
+  KnownTurn out;
+  if (desk.profile == nullptr || desk.profile->rules.learn.speed.empty()) return out;
+  const auto kept = TurnFile(desk, node).read();
+  if (!kept) out.unused = kept.error().message;
+  if (!kept || !*kept) return out;
+  out.kept = **kept;
+  out.unused = reason_against(desk, node, *out.kept);
+  if (out.unused.empty()) out.counts = static_cast<double>(out.kept->counts);
+  return out;
+}
+
+std::vector<std::string> turn_notes(const MotionUnits& units, const KnownTurn& known) {
+  std::vector<std::string> out;
+  if (units.uses_learned() && known.kept)
+    out.push_back(fmt::format(
+        "a turn is {} increments of 6064h, by the {} counts of its encoder ({}) that were measured at {} and "
+        "kept "
+        "for this drive; --turn says another number{}",
+        plain_number(units.turn().value_or(0), 12), known.kept->counts, known.kept->reason, known.kept->time,
+        known.kept->identity.serial.value_or(0) == 0
+            ? "; it has no serial number (1018h:04): another drive or motor would not be noticed by it"
+            : ""));
+  if (!known.unused.empty() && !units.turn())
+    out.push_back(fmt::format(
+        "the counts of a turn that are kept are not used: {}; `units learn` measures anew", known.unused));
+  return out;
+}
+
+}  // namespace servoctl::motion

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "show/desk.hpp"
+
+/// Drives that a command leaves with power.
+namespace servoctl::motion {
+
+/// What a user has to know of one.
+std::string energised_notice(std::uint8_t node);
+
+/// Of one that was left energised: `node 1 was left energised; it is stopped and disabled now`.
+std::string disabled_notice(std::uint8_t node);
+
+/// Of one whose power could not be taken away: what the user has to do, and why.
+std::string power_warning(std::uint8_t node, std::string_view why);
+
+/// Looks whether the drives that were energised through this session still are, and says so of each: in the
+/// notices, also where one does not tell.
+void tell_left_energised(show::Desk& desk);
+
+/// Stops and disables them, for a command that ends before its time; the notices say so, and what did not
+/// succeed is in `desk.errors`. Does not hear Ctrl-C.
+void stop_left_energised(show::Desk& desk);
+
+}  // namespace servoctl::motion

@@ -1,0 +1,250 @@
+#include "motion/motion.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <new>
+
+#include "base/number.hpp"
+#include "drive/soft_ramp.hpp"
+#include "drive/standard_objects.hpp"
+#include "motion/motion_kinds.hpp"
+#include "motion/producer_claim.hpp"
+
+namespace servoctl::motion {
+namespace {
+
+/// A motor at rest shows some noise: this part of the commanded speed, and 3 rpm where it is told in rpm.
+constexpr double kNoisePart = 0.02;
+constexpr double kNoiseRpm = 3;
+/// A motor is run away that turns so much faster than it was told to, and more than its noise.
+constexpr double kOverspeed = 1.5;
+constexpr double kNoiseOfOverspeed = 5;
+constexpr double kLongest = 86'400;    ///< Seconds; longer is for ever.
+constexpr double kDegreesASecond = 6;  ///< Of 1 rpm.
+/// What servoctl chose itself need not be met exactly; what is farther off is told.
+constexpr double kChosenLoss = 0.1;
+
+}  // namespace
+
+Motion::Motion(session::Session& session, const drive::Profile& profile, std::uint8_t node,
+               MotionOptions options)
+    : session_(&session),
+      profile_(&profile),
+      node_(node),
+      options_(std::move(options)),
+      power_(session, profile, node) {}
+
+Result<void> Motion::prepare() {
+  if (const auto alive = power_.statusword(); !alive) return tl::unexpected<Error>(alive.error());
+  units_ = std::make_unique<MotionUnits>(*session_, *profile_, node_, options_.turn, options_.encoder,
+                                         options_.learned);
+  monitor_ = std::make_unique<MotionMonitor>(*session_, *units_, node_);
+  if (const auto done = read_limits(); !done) return done;
+  speed_cap_ = find_speed_cap();
+  auto plan = plan_watchdog(*session_, *profile_, node_, options_.producer);
+  if (!plan) return tl::unexpected<Error>(plan.error());
+  watchdog_ = std::move(*plan);
+  return {};
+}
+
+Result<std::vector<PreflightItem>> Motion::look(bool chinese) {
+  return preflight(*session_, *units_, node_, watchdog_, chinese);
+}
+
+void Motion::set_standstill(double speed) {
+  const bool rpm = units_->unit(objects::kVelocityActual) == "rpm";
+  standstill_ = std::max(rpm ? kNoiseRpm : 0, std::abs(speed) * kNoisePart);
+  if (guard_) guard_->set_standstill(standstill_);
+}
+
+bool Motion::stands_still(const MotionSample& sample) const {
+  const auto speed = sample[Channel::velocity];
+  return !speed || std::abs(*speed) <= standstill_;
+}
+
+bool Motion::supervise_speed(double limit) {
+  if (units_->unit(objects::kVelocityActual) != units_->unit(objects::kTargetVelocity)) return false;
+  monitor_->limits().speed = limit;
+  return true;
+}
+
+void Motion::supervise_overspeed(double speed) {
+  (void)supervise_speed(std::abs(speed) * kOverspeed + standstill_ * kNoiseOfOverspeed);
+}
+
+bool Motion::add_setting(ObjectAddress object, double value, MotionPlan& plan) const {
+  const auto data = units_->bytes(object, value);
+  if (!data) return false;
+  plan.settings.emplace_back(object, *data);
+  const auto held = units_->physical(object, *data);
+  if (held && std::abs(held->value - value) > std::abs(value) * kChosenLoss)
+    plan.notes.push_back(fmt::format("{} is set to {} {}: the nearest it can hold to {}", to_string(object),
+                                     number_text(held->value), held->unit, number_text(value)));
+  return true;
+}
+
+Result<void> Motion::add_ramps(double speed, std::initializer_list<ObjectAddress> objects,
+                               MotionPlan& plan) const {
+  for (const auto object : objects) {
+    if (!units_->has(object)) continue;
+    if (!options_.acceleration.empty()) {
+      const auto asked = units_->parse(object, options_.acceleration);
+      if (!asked) return tl::unexpected<Error>(asked.error());
+      plan.settings.emplace_back(object, asked->data);
+      plan.tell(asked->rounding);
+      continue;
+    }
+    const auto ramp =
+        drive::soft_ramp(units_->unit(object), units_->unit(objects::kTargetVelocity), speed, kRampSeconds);
+    if (ramp) (void)add_setting(object, *ramp, plan);
+  }
+  return {};
+}
+
+std::optional<double> Motion::rate() const {
+  const auto of_way = units_->unit(objects::kPositionActual);
+  const auto of_speed = units_->unit(objects::kTargetVelocity);
+  if (of_speed == "rpm" && of_way == "deg") return kDegreesASecond;
+  return of_speed == of_way + "/s" ? std::optional(1.) : std::nullopt;
+}
+
+std::optional<Duration> Motion::duration(double way, double speed) const {
+  const auto one = rate();
+  if (!one || speed == 0) return std::nullopt;
+  const double seconds = std::min(std::abs(way / (speed * *one)) + 2 * kRampSeconds, kLongest);
+  return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(seconds));
+}
+
+Result<void> Motion::look_again() {
+  // Answers to other masters that came meanwhile must not be taken for answers to what is asked now.
+  if (const auto heard = session_->listen(); !heard) return heard;
+  const auto state = power_.state();
+  if (!state) return tl::unexpected<Error>(state.error());
+  if (drive::is_energised(*state)) return fail(enabled_by_others(node_, *state));
+  return {};
+}
+
+Result<void> Motion::begin(std::int8_t mode, const std::vector<MotionSetting>& settings,
+                           std::optional<ObjectAddress> kept_target) {
+  if (const auto ready = look_again(); !ready) return ready;
+  if (const auto own = claim_producer(*session_, node_, options_.producer, watchdog_); !own) return own;
+  monitor_->find_tpdos();
+  guard_.reset();  // The next one hears through what this one put back.
+  guard_ = std::make_unique<MotionGuard>(*session_, *units_, node_);
+  guard_->set_standstill(standstill_);
+  session::Rehearsal unused;
+  if (const auto ready = make_ready(*guard_, mode, settings, kept_target, unused); !ready) return ready;
+  (void)session_->take_events();  // What was told before is no news of this motion.
+  auto enabled = guard_->enable();
+  monitor_->on_written();
+  return enabled;
+}
+
+/// All that is done before it is enabled.
+Result<void> Motion::make_ready(MotionGuard& guard, std::int8_t mode,
+                                const std::vector<MotionSetting>& settings,
+                                std::optional<ObjectAddress> kept_target, session::Rehearsal& rehearsal) {
+  rehearsal.begin_step("memory");
+  if (const auto done = guard.spare_flash(); !done) return done;
+  rehearsal.begin_step("watchdog");
+  if (const auto done = guard.arm(watchdog_); !done) return done;
+  rehearsal.begin_step("mode");
+  if (const auto done = guard.change_mode(mode); !done) return done;
+  rehearsal.begin_step("target");
+  if (const auto done = guard.neutral_targets(kept_target); !done) return done;
+  rehearsal.begin_step("setting");
+  for (const auto& [object, data] : settings)
+    if (const auto done = guard.change(object, data); !done) return done;
+  rehearsal.begin_step("start");
+  return guard.start_node();
+}
+
+Result<std::vector<session::PlannedMessage>> Motion::rehearse(const MotionPlan& plan) {
+  if (const auto ready = look_again(); !ready) return tl::unexpected<Error>(ready.error());
+  session::Rehearsal out;
+  MotionGuard guard(*session_, *units_, node_);
+  guard.rehearse(out);
+  if (const auto ready = make_ready(guard, plan.mode, plan.settings, plan.kept_target, out); !ready)
+    return tl::unexpected<Error>(ready.error());
+  out.begin_step("enable");
+  if (const auto enabled = guard.enable(); !enabled) return tl::unexpected<Error>(enabled.error());
+  out.begin_step("motion");
+  for (const auto& [object, data] : plan.moving) {
+    if (object == objects::kControlword)
+      out.add(session::planned_write({node_, object, data}));
+    else if (const auto done = guard.change(object, data); !done)
+      return tl::unexpected<Error>(done.error());
+  }
+  (void)guard.end();
+  return out.messages();
+}
+
+Result<void> Motion::write(ObjectAddress object, const Bytes& data) {
+  auto done = guard_->change(object, data);
+  monitor_->on_written();
+  return done;
+}
+
+Result<void> Motion::command(std::uint16_t controlword) {
+  auto done = power_.command(controlword);
+  monitor_->on_written();
+  return done;
+}
+
+/// What a motion keeps grows with its time.
+Result<bool> Motion::watch(const std::function<Result<bool>(const MotionSample&)>& done, Duration longest) {
+  try {
+    return supervise(done, longest);
+  } catch (const std::bad_alloc&) {
+    return fail(error(Errc::bug, "the memory ran out, so the motion was ended",
+                      "give it more memory, or a shorter motion; end other programs"));
+  }
+}
+
+Result<bool> Motion::supervise(const std::function<Result<bool>(const MotionSample&)>& done,
+                               Duration longest) {
+  const auto end = session_->now() + longest;
+  for (;;) {
+    const auto sample = monitor_->sample();
+    if (!monitor_->samples().empty() && options_.on_sample) options_.on_sample(monitor_->samples().back());
+    if (!sample) return tl::unexpected<Error>(sample.error());
+    if (const auto fits = check_learned(*sample); !fits) return tl::unexpected<Error>(fits.error());
+    if (options_.unheard && options_.unheard())
+      return fail(error(Errc::interrupted, "nobody reads the output any more; the motion was ended"));
+    const auto enough = done(*sample);
+    if (!enough || *enough) return enough;
+    if (session_->now() >= end) return false;
+    if (const auto waited = monitor_->wait_for_next(); !waited) return tl::unexpected<Error>(waited.error());
+  }
+}
+
+Result<void> Motion::wait_for_rest(Duration longest) {
+  const auto rested =
+      watch([this](const MotionSample& sample) -> Result<bool> { return stands_still(sample); }, longest);
+  if (!rested) return tl::unexpected<Error>(rested.error());
+  if (*rested) return {};
+  return fail(error(Errc::negative, "did not come to rest in time; it is stopped now",
+                    "look at its deceleration (6084h) and its load"));
+}
+
+MotionReport Motion::finish(Result<void> outcome) {
+  MotionReport out;
+  out.outcome = std::move(outcome);
+  out.watchdog = watchdog_;
+  out.begun = guard_ != nullptr;
+  if (guard_) out.end = guard_->end();
+  try {
+    out.samples = monitor_->samples();
+    out.series = monitor_->series();
+  } catch (const std::bad_alloc&) {
+    out.samples.clear();
+    out.series.clear();
+    if (out.outcome) out.outcome = fail(error(Errc::bug, "the memory ran out: there are no samples to show"));
+  }
+  out.events = monitor_->events();
+  out.by_pdo = monitor_->by_pdo();
+  return out;
+}
+
+}  // namespace servoctl::motion

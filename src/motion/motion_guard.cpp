@@ -1,0 +1,197 @@
+#include "motion/motion_guard.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "base/duration.hpp"
+#include "canopen/cob_id.hpp"
+#include "drive/standard_objects.hpp"
+#include "motion/operation_mode.hpp"
+
+namespace servoctl::motion {
+namespace {
+
+using drive::DriveState;
+
+constexpr std::uint8_t kQuickStop = 0x02;
+constexpr std::uint8_t kDisableVoltage = 0x00;
+
+constexpr std::uint32_t kLife = 5;  ///< Guard times in the life time.
+
+constexpr std::uint32_t kNoSuchObject = 0x0602'0000;  ///< CiA 301, table of SDO abort codes.
+
+/// An NMT command is not answered; CiA 301 names no time.
+constexpr Duration kNmtPause = std::chrono::milliseconds(20);
+
+}  // namespace
+
+MotionGuard::MotionGuard(session::Session& session, const MotionUnits& units, std::uint8_t node)
+    : session_(&session),
+      units_(&units),
+      node_(node),
+      power_(session, units.profile(), node),
+      hold_(session.protect(session::Care::guarded)),
+      hearing_(session, [this, before = session.options().heard](const can::Frame& frame, TimePoint time) {
+        if (before) before(frame, time);
+        hear(frame);
+      }) {}
+
+/// Where even the way out runs out of memory, the drive is still told to stop: nothing of that needs any.
+MotionGuard::~MotionGuard() {
+  try {
+    (void)end();
+  } catch (...) {
+    for (const auto controlword : {kQuickStop, kDisableVoltage, kDisableVoltage}) say(controlword);
+  }
+}
+
+void MotionGuard::say(std::uint8_t controlword) noexcept {
+  // Expedited, two bytes (CiA 301, 7.2.4.3.3).
+  can::Frame frame;
+  frame.id = static_cast<std::uint32_t>(canopen::kSdoRequest) + node_;
+  frame.size = 8;
+  frame.data = {0x2B, 0x40, 0x60, 0, controlword, 0, 0, 0};
+  try {
+    (void)session_->send(frame);
+  } catch (...) {
+    return;
+  }
+}
+
+/// The first frame of a write by somebody else (CiA 301, 7.2.4.3: command specifier 1, or 6 for a block).
+void MotionGuard::hear(const can::Frame& frame) {
+  if (end_ || frame.extended || frame.remote || frame.error || frame.size != 8 ||
+      frame.id != static_cast<std::uint32_t>(canopen::kSdoRequest) + node_)
+    return;
+  const auto command = frame.data[0] >> 5U;
+  if (command != 1 && !(command == 6 && (frame.data[0] & 1U) == 0)) return;
+  const ObjectAddress object{static_cast<std::uint16_t>(frame.data[1] | frame.data[2] << 8U), frame.data[3]};
+  const bool ours =
+      object == objects::kControlword ||
+      std::any_of(changed_.begin(), changed_.end(), [&](const Changed& c) { return c.object == object; });
+  if (ours) foreign_.insert(object);
+}
+
+Result<void> MotionGuard::change(ObjectAddress object, const Bytes& data) {
+  const auto before = session_->upload(node_, object);
+  if (!before) return tl::unexpected<Error>(before.error());
+  const auto* rehearsed = rehearsal_ != nullptr ? rehearsal_->held(object) : nullptr;
+  if ((rehearsed != nullptr ? *rehearsed : *before) == data) return {};
+  // Noted first: an answer that is lost may belong to a write that was done.
+  const bool known =
+      std::any_of(changed_.begin(), changed_.end(), [&](const Changed& c) { return c.object == object; });
+  if (!known) changed_.push_back({object, *before});
+  return write(object, data);
+}
+
+Result<void> MotionGuard::write(ObjectAddress object, const Bytes& data) {
+  if (rehearsal_ == nullptr) return session_->download(node_, object, data);
+  rehearsal_->add(session::planned_write({node_, object, data}));
+  return {};
+}
+
+Result<void> MotionGuard::change_mode(std::int8_t mode) {
+  // 6061h may show another one: a drive starts in none and has one waiting.
+  const auto before = session_->upload(node_, objects::kModeOfOperation);
+  if (!before) return tl::unexpected<Error>(before.error());
+  changed_.push_back({objects::kModeOfOperation, *before});
+  if (rehearsal_ != nullptr) {
+    const auto planned = mode_write(units_->profile(), node_, mode);
+    return write(planned.object, *planned.data);
+  }
+  return set_mode(*session_, units_->profile(), node_, mode);
+}
+
+Result<void> MotionGuard::neutral_targets(std::optional<ObjectAddress> except) {
+  for (const auto object : {objects::kTargetVelocity, objects::kTargetTorque}) {
+    if (!units_->has(object) || object == except) continue;
+    const auto size = od::size_of(units_->meaning(object).type).value_or(4);
+    const auto done = change(object, Bytes(size, 0));
+    // The dictionary may promise more than the drive has.
+    if (!done && done.error().abort_code != kNoSuchObject) return done;
+  }
+  if (!units_->has(objects::kTargetPosition) || !units_->has(objects::kPositionActual)) return {};
+  const auto here = session_->upload(node_, objects::kPositionActual);
+  if (!here) return tl::unexpected<Error>(here.error());
+  return change(objects::kTargetPosition, *here);
+}
+
+Result<void> MotionGuard::arm(const WatchdogPlan& plan) {
+  watchdog_ = plan;
+  if (plan.reaction_off)
+    if (const auto done = change(objects::kAbortConnectionOption, store_le(kReactWithFault, 2)); !done)
+      return done;
+  const auto ms =
+      static_cast<std::uint32_t>(std::chrono::duration_cast<std::chrono::milliseconds>(plan.time).count());
+  if (plan.kind == WatchdogPlan::Kind::heartbeat) {
+    if (const auto done = change({objects::kConsumerHeartbeatIndex, plan.entry},
+                                 store_le(std::uint32_t{plan.producer} << 16U | ms, 4));
+        !done)
+      return done;
+    if (rehearsal_ == nullptr) {
+      session_->produce_heartbeat(plan.producer, plan.time / kLife);
+    } else {
+      const auto frame = canopen::heartbeat_frame(plan.producer, canopen::NmtState::operational);
+      rehearsal_->add(session::planned_frame(
+          node_, frame, fmt::format("every {}", servoctl::to_string(plan.time / kLife))));
+    }
+  }
+  if (plan.kind == WatchdogPlan::Kind::guarding) {
+    for (const auto& [object, value, size] :
+         {std::tuple{objects::kGuardTime, ms / kLife, 2U}, std::tuple{objects::kLifeTimeFactor, kLife, 1U}})
+      if (const auto done = change(object, store_le(value, size)); !done) return done;
+    if (rehearsal_ == nullptr) {
+      session_->guard(node_, {plan.time / kLife, kLife});
+    } else {
+      can::Frame frame;
+      frame.id = static_cast<std::uint32_t>(canopen::kErrorControl) + node_;
+      frame.remote = true;
+      rehearsal_->add(session::planned_frame(
+          node_, frame, fmt::format("every {}", servoctl::to_string(plan.time / kLife))));
+    }
+  }
+  if (rehearsal_ != nullptr) return {};
+  // The drive watches from the first message on.
+  return pause(*session_, Duration::zero());
+}
+
+Result<void> MotionGuard::spare_flash() {
+  const auto& store = units_->profile().rules.store;
+  const auto object = units_->object(store.flash_switch);
+  if (!object || !store.to_ram) return {};
+  const auto data = od::encode(units_->meaning(*object).type, od::Value(*store.to_ram));
+  if (!data) return tl::unexpected<Error>(data.error());
+  return change(*object, *data);
+}
+
+Result<void> MotionGuard::start_node() {
+  nmt_before_ = session_->watch().state(node_);
+  if (!units_->profile().rules.nmt.disables_outside_operational ||
+      nmt_before_ == canopen::NmtState::operational)
+    return {};
+  started_ = true;
+  const auto frame = canopen::nmt_frame(canopen::NmtCommand::start, node_);
+  if (rehearsal_ != nullptr) {
+    rehearsal_->add(session::planned_frame(node_, frame));
+    return {};
+  }
+  if (const auto sent = session_->send(frame); !sent) return sent;
+  return pause(*session_, kNmtPause);
+}
+
+Result<void> MotionGuard::enable() {
+  const auto state = power_.state();
+  if (!state) return tl::unexpected<Error>(state.error());
+  if (drive::is_energised(*state)) {
+    powered_ = true;
+    return fail(enabled_by_others(node_, *state));
+  }
+  energised_ = true;
+  if (rehearsal_ == nullptr) return power_.reach(DriveState::operation_enabled);
+  const auto path = power_.path_to(*state, DriveState::operation_enabled);
+  if (!path) return tl::unexpected<Error>(path.error());
+  rehearse_up(*path);
+  return {};
+}
+
+}  // namespace servoctl::motion

@@ -1,0 +1,110 @@
+#pragma once
+
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "motion/motion_units.hpp"
+#include "motion/power.hpp"
+#include "motion/watchdog.hpp"
+#include "session/option_scope.hpp"
+#include "session/rehearsal.hpp"
+
+namespace servoctl::motion {
+
+/// In which state a motion left the drive.
+struct MotionEnd {
+  bool verified = false;  ///< The statusword was read afterwards and shows a state without power.
+  drive::DriveState state = drive::DriveState::unknown;
+  std::uint16_t statusword = 0;
+  bool stopped = false;            ///< It stood still before its power was taken away.
+  bool quick_stop = false;         ///< It needed a quick stop for that.
+  std::vector<std::string> left;   ///< What could not be put back, and why.
+  std::vector<std::string> notes;  ///< What was left otherwise than before for a reason.
+};
+
+/// Holds a drive while it is energised: whatever way the owner is left by, the drive is stopped, its power is
+/// taken away, what was changed is put back, and the end state is verified. While that goes on, nothing is
+/// interrupted.
+class MotionGuard {
+ public:
+  MotionGuard(session::Session& session, const MotionUnits& units, std::uint8_t node);
+  MotionGuard(const MotionGuard&) = delete;
+  MotionGuard& operator=(const MotionGuard&) = delete;
+  ~MotionGuard();
+
+  /// From now on nothing is sent: what would be goes there, which outlives this. To be called first.
+  void rehearse(session::Rehearsal& rehearsal) { rehearsal_ = &rehearsal; }
+
+  /// Writes an object, after its value was kept; end() puts it back. One that holds the bytes already is not
+  /// written.
+  Result<void> change(ObjectAddress object, const Bytes& data);
+  /// The same for the mode of operation; waits until the drive is in it.
+  Result<void> change_mode(std::int8_t mode);
+  /// Sets the targets so that enabling does not move the motor: 60FFh and 6071h to 0, 607Ah to where it
+  /// stands. Objects in `except` are left alone.
+  Result<void> neutral_targets(std::optional<ObjectAddress> except = {});
+  /// Makes the drive watch servoctl until end().
+  Result<void> arm(const WatchdogPlan& plan);
+  /// Where the family chooses by a switch whether writes go to its flash: to the RAM, until end().
+  Result<void> spare_flash();
+  /// Starts the node (NMT) where the family is energised in Operational only.
+  Result<void> start_node();
+  /// "Operation enabled", by the shortest legal way. Errc::refused when somebody else has enabled it: two
+  /// masters would command it.
+  Result<void> enable();
+
+  /// The speed below which the motor counts as standing still, in the unit of 606Ch.
+  void set_standstill(double speed) { standstill_ = speed; }
+
+  /// Ends the motion; the first call does it, further ones tell the same.
+  MotionEnd end();
+  /// Leaves the drive energised and its objects as they are, because that was asked for. Takes the watchdog
+  /// back.
+  Result<void> release();
+
+ private:
+  struct Changed {
+    ObjectAddress object;
+    Bytes before;
+  };
+
+  Result<void> write(ObjectAddress object, const Bytes& data);
+  void rehearse_up(const std::vector<drive::PowerStep>& path);
+  void rehearse_end();
+  bool stays_new(const Changed& changed) const;
+  PowerDownPlan way_down();
+  void bring_down();
+  void put_back();
+  void put_back(const Changed& changed);
+  void hear(const can::Frame& frame);
+  /// Sends a controlword without waiting for anything and without memory.
+  void say(std::uint8_t controlword) noexcept;
+  void tell_foreign_writes();
+  void disarm();
+  void put_node_back();
+  void verify();
+  void note(const std::string& what, const Error& error);
+
+  session::Session* session_;
+  const MotionUnits* units_;
+  std::uint8_t node_;
+  Power power_;
+  session::Protection::Hold hold_;
+  std::vector<Changed> changed_;
+  std::optional<WatchdogPlan> watchdog_;
+  bool started_ = false;  ///< It was sent NMT "start".
+  std::optional<canopen::NmtState> nmt_before_;
+  bool energised_ = false;  ///< It was commanded up, so it may be.
+  bool lost_ = false;       ///< The drive or the bus does not answer any more.
+  bool powered_ = false;    ///< Its power could not be taken away.
+  std::optional<double> standstill_;
+  std::optional<MotionEnd> end_;
+  MotionEnd result_;
+  std::set<ObjectAddress> foreign_;  ///< Of those that it changes, what another master wrote since.
+  session::Hearing hearing_;
+  session::Rehearsal* rehearsal_ = nullptr;
+};
+
+}  // namespace servoctl::motion

@@ -1,0 +1,209 @@
+// How a motion ends: the way down to a drive without power that is as it was.
+#include <fmt/format.h>
+#include <cmath>
+#include <exception>
+#include <utility>
+
+#include "drive/standard_objects.hpp"
+#include "motion/motion_guard.hpp"
+#include "motion/operation_mode.hpp"
+#include "session/link_wait.hpp"
+#include "session/option_scope.hpp"
+
+namespace servoctl::motion {
+namespace {
+
+using drive::DriveState;
+
+constexpr Duration kPause = std::chrono::milliseconds(10);
+/// Longest wait for one answer while it is stopped: a drive that is lost is left to its own watchdog soon.
+constexpr Duration kPatience = std::chrono::milliseconds(200);
+
+bool is_lost(const Error& error) { return error.code == Errc::timeout || error.code == Errc::bus; }
+
+}  // namespace
+
+/// Where it is not known in which state it was, it is not taken out of another master's hands.
+void MotionGuard::put_node_back() {
+  if (!std::exchange(started_, false)) return;
+  if (!nmt_before_) {
+    result_.notes.emplace_back(
+        "the node was started (NMT) and stays operational: its state before is not known");
+    return;
+  }
+  const auto sent = session_->send(canopen::nmt_frame(canopen::NmtCommand::enter_pre_operational, node_));
+  if (!sent) note("the node could not be put back to pre-operational", sent.error());
+}
+
+/// Halt where there is one, target to zero, a quick stop when that does not help, then 07h and 00h.
+PowerDownPlan MotionGuard::way_down() {
+  PowerDownPlan plan;
+  plan.node = node_;
+  plan.aim = PowerAim::stop_and_disable;
+  const auto& rules = units_->profile().rules.motion;
+  auto& gentle = plan.gentle.emplace();
+  gentle.halt = rules.halt;
+  for (const auto& [mode, target] : {std::pair{rules.velocity, objects::kTargetVelocity},
+                                     std::pair{rules.torque, objects::kTargetTorque}}) {
+    if (!mode) continue;
+    const auto size = od::size_of(units_->meaning(target).type).value_or(4);
+    gentle.targets.emplace_back(static_cast<std::int8_t>(*mode),
+                                session::SdoRequest{node_, target, Bytes(size, 0)});
+  }
+  plan.speed = [this](ByteSpan bytes) -> std::optional<double> {
+    const auto speed = units_->physical(objects::kVelocityActual, bytes);
+    return speed ? std::optional(std::abs(speed->value)) : std::nullopt;
+  };
+  plan.standstill = standstill_.value_or(0);
+  // A drive that cannot be reached is left to its own watchdog.
+  plan.on_silence = [this] { disarm(); };
+  return plan;
+}
+
+void MotionGuard::bring_down() {
+  const session::Hurry hurry(*session_, kPatience, 1);
+  std::vector<PowerDownPlan> plans;
+  plans.push_back(way_down());
+  const auto done = std::move(take_down(*session_, std::move(plans)).front());
+  result_.stopped = done.stopped;
+  result_.quick_stop = done.quick_stop;
+  lost_ = done.silent;
+  powered_ = !done.is_without_power();
+  for (const auto& means : done.notes) result_.notes.push_back(means);
+  if (done.ignored > 0)
+    result_.left.push_back(fmt::format(
+        "it did not obey 0000h, which was written {} times: whatever state it is in now was not commanded",
+        done.ignored));
+  else if (!done.outcome)
+    result_.left.push_back(
+        (powered_ ? "its power could not be taken away: " : "its last word was not taken: ") +
+        done.outcome.error().message);
+  if (lost_) disarm();
+}
+
+void MotionGuard::note(const std::string& what, const Error& error) {
+  result_.left.push_back(fmt::format("{}: {}", what, error.message));
+}
+
+/// Some drives take a refused write for a fault.
+bool MotionGuard::stays_new(const Changed& changed) const {
+  const auto meaning = units_->meaning(changed.object);
+  const auto value = od::decode(meaning.type, changed.before);
+  return meaning.type_known && value && !drive::check_limits(meaning, *value);
+}
+
+void MotionGuard::put_back() {
+  for (auto changed = changed_.rbegin(); changed != changed_.rend(); ++changed) {
+    // Its old targets and an old watchdog are nothing for a drive that still has its power.
+    if (lost_ || powered_) {
+      result_.left.push_back(fmt::format("object {} was not put back to {}", to_string(changed->object),
+                                         to_hex(changed->before)));
+      continue;
+    }
+    if (stays_new(*changed)) {
+      result_.notes.push_back(
+          fmt::format("object {} keeps its new value: the one before, {}, is out of its range",
+                      to_string(changed->object), to_hex(changed->before)));
+      continue;
+    }
+    put_back(*changed);
+  }
+  changed_.clear();
+}
+
+/// What the drive acknowledges is read as well: it may not have done it, and another master may use it.
+void MotionGuard::put_back(const Changed& changed) {
+  session::LinkWait link(*session_,
+                         fmt::format("putting object {} of node {} back", to_string(changed.object), node_));
+  auto done = session_->download(node_, changed.object, changed.before);
+  while (!done && done.error().code == Errc::bus && link.comes_back(done.error()))
+    done = session_->download(node_, changed.object, changed.before);
+  const auto what =
+      fmt::format("object {} could not be put back to {}", to_string(changed.object), to_hex(changed.before));
+  if (!done) {
+    lost_ = lost_ || is_lost(done.error());
+    return note(what, done.error());
+  }
+  const auto now_holds = session_->upload(node_, changed.object);
+  if (now_holds && *now_holds == changed.before) return;
+  if (!now_holds && now_holds.error().code == Errc::sdo_abort)
+    return;  // The drive has taken it, and tells no more.
+  if (!now_holds) return note(what + " for certain: it was not read back", now_holds.error());
+  result_.left.push_back(fmt::format("{}: it was written and reads {}; does another master use the drive?",
+                                     what, to_hex(*now_holds)));
+}
+
+void MotionGuard::tell_foreign_writes() {
+  for (const auto object : foreign_)
+    result_.left.push_back(
+        fmt::format("another master wrote object {} meanwhile: what it held before may be lost, and what it "
+                    "holds now is not known "
+                    "to be right",
+                    to_string(object)));
+  foreign_.clear();
+}
+
+void MotionGuard::disarm() {
+  if (!watchdog_) return;
+  session_->stop_heartbeat();
+  if (watchdog_->kind == WatchdogPlan::Kind::guarding) session_->stop_guarding();
+  watchdog_.reset();
+}
+
+void MotionGuard::verify() {
+  const auto end = session_->now() + Power::kPatience;
+  for (;;) {
+    const auto word = power_.statusword();
+    if (!word) return note("the statusword could not be read", word.error());
+    result_.statusword = *word;
+    result_.state = drive::decode_state(*word);
+    result_.verified = is_without_power(result_.state);
+    // A fault reaction takes its time.
+    if (result_.verified || session_->now() >= end || !pause(*session_, kPause)) return;
+  }
+}
+
+MotionEnd MotionGuard::end() {
+  if (end_) return *end_;
+  if (rehearsal_ != nullptr) {
+    rehearse_end();
+    end_ = result_;
+    hold_.release();
+    return *end_;
+  }
+  const session::Deaf deaf(*session_);
+  if (energised_) bring_down();
+  put_back();
+  put_node_back();
+  disarm();
+  verify();
+  tell_foreign_writes();
+  if (!result_.verified) session_->energised().insert(node_);
+  end_ = result_;
+  hold_.release();
+  return *end_;
+}
+
+Result<void> MotionGuard::release() {
+  if (rehearsal_ != nullptr) {
+    end_ = result_;
+    hold_.release();
+    return {};
+  }
+  const session::Deaf deaf(*session_);
+  Result<void> done;
+  for (const auto& changed : changed_) {
+    if (changed.object.index < 0x1000 || changed.object.index >= 0x2000) continue;
+    done = session_->download(node_, changed.object, changed.before);
+  }
+  disarm();
+  changed_.clear();
+  energised_ = false;
+  session_->energised().insert(node_);
+  result_.state = power_.state().value_or(DriveState::unknown);
+  end_ = result_;
+  hold_.release();
+  return done;
+}
+
+}  // namespace servoctl::motion

@@ -1,0 +1,212 @@
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+
+#include "base/number.hpp"
+#include "drive/standard_objects.hpp"
+#include "motion/motion_kinds.hpp"
+#include "motion/operation_mode.hpp"
+
+namespace servoctl::motion {
+namespace {
+
+/// Methods that take the present position for home (CiA 402-2): they may be done before anybody looks.
+constexpr std::array<std::int64_t, 2> kAtOnce{35, 37};
+constexpr Duration kStart = std::chrono::seconds(1);
+constexpr double kNearDegrees = 1;
+constexpr double kNearCounts = 100;
+/// CiA 402-2, 6098h: no homing operation.
+constexpr std::int64_t kNoMethod = 0;
+/// To one end of the window, from there to the other one.
+constexpr double kWindows = 3;
+/// The index pulse comes once in a turn; the switch may have to be left first.
+constexpr double kTurns = 2;
+constexpr double kDegrees = 360;
+constexpr Duration kSettling = std::chrono::seconds(5);
+
+bool takes_present_position(const MotionPlan& plan) {
+  return std::find(kAtOnce.begin(), kAtOnce.end(), static_cast<std::int64_t>(plan.value)) != kAtOnce.end();
+}
+
+class Homing {
+ public:
+  Homing(Motion& motion, const MotionPlan& plan) : motion_(&motion), plan_(&plan) {}
+
+  Result<void> run() {
+    const auto before = motion_->watch([](const MotionSample&) -> Result<bool> { return true; }, {});
+    if (!before) return tl::unexpected<Error>(before.error());
+    // "Homed" may stand there from an earlier run: it counts when it was seen to go.
+    const auto word_before = motion_->monitor().samples().back().statusword;
+    begun_ = !is_done(word_before);
+    stale_error_ = is_error(word_before);
+    started_at_ = motion_->session().now();
+    for (const auto word : motion_->rules().start_homing)
+      if (const auto written = motion_->command(word); !written) return written;
+    const auto ended = motion_->watch([this](const MotionSample& s) { return look(s); }, plan_->longest);
+    if (!ended) return tl::unexpected<Error>(ended.error());
+    if (*ended) return {};
+    return fail(
+        motion_->error(Errc::negative,
+                       fmt::format("found no home in {} s; it is stopped now",
+                                   std::chrono::duration<double>(plan_->longest).count()),
+                       "does the switch or the index pulse come at all? `--within` gives it more time"));
+  }
+
+ private:
+  bool is_done(std::uint16_t word) const {
+    const auto& rules = motion_->rules();
+    return (word & rules.homing_done_mask) == rules.homing_done;
+  }
+
+  bool is_error(std::uint16_t word) const { return (word & motion_->rules().homing_error) != 0; }
+
+  Result<bool> look(const MotionSample& sample) {
+    stale_error_ = stale_error_ && is_error(sample.statusword) && sample.time - started_at_ < kStart;
+    if (is_error(sample.statusword) && !stale_error_)
+      return fail(motion_->error(
+          Errc::negative, fmt::format("ended homing with an error (statusword 0x{:04X})", sample.statusword),
+          "switch stuck, wrong method or a limit in the way; `fault show` may tell more"));
+    const bool done = is_done(sample.statusword);
+    begun_ = begun_ || !done;
+    if (done && begun_) return motion_->stands_still(sample);
+    if (begun_ || sample.time - started_at_ < kStart) return false;
+    if (takes_present_position(*plan_) && motion_->stands_still(sample) && is_at_offset(sample)) return true;
+    return fail(motion_->error(Errc::negative,
+                               "does not begin to look for home: what it says is from an earlier run",
+                               "is this method one the drive knows (6098h)?"));
+  }
+
+  /// Where it stands is home now, so its position is the offset; its sign differs from drive to drive.
+  bool is_at_offset(const MotionSample& sample) {
+    const auto& units = motion_->units();
+    const auto position = sample[Channel::position];
+    if (!position || !units.has(objects::kHomeOffset) ||
+        units.unit(objects::kHomeOffset) != units.unit(objects::kPositionActual))
+      return true;
+    const auto answer = motion_->session().upload(motion_->node(), objects::kHomeOffset);
+    const auto offset = answer ? units.physical(objects::kHomeOffset, *answer) : std::nullopt;
+    const double near = units.unit(objects::kPositionActual) == "deg" ? kNearDegrees : kNearCounts;
+    return !offset || std::abs(std::abs(*position) - std::abs(offset->value)) <= near;
+  }
+
+  Motion* motion_;
+  const MotionPlan* plan_;
+  bool begun_ = false;
+  bool stale_error_ = false;
+  TimePoint started_at_{};
+};
+
+/// A setting the user gave goes into the plan.
+Result<void> add(const Motion& motion, ObjectAddress object, const std::string& text, MotionPlan& plan) {
+  if (text.empty()) return {};
+  if (!motion.units().has(object))
+    return fail(motion.error(Errc::usage, fmt::format("this family has no object {}", to_string(object))));
+  const auto data = motion.units().parse(object, text);
+  if (!data) return tl::unexpected<Error>(data.error());
+  plan.settings.emplace_back(object, data->data);
+  plan.tell(data->rounding);
+  return {};
+}
+
+/// The number that will stand in the object: the new one, else what the drive holds.
+Result<Bytes> value_of(Motion& motion, ObjectAddress object, const MotionPlan& plan) {
+  for (const auto& [changed, data] : plan.settings)
+    if (changed == object) return data;
+  return motion.session().upload(motion.node(), object);
+}
+
+Result<void> check_method(Motion& motion, MotionPlan& plan) {
+  const auto method = value_of(motion, objects::kHomingMethod, plan);
+  if (!method) return tl::unexpected<Error>(method.error());
+  const auto meaning = motion.units().meaning(objects::kHomingMethod);
+  const auto value = od::decode(meaning.type, *method);
+  if (!value) return tl::unexpected<Error>(value.error());
+  const auto number = static_cast<std::int64_t>(od::to_double(*value));
+  const auto& nothing = motion.rules().no_homing;
+  if (number == kNoMethod || std::find(nothing.begin(), nothing.end(), number) != nothing.end())
+    return fail(motion.error(
+        Errc::refused, fmt::format("homing method {} (6098h) does nothing: no home would be found", number),
+        fmt::format("say which: `home METHOD -n {}`; {}, `write 0x6098 METHOD` sets one", motion.node(),
+                    meaning.labels != nullptr ? "`objects 0x6098` lists them" : "the manual lists them")));
+  const auto* label = drive::label_of(meaning, *value);
+  if (meaning.labels != nullptr && label == nullptr)
+    return fail(motion.error(Errc::refused, fmt::format("this family has no homing method {}", number),
+                             "`objects 0x6098` lists them"));
+  plan.value = static_cast<double>(number);
+  plan.summary = fmt::format("home by method {}{}", number, label != nullptr ? " " + label->label : "");
+  return {};
+}
+
+/// One of the two speeds, which must be known and allowed.
+Result<Physical> speed_of(Motion& motion, ObjectAddress object, const MotionPlan& plan) {
+  const auto data = value_of(motion, object, plan);
+  if (!data) return tl::unexpected<Error>(data.error());
+  const auto speed = motion.units().physical(object, *data);
+  if (!speed || speed->unit != motion.units().unit(objects::kTargetVelocity))
+    return fail(motion.error(
+        Errc::refused,
+        fmt::format("its homing speed ({}) cannot be compared with its speed limit", to_string(object)),
+        motion.is_told_turn() ? ""
+                              : "add --turn (increments of 6064h in a turn), if the drive does not tell it"));
+  if (const auto allowed = motion.check_speed(speed->value); !allowed)
+    return tl::unexpected<Error>(allowed.error());
+  if (speed->value > 0 || takes_present_position(plan)) return *speed;
+  const bool fast = object == objects::kHomingSpeedSwitch;
+  return fail(motion.error(Errc::refused,
+                           fmt::format("its homing speed ({}) is {} {}: it would never get there",
+                                       to_string(object), number_text(speed->value), speed->unit),
+                           fmt::format("add {}; `write {} …` sets it",
+                                       fast ? "--speed 30rpm" : "--search 6rpm", to_string(object))));
+}
+
+/// From the way that --window leaves it and its speeds; a way that is not known has a time of its own.
+Duration longest_homing(Motion& motion, double fast, double slow) {
+  const auto window = motion.limits().travel;
+  const bool in_degrees = motion.units().unit(objects::kPositionActual) == "deg";
+  if (!window || !in_degrees) return kLongestHoming;
+  const auto there = motion.duration(*window * kWindows, fast);
+  const auto index = motion.duration(kDegrees * kTurns, slow);
+  return there && index ? *there + *index + kSettling : kLongestHoming;
+}
+
+}  // namespace
+
+Result<MotionPlan> plan_home(Motion& motion, const Home& home) {
+  const auto mode = motion.rules().homing;
+  if (!mode)
+    return fail(motion.error(Errc::refused, "this family cannot home by itself: it has no such mode"));
+  MotionPlan plan;
+  plan.mode = *mode;
+  for (const auto& [object, text] :
+       {std::pair(objects::kHomingMethod, &home.method), std::pair(objects::kHomingSpeedSwitch, &home.fast),
+        std::pair(objects::kHomingSpeedZero, &home.slow), std::pair(objects::kHomeOffset, &home.offset)})
+    if (const auto added = add(motion, object, *text, plan); !added)
+      return tl::unexpected<Error>(added.error());
+  if (const auto known = check_method(motion, plan); !known) return tl::unexpected<Error>(known.error());
+  const auto fast = speed_of(motion, objects::kHomingSpeedSwitch, plan);
+  if (!fast) return tl::unexpected<Error>(fast.error());
+  auto slow = *fast;
+  if (motion.units().has(objects::kHomingSpeedZero)) {
+    const auto told = speed_of(motion, objects::kHomingSpeedZero, plan);
+    if (!told) return tl::unexpected<Error>(told.error());
+    slow = *told;
+  }
+  plan.speed = std::max(fast->value, slow.value);
+  plan.unit = fast->unit;
+  plan.longest = home.longest.value_or(longest_homing(motion, fast->value, slow.value));
+  plan.summary +=
+      fmt::format(" at {} and {} {}", number_text(fast->value), number_text(slow.value), fast->unit);
+  for (const auto word : motion.rules().start_homing)
+    plan.moving.emplace_back(objects::kControlword, store_le(word, 2));
+  motion.set_standstill(plan.speed);
+  motion.supervise_overspeed(plan.speed);
+  if (const auto rate = motion.rate()) motion.monitor().expect_new_zero(*rate);
+  return plan;
+}
+
+MotionReport run_home(Motion& motion, const Home&, const MotionPlan& plan) {
+  auto begun = motion.begin(plan.mode, plan.settings);
+  return motion.finish(begun ? Homing(motion, plan).run() : begun);
+}
+
+}  // namespace servoctl::motion

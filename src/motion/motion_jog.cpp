@@ -1,0 +1,197 @@
+#include <fmt/format.h>
+#include <cmath>
+
+#include "base/duration.hpp"
+#include "base/number.hpp"
+#include "drive/standard_objects.hpp"
+#include "motion/motion_judgement.hpp"
+#include "motion/motion_kinds.hpp"
+
+namespace servoctl::motion {
+namespace {
+
+constexpr Duration kSettling = std::chrono::milliseconds(1500);
+/// So long after the command a motor that obeys turns, and the right way round.
+constexpr Duration kMostDelay = std::chrono::milliseconds(1500);
+constexpr double kTurns = 0.1;  ///< Part of the commanded speed that counts as turning.
+constexpr int kWrongLooks = 3;  ///< Samples in a row that turn the wrong way.
+constexpr double kDegrees = 360;
+constexpr Duration kForEver = std::chrono::hours(24);
+
+class Jogging {
+ public:
+  Jogging(Motion& motion, const Jog& jog, const MotionPlan& plan)
+      : motion_(&motion), jog_(&jog), plan_(&plan) {}
+
+  Result<void> run() {
+    if (!jog_->keys)
+      if (const auto started = turn(1); !started) return started;
+    const auto told_at = motion_->session().now();
+    const auto watched =
+        motion_->watch([this](const MotionSample& s) { return look(s); }, jog_->length.value_or(longest()));
+    if (!watched) return tl::unexpected<Error>(watched.error());
+    if (!*watched && jog_->turns)
+      return fail(motion_->error(Errc::negative, "did not turn that far in the time it needs",
+                                 "is it blocked, or is its speed limited?"));
+    const auto stopped_at = motion_->session().now();
+    auto rested = rest();
+    if (rested) judge(told_at, stopped_at);
+    return rested;
+  }
+  MotionJudgement& judgement() { return judgement_; }
+
+ private:
+  void judge(TimePoint told_at, TimePoint stopped_at) {
+    if (left_alone_)
+      judgement_.unchecked.push_back(fmt::format("no key was held for {}: it has ended by itself",
+                                                 servoctl::to_string(kLongestWithoutKey)));
+    if (jog_->keys) return;
+    judgement_.judge_speed(*motion_, *plan_, told_at, stopped_at);
+    if (jog_->turns) judgement_.judge_way(*motion_, *plan_);
+  }
+
+  Duration longest() const {
+    if (!jog_->turns) return kForEver;
+    return motion_->duration(plan_->way, plan_->speed).value_or(kForEver) * 3 / 2 + kSettling;
+  }
+
+  Result<void> turn(int direction) {
+    direction_ = direction;
+    since_ = motion_->session().now();
+    wrong_looks_ = 0;
+    Bytes data(plan_->command.size(), 0);
+    if (direction == 1) data = plan_->command;
+    if (direction == -1)
+      data = motion_->units().bytes(objects::kTargetVelocity, -plan_->value).value_or(data);
+    return motion_->write(objects::kTargetVelocity, data);
+  }
+
+  Result<bool> look(const MotionSample& sample) {
+    if (const auto follows = check_following(sample); !follows) return tl::unexpected<Error>(follows.error());
+    if (jog_->keys) return look_at_keys();
+    return jog_->turns && is_far_enough(sample);
+  }
+
+  Result<bool> look_at_keys() {
+    const auto key = jog_->keys();
+    if (key == HoldKey::stop) return true;
+    const int wanted = key == HoldKey::plus ? 1 : key == HoldKey::minus ? -1 : 0;
+    const auto now = motion_->session().now();
+    if (wanted != 0 || !held_at_) held_at_ = now;
+    if (now - *held_at_ >= kLongestWithoutKey) {
+      left_alone_ = true;
+      return true;
+    }
+    if (wanted == direction_) return false;
+    if (const auto done = turn(wanted); !done) return tl::unexpected<Error>(done.error());
+    return false;
+  }
+
+  /// With the way it still needs to come to rest.
+  bool is_far_enough(const MotionSample& sample) {
+    const auto position = sample[Channel::position];
+    if (!position) return false;
+    if (!begin_) begin_ = *position;
+    const double seconds = std::chrono::duration<double>(sample.time - last_time_).count();
+    const double rate = last_ && seconds > 0 ? std::abs(*position - *last_) / seconds : 0;
+    last_ = *position;
+    last_time_ = sample.time;
+    return std::abs(*position - *begin_) + rate * Motion::kRampSeconds / 2 >= plan_->way;
+  }
+
+  Result<void> check_following(const MotionSample& sample) {
+    const auto speed = sample[Channel::velocity];
+    if (direction_ == 0 || !speed) return {};
+    const double wanted = plan_->value * direction_;
+    const bool wrong = *speed * wanted < 0 && std::abs(*speed) > std::abs(wanted) * kTurns;
+    // After a change of direction it turns the old way for a while.
+    const bool settled = sample.time - since_ >= kMostDelay;
+    wrong_looks_ = wrong && (settled || !turned_before_) ? wrong_looks_ + 1 : 0;
+    turned_before_ = turned_before_ || (!wrong && std::abs(*speed) > std::abs(wanted) * kTurns);
+    if (wrong_looks_ >= kWrongLooks)
+      return fail(motion_->error(Errc::negative,
+                                 fmt::format("turns the wrong way: {} {} instead of {}", number_text(*speed),
+                                             plan_->unit, number_text(wanted)),
+                                 "encoder direction, polarity (607Eh) or motor wiring"));
+    if (settled && std::abs(*speed) < std::abs(wanted) * kTurns)
+      return fail(motion_->error(Errc::negative, "does not turn although it was told to",
+                                 "is it blocked, is the brake on, or does a limit hold it back?"));
+    return {};
+  }
+
+  Result<void> rest() {
+    if (direction_ != 0)
+      if (const auto told = turn(0); !told) return told;
+    return motion_->wait_for_rest(kSettling);
+  }
+
+  Motion* motion_;
+  const Jog* jog_;
+  const MotionPlan* plan_;
+  int direction_ = 0;
+  TimePoint since_{};
+  bool turned_before_ = false;
+  int wrong_looks_ = 0;
+  std::optional<double> begin_;
+  std::optional<double> last_;
+  TimePoint last_time_{};
+  std::optional<TimePoint> held_at_;  ///< When a key was held last.
+  bool left_alone_ = false;
+  MotionJudgement judgement_;
+};
+
+/// The way of so many turns in the unit of the position.
+Result<double> way_of(const Motion& motion, double turns) {
+  if (motion.units().unit(objects::kPositionActual) == "deg") return std::abs(turns) * kDegrees;
+  return fail(motion.error(Errc::usage, "does not tell how many counts a turn of its motor has",
+                           "add --turn (increments of 6064h in a turn), or say --for TIME"));
+}
+
+std::string until_text(const Jog& jog) {
+  if (jog.length) return "for " + servoctl::to_string(*jog.length);
+  if (jog.turns) return fmt::format("for {} turns", number_text(*jog.turns));
+  return "while an arrow key is held";
+}
+
+}  // namespace
+
+Result<MotionPlan> plan_jog(Motion& motion, const Jog& jog) {
+  const auto mode = motion.rules().velocity;
+  if (!mode) return fail(motion.error(Errc::refused, "this family has no velocity mode"));
+  MotionPlan plan;
+  plan.mode = *mode;
+  const auto data = motion.units().parse(objects::kTargetVelocity, jog.speed);
+  if (!data) return tl::unexpected<Error>(data.error());
+  const auto& speed = data->value;
+  if (speed.value == 0) return fail(Errc::usage, "a speed of 0 does not move anything", "say how fast");
+  if (const auto allowed = motion.check_speed(speed.value); !allowed)
+    return tl::unexpected<Error>(allowed.error());
+  plan.command = data->data;
+  plan.tell(data->rounding);
+  plan.value = plan.speed = speed.value;
+  plan.unit = speed.unit;
+  if (const auto ramps =
+          motion.add_ramps(speed.value, {objects::kProfileAcceleration, objects::kProfileDeceleration}, plan);
+      !ramps)
+    return tl::unexpected<Error>(ramps.error());
+  if (jog.turns) {
+    const auto way = way_of(motion, *jog.turns);
+    if (!way) return tl::unexpected<Error>(way.error());
+    plan.way = *way;
+  }
+  plan.summary = fmt::format("turn at {} {} {}", number_text(speed.value), speed.unit, until_text(jog));
+  plan.moving = {{objects::kTargetVelocity, plan.command},
+                 {objects::kTargetVelocity, Bytes(plan.command.size(), 0)}};
+  motion.set_standstill(speed.value);
+  motion.supervise_overspeed(speed.value);
+  return plan;
+}
+
+MotionReport run_jog(Motion& motion, const Jog& jog, const MotionPlan& plan) {
+  if (auto begun = motion.begin(plan.mode, plan.settings); !begun) return motion.finish(std::move(begun));
+  Jogging jogging(motion, jog, plan);
+  auto done = jogging.run();
+  return jogging.judgement().into(motion.finish(std::move(done)));
+}
+
+}  // namespace servoctl::motion

@@ -1,0 +1,173 @@
+// What a motion must not exceed: by its user, by the drive, and because it is safe.
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+
+#include "base/number.hpp"
+#include "drive/standard_objects.hpp"
+#include "motion/motion.hpp"
+#include "session/option_scope.hpp"
+
+namespace servoctl::motion {
+namespace {
+
+/// What conversions of units may add to a number.
+constexpr double kRounding = 1 + 1e-6;
+/// From so many rpm on, the monitor of the speed and 606Ch must not differ by more than this factor.
+constexpr double kComparedRpm = 10;
+constexpr double kMostContradiction = 1.5;
+constexpr int kOddLooks = 2;
+/// Longest wait for one answer of a drive that moves.
+constexpr Duration kPatience = std::chrono::milliseconds(200);
+/// A torque in per cent is one of the rated torque.
+constexpr double kRatedTorque = 100;
+
+}  // namespace
+
+Result<void> Motion::read_limits() {
+  struct Row {
+    Channel channel;
+    std::string_view option;
+    const std::string* text;
+    std::optional<double>* out;
+  };
+  auto& limits = monitor_->limits();
+  for (const auto& row : {Row{Channel::torque, "--max-torque", &options_.max_torque, &limits.torque},
+                          Row{Channel::following_error, "--max-following-error",
+                              &options_.max_following_error, &limits.following_error},
+                          Row{Channel::position, "--window", &options_.window, &limits.travel}}) {
+    if (row.text->empty()) continue;
+    const auto object = object_of(row.channel);
+    // Of a torque that is asked for it is the ceiling as well; other motions are refused by check_speed().
+    if (row.channel == Channel::torque && !units_->has(object) && rules().torque) continue;
+    if (!units_->has(object))
+      return fail(Errc::usage,
+                  fmt::format("this family does not tell its {} ({})", name(row.channel), to_string(object)),
+                  "leave this limit out");
+    const auto value = parse_limit(object, row.option, *row.text);
+    if (!value) return tl::unexpected<Error>(value.error());
+    *row.out = *value;
+  }
+  if (options_.acceleration.empty()) return {};
+  const auto ramp = units_->parse(objects::kProfileAcceleration, options_.acceleration);
+  if (!ramp) return tl::unexpected<Error>(ramp.error());
+  if (ramp->value.value > 0) return {};
+  return fail(Errc::usage, fmt::format("--accel: '{}' is no ramp", options_.acceleration),
+              "a ramp is more than 0; it holds either way");
+}
+
+Result<double> Motion::parse_limit(ObjectAddress object, std::string_view option,
+                                   const std::string& text) const {
+  const auto value = units_->parse_physical(object, text);
+  if (!value) {
+    auto error = value.error();
+    error.message = fmt::format("{}: {}", option, error.message);
+    return fail(std::move(error));
+  }
+  if (value->value > 0) return value->value;
+  return fail(Errc::usage, fmt::format("{}: '{}' is no limit: it lets nothing move", option, text),
+              "a limit is more than 0; it holds either way");
+}
+
+std::optional<double> Motion::read_as(ObjectAddress as, ObjectAddress object) const {
+  if (!units_->has(object) || units_->unit(object) != units_->unit(as)) return std::nullopt;
+  const auto answer = session_->upload(node_, object);
+  const auto value = answer ? units_->physical(object, *answer) : std::nullopt;
+  return value && value->value > 0 ? std::optional(value->value) : std::nullopt;
+}
+
+/// Counts of a turn that were measured once may be those of another motor: what they make of 606Ch is held
+/// against the drive's own monitor, in every look.
+Result<void> Motion::check_learned(const MotionSample& sample) {
+  const auto speed = sample[Channel::velocity];
+  const auto& name = profile_->rules.learn.speed;
+  const auto monitor = units_->uses_learned() ? units_->object(name) : std::nullopt;
+  if (!monitor || !speed || units_->unit(objects::kVelocityActual) != "rpm") return {};
+  const session::Hurry hurry(*session_, kPatience, 1);
+  const auto answer = session_->upload(node_, *monitor);
+  if (!answer) return tl::unexpected<Error>(answer.error());
+  const auto shown = units_->physical(*monitor, *answer);
+  if (!shown) return {};
+  const double one = std::abs(*speed);
+  const double other = std::abs(shown->value);
+  const bool odd = std::max(one, other) >= kComparedRpm &&
+                   std::max(one, other) > kMostContradiction * std::min(one, other);
+  odd_looks_ = odd ? odd_looks_ + 1 : 0;
+  if (odd_looks_ < kOddLooks) return {};
+  return fail(error(Errc::negative,
+                    fmt::format("turns at {} rpm by {}, and at {} rpm by the kept counts of a turn",
+                                number_text(shown->value), name, number_text(*speed)),
+                    "is it another motor or drive? `units learn` measures it, `units forget` drops what is "
+                    "kept"));
+}
+
+std::optional<double> Motion::fastest() const {
+  std::optional<double> most;
+  for (const auto object : {objects::kMaxProfileVelocity, objects::kMaxMotorSpeed})
+    if (const auto speed = read_as(objects::kTargetVelocity, object))
+      most = std::min(*speed, most.value_or(*speed));
+  return most;
+}
+
+Result<double> Motion::find_speed_cap() {
+  const auto unit = units_->unit(objects::kTargetVelocity);
+  auto most = fastest();
+  if (!options_.speed_limit.empty()) {
+    const auto asked = parse_limit(objects::kTargetVelocity, "--limit", options_.speed_limit);
+    if (asked && most && *asked > *most) {
+      const auto numbers = told_apart(*asked, *most);
+      return fail(error(Errc::refused,
+                        fmt::format("the limit of {} {} is above what the drive allows, {} {}", numbers.first,
+                                    unit, numbers.second, unit),
+                        "607Fh and 6080h hold it"));
+    }
+    return asked;
+  }
+  const auto rated = units_->object(rules().rated_speed);
+  if (rated)
+    if (const auto speed = read_as(objects::kTargetVelocity, *rated))
+      most = std::min(*speed, most.value_or(*speed));
+  if (unit == "rpm") return std::min(kSafeRpm, most.value_or(kSafeRpm));
+  if (most) return *most * kSafePart;
+  return fail(Errc::usage, "what speed is safe cannot be told from this drive",
+              fmt::format("add --limit SPEED in {}", unit.empty() ? "the drive's own unit" : unit));
+}
+
+Result<void> Motion::check_speed(double speed) const {
+  if (!options_.max_torque.empty() && !units_->has(objects::kTorqueActual))
+    return fail(Errc::usage, "this family does not tell its torque (6077h): nobody would watch --max-torque",
+                "leave this limit out");
+  if (!speed_cap_) return tl::unexpected<Error>(speed_cap_.error());
+  if (std::abs(speed) <= *speed_cap_ * kRounding) return {};
+  const auto unit = units_->unit(objects::kTargetVelocity);
+  const auto numbers = told_apart(std::abs(speed), *speed_cap_);
+  return fail(error(
+      Errc::refused,
+      fmt::format("{} {} is above the limit of {} {}", numbers.first, unit, numbers.second, unit),
+      fmt::format("`--limit {}{}` raises it, when the machine may move that fast", numbers.first, unit)));
+}
+
+Result<double> Motion::torque_cap() const {
+  const auto unit = units_->unit(objects::kTargetTorque);
+  const auto most = read_as(objects::kTargetTorque, objects::kMaxTorque);
+  if (!options_.max_torque.empty()) {
+    const auto asked = parse_limit(objects::kTargetTorque, "--max-torque", options_.max_torque);
+    if (asked && most && *asked > *most * kRounding) {
+      const auto numbers = told_apart(*asked, *most);
+      return fail(error(Errc::refused,
+                        fmt::format("--max-torque of {} {} is above what the drive allows, {} {}",
+                                    numbers.first, unit, numbers.second, unit),
+                        "6072h holds it"));
+    }
+    return asked;
+  }
+  std::optional<double> rated;
+  if (unit == "%") rated = kRatedTorque;
+  if (const auto object = units_->object(rules().rated_torque))
+    rated = read_as(objects::kTargetTorque, *object);
+  if (rated) return std::min(*rated, most.value_or(*rated));
+  return fail(Errc::usage, "what torque is safe cannot be told from this drive",
+              fmt::format("add --max-torque TORQUE in {}", unit.empty() ? "the drive's own unit" : unit));
+}
+
+}  // namespace servoctl::motion

@@ -1,0 +1,193 @@
+#include "motion/motion_monitor.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+
+#include "base/number.hpp"
+#include "drive/standard_objects.hpp"
+#include "motion/power.hpp"
+#include "motion/producer_claim.hpp"
+#include "session/identify.hpp"
+#include "session/option_scope.hpp"
+#include "session/pdo_setup.hpp"
+
+namespace servoctl::motion {
+namespace {
+
+using canopen::NodeEvent;
+
+constexpr std::array kEvery{Channel::position, Channel::velocity, Channel::torque, Channel::following_error};
+
+/// Longest wait for one answer of a drive that moves: meanwhile nothing is supervised.
+constexpr Duration kPatience = std::chrono::milliseconds(200);
+
+/// Between two looks a motor may go so much farther than their speeds say.
+constexpr double kUnevenness = 2;
+
+tl::unexpected<Error> stopped_by(std::uint8_t node, const std::string& what, std::string hint) {
+  return fail(session::drive_error(Errc::negative, node, what, std::move(hint)));
+}
+
+}  // namespace
+
+std::string_view name(Channel channel) {
+  constexpr std::array<std::string_view, kChannels> kNames{"position", "velocity", "torque",
+                                                           "following_error"};
+  return kNames[static_cast<std::size_t>(channel)];
+}
+
+ObjectAddress object_of(Channel channel) {
+  constexpr std::array<ObjectAddress, kChannels> kObjects{objects::kPositionActual, objects::kVelocityActual,
+                                                          objects::kTorqueActual, objects::kFollowingError};
+  return kObjects[static_cast<std::size_t>(channel)];
+}
+
+MotionMonitor::MotionMonitor(session::Session& session, const MotionUnits& units, std::uint8_t node)
+    : session_(&session), units_(&units), node_(node) {
+  for (const auto channel : kEvery)
+    if (units.has(object_of(channel))) channels_.push_back(channel);
+}
+
+void MotionMonitor::find_tpdos() {
+  if (tpdos_) return;
+  const auto pdos = session::read_pdos(*session_, &units_->profile(), node_);
+  std::vector<ObjectAddress> objects{objects::kStatusword};
+  for (const auto channel : channels_) objects.push_back(object_of(channel));
+  tpdos_ = std::make_unique<session::TpdoValues>(
+      *session_, pdos ? std::span(*pdos) : std::span<const canopen::Pdo>(), objects);
+  // The session learns from it under which CAN-ID emergencies come.
+  if (units_->has(objects::kEmergencyCobId)) (void)session_->upload(node_, objects::kEmergencyCobId);
+}
+
+std::vector<Result<Bytes>> MotionMonitor::look(std::span<const ObjectAddress> objects) {
+  const auto since = std::max(told_at_, session_->now() - kPeriod);
+  std::vector<Result<Bytes>> out;
+  std::vector<session::SdoRequest> requests;
+  for (const auto object : objects) {
+    auto brought = tpdos_ ? tpdos_->take(object, since) : std::nullopt;
+    if (brought)
+      ++by_pdo_;
+    else
+      requests.push_back({.node = node_, .object = object, .size = object == objects::kStatusword ? 2U : 0U});
+    out.emplace_back(brought ? std::move(*brought) : Bytes{});
+  }
+  const session::Hurry hurry(*session_, kPatience, 1);
+  const auto answers = session_->transfer(requests);
+  for (std::size_t i = 0, asked = 0; i < objects.size() && asked < requests.size(); ++i)
+    if (requests[asked].object == objects[i]) out[i] = answers[asked++];
+  return out;
+}
+
+Result<MotionSample> MotionMonitor::sample() {
+  std::vector<ObjectAddress> wanted{objects::kStatusword};
+  for (const auto channel : channels_) wanted.push_back(object_of(channel));
+  const auto answers = look(wanted);
+  if (!answers[0]) return tl::unexpected<Error>(answers[0].error());
+  MotionSample out;
+  out.time = session_->now();
+  out.statusword = static_cast<std::uint16_t>(load_le(*answers[0]));
+  std::vector<Channel> known;
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    const auto& answer = answers[i + 1];
+    if (!answer && answer.error().code != Errc::sdo_abort) return tl::unexpected<Error>(answer.error());
+    if (!answer) continue;  // The dictionary promises more than the drive has.
+    known.push_back(channels_[i]);
+    if (const auto number = units_->physical(object_of(channels_[i]), *answer))
+      out.values[static_cast<std::size_t>(channels_[i])] = number->value;
+  }
+  channels_ = std::move(known);
+  if (!begin_) begin_ = out[Channel::position];
+  if (rate_ && !samples_.empty()) follow_zero(out);
+  samples_.push_back(out);
+  for (const auto& done : {session::refuse_duplicate(*session_, node_), check_producer(*session_),
+                           check_events(), check_state(out), check_limits(out)})
+    if (!done) return tl::unexpected<Error>(done.error());
+  return out;
+}
+
+void MotionMonitor::follow_zero(const MotionSample& sample) {
+  const auto& last = samples_.back();
+  const auto here = sample[Channel::position];
+  const auto there = last[Channel::position];
+  const auto speed = sample[Channel::velocity];
+  if (!here || !there || !speed) return;
+  const double seconds = std::chrono::duration<double>(sample.time - last.time).count();
+  const double fastest = std::max(std::abs(*speed), std::abs(last[Channel::velocity].value_or(0)));
+  const double longest = fastest * *rate_ * seconds * kUnevenness + *rate_;
+  if (std::abs(*here - *there) > longest) begin_ = *begin_ + *here - *there;
+}
+
+Result<void> MotionMonitor::wait_for_next() {
+  const auto due = samples_.empty() ? session_->now() : samples_.back().time + kPeriod;
+  const auto waited = session_->wait([] { return false; }, due);
+  if (!waited) return tl::unexpected<Error>(waited.error());
+  return {};
+}
+
+Result<void> MotionMonitor::check_events() {
+  Result<void> out;
+  for (const auto& event : session_->take_events()) {
+    events_.push_back(event);
+    if (event.node != node_ || !out) continue;
+    if (const auto* told = std::get_if<canopen::Emergency>(&event.what)) {
+      const auto& profile = units_->profile();
+      const auto faults = drive::faults_of(profile.faults, profile.rules.emergency, told->code, told->vendor);
+      const bool message = !faults.empty() && faults.front()->kind == drive::Fault::Kind::status;
+      if (told->code != 0 && !message)
+        out = stopped_by(node_, fmt::format("sent an emergency, 0x{:04X}, while it moved", told->code),
+                         "`fault show` tells what it means");
+    }
+    if (std::holds_alternative<NodeEvent::BootUp>(event.what))
+      out = stopped_by(node_, "restarted while it moved", "is its supply steady?");
+    if (std::holds_alternative<NodeEvent::HeartbeatLost>(event.what) ||
+        std::holds_alternative<NodeEvent::GuardingLost>(event.what))
+      out = fail(session::drive_error(Errc::timeout, node_, "its heartbeat was lost while it moved",
+                                      "check cable, termination and supply"));
+  }
+  return out;
+}
+
+Result<void> MotionMonitor::check_state(const MotionSample& sample) const {
+  const auto state = drive::decode_state(sample.statusword);
+  if (state == drive::DriveState::operation_enabled) return {};
+  return stopped_by(node_,
+                    fmt::format("left \"operation enabled\" while it moved: {} (statusword 0x{:04X})",
+                                drive::name(state), sample.statusword),
+                    "`fault show` tells a fault; an input, another master or the panel may have disabled it");
+}
+
+Result<void> MotionMonitor::check_limits(const MotionSample& sample) const {
+  const auto beyond = [&](Channel channel, std::optional<double> limit, double from, std::string_view what) {
+    const auto value = sample[channel];
+    if (!limit || !value || std::abs(*value - from) <= *limit) return Result<void>{};
+    const auto numbers = told_apart(*value - from, *limit);
+    return Result<void>(stopped_by(node_,
+                                   fmt::format("{} of {} {} is beyond its limit of {}", what, numbers.first,
+                                               units_->unit(object_of(channel)), numbers.second),
+                                   "the motion was stopped; raise the limit when it is meant"));
+  };
+  for (const auto& done :
+       {beyond(Channel::torque, limits_.torque, 0, "the torque"),
+        beyond(Channel::following_error, limits_.following_error, 0, "the following error"),
+        beyond(Channel::position, limits_.travel, begin_.value_or(0), "the way"),
+        beyond(Channel::velocity, limits_.speed, 0, "the speed")})
+    if (!done) return done;
+  return {};
+}
+
+std::vector<Series> MotionMonitor::series() const {
+  std::vector<Series> out;
+  for (const auto channel : kEvery) {
+    Series one{std::string(name(channel)), units_->unit(object_of(channel)), {}, {}};
+    for (const auto& sample : samples_) {
+      if (!sample[channel]) continue;
+      one.seconds.push_back(std::chrono::duration<double>(sample.time - samples_.front().time).count());
+      one.values.push_back(*sample[channel]);
+    }
+    if (!one.values.empty()) out.push_back(std::move(one));
+  }
+  return out;
+}
+
+}  // namespace servoctl::motion

@@ -1,0 +1,223 @@
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+
+#include "base/number.hpp"
+#include "drive/standard_objects.hpp"
+#include "motion/motion_judgement.hpp"
+#include "motion/motion_kinds.hpp"
+#include "motion/operation_mode.hpp"
+
+namespace servoctl::motion {
+namespace {
+
+constexpr std::uint16_t kEnabled = 0x000F;
+constexpr std::uint16_t kNewSetpoint = 0x001F;
+constexpr std::uint16_t kAcknowledged = 1U << 12U;
+constexpr std::uint16_t kFollowingErrorBit = 1U << 13U;
+
+constexpr Duration kHandshake = std::chrono::seconds(1);
+constexpr Duration kSettling = std::chrono::seconds(2);
+constexpr Duration kUnknownDuration = std::chrono::seconds(60);
+/// Nearer than this counts as there, unless 6067h says otherwise: a motor that holds a position trembles a
+/// little.
+constexpr double kNearDegrees = 0.5;
+constexpr double kNearCounts = 10;
+/// A motor that has not moved is not there, however short the way.
+constexpr double kMostOfWay = 0.5;
+constexpr double kDefaultPart = 0.2;
+
+double near(const MotionPlan& plan) { return plan.unit == "deg" ? kNearDegrees : kNearCounts; }
+
+class Moving {
+ public:
+  Moving(Motion& motion, const MotionPlan& plan) : motion_(&motion), plan_(&plan) {}
+
+  Result<void> run() {
+    if (const auto window = read_window(); !window) return window;
+    if (const auto written = motion_->write(objects::kTargetPosition, plan_->command); !written)
+      return written;
+    if (motion_->rules().handshake)
+      if (const auto taken = hand_over(); !taken) return taken;
+    const auto longest = motion_->duration(plan_->way, plan_->speed).value_or(kUnknownDuration) * 3 / 2;
+    const auto arrived =
+        motion_->watch([this](const MotionSample& s) { return is_there(s); }, longest + kSettling);
+    if (!arrived) return tl::unexpected<Error>(arrived.error());
+    if (*arrived) {
+      judgement_.judge_target(*motion_, *plan_, nearness());
+      return {};
+    }
+    return fail(
+        motion_->error(Errc::negative,
+                       fmt::format("did not arrive at {} {} in the time it needs; it is at {}",
+                                   number_text(plan_->value), plan_->unit, number_text(last_)),
+                       "is it blocked, is its speed limited, or is the position window (6067h) too narrow?"));
+  }
+  const MotionJudgement& judgement() const { return judgement_; }
+
+ private:
+  double nearness() const {
+    return plan_->way == 0 ? near(*plan_) : std::min(near(*plan_), std::abs(plan_->way) * kMostOfWay);
+  }
+
+  Result<void> read_window() {
+    window_ = near(*plan_);
+    if (!motion_->units().has(objects::kPositionWindow)) return {};
+    const auto answer = motion_->session().upload(motion_->node(), objects::kPositionWindow);
+    if (!answer && answer.error().code != Errc::sdo_abort) return tl::unexpected<Error>(answer.error());
+    const auto told = answer ? motion_->units().physical(objects::kPositionWindow, *answer) : std::nullopt;
+    if (told && told->unit == plan_->unit) window_ = std::max(window_, told->value);
+    if (plan_->way != 0) window_ = std::min(window_, std::abs(plan_->way) * kMostOfWay);
+    return {};
+  }
+
+  /// Bit 12 is low, bit 4 rises, bit 12 answers, bit 4 falls (CiA 402-2, 10.4.2). A drive that holds one
+  /// target only keeps bit 12 high until it is there.
+  Result<void> hand_over() {
+    const auto wait = [this](bool high) {
+      return motion_->watch(
+          [high](const MotionSample& s) -> Result<bool> {
+            return ((s.statusword & kAcknowledged) != 0) == high;
+          },
+          kHandshake);
+    };
+    for (const auto word : {kEnabled, kNewSetpoint}) {
+      if (const auto written = motion_->command(word); !written) return written;
+      const bool taken = word == kNewSetpoint;
+      const auto answered = wait(taken);
+      if (!answered) return tl::unexpected<Error>(answered.error());
+      if (!*answered)
+        return fail(
+            motion_->error(Errc::negative,
+                           taken ? "did not take the target: bit 12 of the statusword stayed low"
+                                 : "does not become ready for a target: bit 12 of the statusword stayed high",
+                           "does another master command it?"));
+    }
+    return motion_->command(kEnabled);
+  }
+
+  Result<bool> is_there(const MotionSample& sample) {
+    if (motion_->rules().handshake && (sample.statusword & kFollowingErrorBit) != 0)
+      return fail(motion_->error(Errc::negative, "reports a following error (bit 13 of the statusword)",
+                                 "is it blocked, or are its ramps too steep for the load?"));
+    const auto position = sample[Channel::position];
+    last_ = position.value_or(last_);
+    const bool near = !position || std::abs(*position - plan_->value) <= window_;
+    return (sample.statusword & kTargetReached) != 0 && near && motion_->stands_still(sample);
+  }
+
+  Motion* motion_;
+  const MotionPlan* plan_;
+  double window_ = 0;
+  double last_ = 0;
+  MotionJudgement judgement_;
+};
+
+/// What one count of 607Ah is worth in the unit people think in; numbers of 32 bits have steps that grow.
+double step_of(const MotionUnits& units, double place) {
+  const auto what = units.meaning(objects::kTargetPosition);
+  if (what.encoding != od::Encoding::plain) return std::max(1e-3, std::abs(place) * 1e-6);
+  const auto one = od::encode(what.type, od::Value(std::int64_t{1}));
+  const auto step = one ? units.physical(objects::kTargetPosition, *one) : std::nullopt;
+  return step ? std::abs(step->value) : 0;
+}
+
+/// The target, counted from where the motor stands when it is relative.
+Result<void> find_target(Motion& motion, const Move& move, MotionPlan& plan) {
+  const auto& units = motion.units();
+  const auto asked = units.parse_physical(objects::kTargetPosition, move.target);
+  if (!asked) return tl::unexpected<Error>(asked.error());
+  const auto answer = motion.session().upload(motion.node(), objects::kPositionActual);
+  if (!answer) return tl::unexpected<Error>(answer.error());
+  const auto here = units.physical(objects::kPositionActual, *answer).value_or(Physical{});
+  plan.value = asked->value + (move.relative ? here.value : 0);
+  plan.unit = asked->unit;
+  plan.way = plan.value - here.value;
+  plan.from = here.value;
+  const auto data = units.bytes(objects::kTargetPosition, plan.value);
+  const auto said = data ? units.physical(objects::kTargetPosition, *data) : std::nullopt;
+  const double step = step_of(units, plan.value);
+  // Kept within limits silently it would go elsewhere.
+  if (!said || std::abs(said->value - plan.value) > std::max(step, std::abs(plan.value) * 1e-6))
+    return fail(motion.error(
+        Errc::usage, fmt::format("{} {} is beyond what 607Ah can hold", number_text(plan.value), plan.unit)));
+  const double from = move.relative ? here.value : 0;
+  // What was told must not be lost in a step; the zero it is counted from is one.
+  const auto rounding = drive::judge_rounding({asked->value, said->value - from, step, plan.unit});
+  if (!rounding) return tl::unexpected<Error>(rounding.error());
+  if (*rounding) plan.tell(drive::to_string(**rounding));
+  plan.value = said->value;
+  plan.way = plan.value - here.value;
+  plan.command = *data;
+  return {};
+}
+
+/// The way was told, and agreed to, from where the motor stood then.
+Result<void> check_start(Motion& motion, const MotionPlan& plan) {
+  if (const auto heard = motion.session().listen(); !heard) return heard;
+  const auto answer = motion.session().upload(motion.node(), objects::kPositionActual);
+  if (!answer) return tl::unexpected<Error>(answer.error());
+  const auto here = motion.units().physical(objects::kPositionActual, *answer).value_or(Physical{});
+  if (!plan.from || std::abs(here.value - *plan.from) <= near(plan)) return {};
+  return fail(motion.error(Errc::refused,
+                           fmt::format("has moved since the way was told: it was at {} {} and is at {}",
+                                       number_text(*plan.from), plan.unit, number_text(here.value)),
+                           "nothing was moved; say it again"));
+}
+
+}  // namespace
+
+Result<MotionPlan> plan_move(Motion& motion, const Move& move) {
+  const auto mode = motion.rules().position;
+  if (!mode) return fail(motion.error(Errc::refused, "this family has no position mode"));
+  const auto& units = motion.units();
+  const auto speed_object = units.object(motion.rules().position_speed);
+  if (!speed_object || !units.has(*speed_object))
+    return fail(motion.error(Errc::refused, "this family tells no object for the speed of a move"));
+  MotionPlan plan;
+  plan.mode = *mode;
+  if (const auto found = find_target(motion, move, plan); !found) return tl::unexpected<Error>(found.error());
+  std::optional<Bytes> speed;
+  if (move.speed.empty()) {
+    const auto cap = motion.speed_cap();
+    if (!cap) return tl::unexpected<Error>(cap.error());
+    speed = units.bytes(*speed_object, *cap * kDefaultPart);
+  } else {
+    const auto asked = units.parse(*speed_object, move.speed);
+    if (!asked) return tl::unexpected<Error>(asked.error());
+    speed = asked->data;
+    plan.tell(asked->rounding);
+  }
+  const auto fast = speed ? units.physical(*speed_object, *speed) : std::nullopt;
+  if (!fast || fast->value <= 0)
+    return fail(Errc::usage, "a move needs a speed above 0", "add --speed 60rpm");
+  if (const auto allowed = motion.check_speed(fast->value); !allowed)
+    return tl::unexpected<Error>(allowed.error());
+  plan.speed = fast->value;
+  if (const auto ramps =
+          motion.add_ramps(plan.speed, {objects::kProfileAcceleration, objects::kProfileDeceleration}, plan);
+      !ramps)
+    return tl::unexpected<Error>(ramps.error());
+  plan.settings.emplace_back(*speed_object, *speed);
+  if (speed_object == objects::kTargetVelocity) plan.kept_target = *speed_object;
+  plan.moving = {{objects::kTargetPosition, plan.command}};
+  if (motion.rules().handshake)
+    for (const auto word : {kEnabled, kNewSetpoint, kEnabled})
+      plan.moving.emplace_back(objects::kControlword, store_le(word, 2));
+  plan.summary = fmt::format("go {} {} to {} {} at {} {}", number_text(plan.way), plan.unit,
+                             number_text(plan.value), plan.unit, number_text(plan.speed), fast->unit);
+  motion.set_standstill(plan.speed);
+  motion.supervise_overspeed(plan.speed);
+  return plan;
+}
+
+MotionReport run_move(Motion& motion, const Move&, const MotionPlan& plan) {
+  if (auto still = check_start(motion, plan); !still) return motion.finish(std::move(still));
+  if (auto begun = motion.begin(plan.mode, plan.settings, plan.kept_target); !begun)
+    return motion.finish(std::move(begun));
+  Moving moving(motion, plan);
+  auto done = moving.run();
+  return moving.judgement().into(motion.finish(std::move(done)));
+}
+
+}  // namespace servoctl::motion

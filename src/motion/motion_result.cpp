@@ -1,0 +1,194 @@
+#include "motion/motion_result.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+
+#include "base/csv.hpp"
+#include "base/file.hpp"
+#include "base/number.hpp"
+#include "base/printable.hpp"
+#include "base/text.hpp"
+#include "drive/cia402.hpp"
+#include "show/notice.hpp"
+
+namespace servoctl::motion {
+namespace {
+
+using report::Record;
+using report::Show;
+using report::Value;
+
+constexpr std::array kEvery{Channel::position, Channel::velocity, Channel::torque,
+                            Channel::following_error};
+
+double seconds_since(const MotionSample& sample, TimePoint begin) {
+  return std::chrono::duration<double>(sample.time - begin).count();
+}
+
+/// Six digits are more than any sensor has, and fewer than the noise of the conversion; counts stay whole.
+double rounded(double value, int digits = 6) {
+  return parse_real(plain_number(value, digits)).value_or(value);
+}
+
+/// First, last, least and greatest value of one quantity.
+Value summary_of(const std::vector<Series>& series) {
+  report::Table table;
+  table.columns = {{"quantity"}, {"unit"}, {"first"}, {"last"}, {"least"}, {"greatest"}};
+  for (const auto& one : series) {
+    const auto [least, greatest] = std::minmax_element(one.values.begin(), one.values.end());
+    table.rows.push_back({one.name, report::text_or_null(one.unit), rounded(one.values.front()),
+                          rounded(one.values.back()), rounded(*least), rounded(*greatest)});
+  }
+  return table;
+}
+
+report::Plot samples_of(std::vector<Series> series) {
+  for (auto& one : series)
+    for (auto& value : one.values) value = rounded(value, 9);
+  return {std::move(series)};
+}
+
+Value end_record(const MotionEnd& end) {
+  report::List left(end.left.begin(), end.left.end());
+  return Record{{"verified", end.verified},
+                {"state", drive::name(end.state)},
+                {"statusword", report::Hex{end.statusword, 4}},
+                {"stopped", end.stopped},
+                {"quick_stop", end.quick_stop},
+                {"not_put_back", std::move(left)}};
+}
+
+/// A drive that may still be energised is worse than whatever ended the motion.
+Error unverified(std::uint8_t node, const MotionReport& done) {
+  auto text = end_text(done.end, done.watchdog);
+  if (!done.outcome) text += fmt::format("; the motion ended because {}", done.outcome.error().message);
+  return session::drive_error(done.outcome ? Errc::negative : done.outcome.error().code, node, text,
+                              "do not go near the machine before its power is off");
+}
+
+std::string_view result_text(const MotionReport& done) {
+  if (!done.outcome) return "stopped";
+  return done.differences.empty() ? "done" : "done, but";
+}
+
+Error ended(std::uint8_t node, const MotionReport& done) {
+  auto error = done.outcome.error();
+  error.message += fmt::format("; the drive is in {}", end_text(done.end, done.watchdog));
+  if (!error.node) error.node = node;
+  return error;
+}
+
+}  // namespace
+
+std::string end_text(const MotionEnd& end, const WatchdogPlan& watchdog) {
+  if (end.verified)
+    return fmt::format("{}{}, verified (statusword 0x{:04X})", drive::name(end.state),
+                       end.quick_stop ? " after a quick stop" : "", end.statusword);
+  std::string out = end.statusword == 0 ? "THE END STATE COULD NOT BE VERIFIED: TAKE THE POWER AWAY"
+                                        : fmt::format(
+                                              "IT IS IN {} (statusword 0x{:04X}), NOT WITHOUT POWER: TAKE "
+                                              "THE POWER AWAY",
+                                              drive::name(end.state), end.statusword);
+  if (watchdog.kind != WatchdogPlan::Kind::none)
+    out += fmt::format(" (its watchdog should stop it within {} ms)",
+                       std::chrono::duration_cast<std::chrono::milliseconds>(watchdog.time).count());
+  return out;
+}
+
+Value motion_result(show::Desk& desk, std::uint8_t node, const MotionPlan& plan,
+                    const std::vector<PreflightItem>& items, const MotionReport& done, bool plot) {
+  const auto end = end_text(done.end, done.watchdog);
+  if (!done.end.verified)
+    desk.errors.push_back(unverified(node, done));
+  else if (!done.outcome)
+    desk.errors.push_back(ended(node, done));
+  else if (!done.differences.empty())
+    desk.errors.push_back(session::drive_error(
+        Errc::negative, node, fmt::format("done, but {}", fmt::join(done.differences, "; ")),
+        "look at the limits the drive has (`param list`, 607Fh, 6080h, 6072h), its gear and its load"));
+  for (const auto& text : done.unchecked) desk.notices.push_back(fmt::format("node {}: {}", node, text));
+  for (const auto& left : done.end.left)
+    desk.errors.push_back(session::drive_error(
+        Errc::negative, node, left,
+        left.starts_with("object ") ? "write it by hand" : "look at the drive before it is used"));
+  for (const auto& note : done.end.notes) desk.notices.push_back(fmt::format("node {}: {}", node, note));
+  for (const auto& event : done.events)
+    desk.notices.push_back(show::notice_text(event, desk.profile, desk.chinese));
+  const double length =
+      done.samples.empty() ? 0 : seconds_since(done.samples.back(), done.samples.front().time);
+  Record out{{"node", node},
+             {"motion", plan.summary},
+             {"result", result_text(done)},
+             {"differences", report::List(done.differences.begin(), done.differences.end()), Show::json},
+             {"unchecked", report::List(done.unchecked.begin(), done.unchecked.end()), Show::json},
+             {"seconds", std::round(length * 1000) / 1000},
+             {"end", end, Show::text, "drive"},
+             {"end", end_record(done.end), Show::json},
+             {"by_pdo", done.by_pdo, Show::json},
+             {"watchdog", to_string(done.watchdog), Show::json},
+             {"preflight", preflight_table(items), Show::json},
+             {"summary", summary_of(done.series)}};
+  // With -o jsonl the samples went out one by one.
+  if (desk.keeps_samples) out.push_back({"samples", samples_of(done.series), Show::json});
+  if (plot) out.push_back({"plot", report::Plot{done.series}, Show::text});
+  return out;
+}
+
+report::Table preflight_table(const std::vector<PreflightItem>& items) {
+  report::Table table;
+  table.columns = {{"weight", ""}, {"what"}, {"text", "before anything moves"}};
+  for (const auto& item : items) table.rows.push_back({name(item.weight), item.what, item.text});
+  return table;
+}
+
+std::string preflight_text(const std::vector<PreflightItem>& items) {
+  std::string out;
+  for (const auto& item : items)
+    out += fmt::format("{}  {}{}{}\n", pad_right(name(item.weight), 7), printable(item.what),
+                       item.what.empty() ? "" : ": ", printable(item.text));
+  return out;
+}
+
+Record sample_record(const MotionSample& sample, TimePoint begin) {
+  Record out{{"time", seconds_since(sample, begin)}, {"statusword", sample.statusword}};
+  for (const auto channel : kEvery)
+    if (const auto value = sample[channel]) out.push_back({std::string(name(channel)), rounded(*value, 9)});
+  return out;
+}
+
+std::string sample_line(const MotionSample& sample, TimePoint begin, const MotionUnits& units) {
+  auto out = fmt::format("{:8.3f} s", seconds_since(sample, begin));
+  constexpr std::array<std::string_view, kChannels> kShort{"", "", "torque ", "error "};
+  for (const auto channel : kEvery) {
+    const auto value = sample[channel];
+    if (!value) continue;
+    const auto text = fmt::format("{}{} {}", kShort[static_cast<std::size_t>(channel)], number_text(*value),
+                                  units.unit(object_of(channel)));
+    out += "  " + pad_left(text, 15);
+  }
+  return out;
+}
+
+Result<void> write_csv(const std::string& path, const std::vector<MotionSample>& samples,
+                       const MotionUnits& units) {
+  std::string out = "seconds,statusword";
+  for (const auto channel : kEvery) {
+    const auto unit = units.unit(object_of(channel));
+    if (units.has(object_of(channel)))
+      out += "," + csv_cell(fmt::format("{}{}", name(channel), unit.empty() ? "" : " (" + unit + ")"));
+  }
+  out += '\n';
+  for (const auto& sample : samples) {
+    out += fmt::format("{:.6f},0x{:04X}", seconds_since(sample, samples.front().time), sample.statusword);
+    for (const auto channel : kEvery) {
+      if (!units.has(object_of(channel))) continue;
+      const auto value = sample[channel];
+      out += value ? fmt::format(",{:.9g}", *value) : ",";
+    }
+    out += '\n';
+  }
+  return write_file_atomically(path, out);
+}
+
+}  // namespace servoctl::motion

@@ -1,0 +1,139 @@
+#include "motion/motion_run.hpp"
+
+#include <fmt/format.h>
+
+#include "base/file.hpp"
+#include "base/number.hpp"
+#include "drive/standard_objects.hpp"
+#include "motion/kept_turn.hpp"
+#include "motion/motion_result.hpp"
+#include "motion/operation_mode.hpp"
+#include "show/planned_messages.hpp"
+
+namespace servoctl::motion {
+namespace {
+
+using report::Record;
+using report::Show;
+using report::Value;
+
+/// A line of text so often; `-o jsonl` has every sample.
+constexpr Duration kLinePeriod = std::chrono::milliseconds(250);
+
+/// Shows the samples while they come.
+class Display {
+ public:
+  Display(show::Desk& desk, const Motion& motion) : desk_(&desk), motion_(&motion) {}
+
+  void operator()(const MotionSample& sample) {
+    if (!begin_) begin_ = sample.time;
+    const bool due = !last_line_ || sample.time - *last_line_ >= kLinePeriod;
+    if (due) last_line_ = sample.time;
+    desk_->emit(sample_record(sample, *begin_),
+                due ? sample_line(sample, *begin_, motion_->units()) : std::string());
+  }
+
+ private:
+  show::Desk* desk_;
+  const Motion* motion_;
+  std::optional<TimePoint> begin_;
+  std::optional<TimePoint> last_line_;
+};
+
+report::List planned_step(const show::Desk& desk, const Motion& motion,
+                          const session::PlannedMessage& message) {
+  if (!message.write)
+    return {message.step, "", Value(), report::text_or_null(message.when), show::frame_text(message)};
+  const auto object = message.write->object;
+  const auto& data = *message.write->data;
+  const auto value = motion.units().physical(object, data);
+  std::string text = value ? fmt::format("{} {}", number_text(value->value), value->unit) : to_hex(data);
+  const bool of_communication = object.index >= 0x1000 && object.index < 0x2000;
+  if (object == objects::kControlword || of_communication)
+    text = fmt::format("0x{:0{}X}", load_le(data), 2 * data.size());
+  if (object == objects::kModeOfOperation)
+    text = mode_text(*desk.profile, static_cast<std::int8_t>(load_le(data)), desk.chinese);
+  return {message.step, to_string(object), text, report::text_or_null(message.when),
+          show::frame_text(message)};
+}
+
+/// What would be sent, in order, if the drive follows.
+Result<Value> planned(const show::Desk& desk, Motion& motion, const MotionPlan& plan,
+                      const std::vector<PreflightItem>& items) {
+  const auto messages = motion.rehearse(plan);
+  if (!messages) return tl::unexpected<Error>(messages.error());
+  report::Table steps;
+  steps.columns = {{"step"}, {"object"}, {"value"}, {"when"}, {"frame"}};
+  for (const auto& message : *messages) steps.rows.push_back(planned_step(desk, motion, message));
+  return Value(Record{{"node", motion.node()},
+                      {"motion", plan.summary},
+                      {"watchdog", to_string(motion.watchdog()), Show::json},
+                      {"preflight", preflight_table(items)},
+                      {"steps", std::move(steps)}});
+}
+
+Result<void> ask(show::Desk& desk, std::uint8_t node, const MotionPlan& plan,
+                 const std::vector<PreflightItem>& items, const std::vector<std::string>& notes) {
+  desk.tell(preflight_text(items));
+  for (const auto& note : notes) desk.tell(fmt::format("note     {}\n", note));
+  return desk.confirm(
+      fmt::format("The motor of node {} will move: {}. Is the machine clear?", node, plan.summary));
+}
+
+}  // namespace
+
+Result<void> check_motion(const show::Desk& desk, const MotionRequest& request,
+                          const std::function<Result<MotionPlan>(Motion&)>& plan) {
+  auto options = request.options;
+  if (!options.turn) options.learned = find_turn(desk, request.node).counts;
+  Motion motion(*desk.session, *desk.profile, request.node, std::move(options));
+  auto ready = motion.prepare();
+  if (ready)
+    if (const auto planned = plan(motion); !planned) ready = tl::unexpected<Error>(planned.error());
+  const bool of_the_question =
+      !ready && (ready.error().code == Errc::usage || ready.error().code == Errc::refused);
+  return of_the_question ? ready : Result<void>{};
+}
+
+Result<Value> run_motion(show::Desk& desk, const MotionRequest& request, const MotionRun& run) {
+  const auto node = request.node;
+  const auto& csv = request.csv;
+  auto options = request.options;
+  if (!csv.empty() && !desk.dry_run)
+    if (const auto possible = check_writable(csv); !possible) return tl::unexpected<Error>(possible.error());
+  if (run.in_counts) options.turn.reset();
+  const auto known = options.turn || run.in_counts ? KnownTurn{} : find_turn(desk, node);
+  options.learned = known.counts;
+  std::function<void(const MotionSample&)> display;
+  options.on_sample = [&display](const MotionSample& sample) { display(sample); };
+  Motion motion(*desk.session, *desk.profile, node, std::move(options));
+  display = Display(desk, motion);
+  if (const auto ready = motion.prepare(); !ready) return tl::unexpected<Error>(ready.error());
+  auto notes = turn_notes(motion.units(), known);
+  for (const auto& note : notes) desk.notices.push_back(fmt::format("node {}: {}", node, note));
+  const auto plan = run.plan(motion);
+  if (!plan) return tl::unexpected<Error>(plan.error());
+  const auto items = motion.look(desk.chinese);
+  if (!items) return tl::unexpected<Error>(items.error());
+  for (const auto& note : plan->notes) desk.notices.push_back(fmt::format("node {}: {}", node, note));
+  notes.insert(notes.end(), plan->notes.begin(), plan->notes.end());
+  auto possible = check_preflight(*items, node);
+  if (possible) possible = check_mode(*desk.session, *desk.profile, node, plan->mode);
+  if (desk.dry_run && possible) return planned(desk, motion, *plan, *items);
+  if (desk.dry_run) {
+    desk.errors.push_back(possible.error());
+    return Value(Record{{"node", node}, {"motion", plan->summary}, {"preflight", preflight_table(*items)}});
+  }
+  if (!possible) return tl::unexpected<Error>(possible.error());
+  if (const auto answer = ask(desk, node, *plan, *items, notes); !answer)
+    return tl::unexpected<Error>(answer.error());
+  const auto done = run.run(motion, *plan);
+  if (!done.begun && !done.outcome) return tl::unexpected<Error>(done.outcome.error());
+  auto result = motion_result(desk, node, *plan, *items, done, request.plot);
+  if (!csv.empty())
+    if (const auto written = write_csv(csv, done.samples, motion.units()); !written)
+      desk.errors.push_back(written.error());
+  return result;
+}
+
+}  // namespace servoctl::motion

@@ -1,0 +1,123 @@
+#include <fmt/format.h>
+#include <cmath>
+
+#include "base/duration.hpp"
+#include "base/number.hpp"
+#include "drive/standard_objects.hpp"
+#include "motion/motion_judgement.hpp"
+#include "motion/motion_kinds.hpp"
+
+namespace servoctl::motion {
+namespace {
+
+/// A drive that limits its speed overshoots a little.
+constexpr double kOvershoot = 1.2;
+/// What conversions of units may add to a number.
+constexpr double kRounding = 1 + 1e-6;
+
+/// The drive's own limit of the speed, where the family has one that can be said in this unit.
+Result<void> limit_speed(const Motion& motion, double cap, MotionPlan& plan) {
+  const auto& units = motion.units();
+  const auto unit = units.unit(objects::kTargetVelocity);
+  for (const auto& name : motion.rules().speed_limit) {
+    const auto object = units.object(name);
+    if (!object || units.unit(*object) != unit) continue;
+    const auto data = units.bytes(*object, cap);
+    const auto held = data ? units.physical(*object, *data) : std::nullopt;
+    if (!held) continue;
+    if (held->value > cap * (1 + drive::kMostLoss)) {
+      const auto numbers = told_apart(cap, held->value);
+      return fail(Errc::usage,
+                  fmt::format("--limit: {} {} is less than the drive can be limited to ({}): {} {}",
+                              numbers.first, unit, to_string(*object), numbers.second, held->unit),
+                  "raise the limit");
+    }
+    plan.settings.emplace_back(*object, *data);
+    if (*object == objects::kTargetVelocity) plan.kept_target = *object;
+    if (units.meaning(*object).effect == od::Effect::restart)
+      plan.tell(fmt::format(
+          "the drive's speed limit in torque mode ({}) is set to {} {}, but may act after its "
+          "next start only: "
+          "servoctl looks at the speed and stops above {} {}",
+          to_string(*object), number_text(held->value), held->unit, number_text(cap * kOvershoot), unit));
+  }
+  if (!plan.settings.empty()) return {};
+  plan.tell(fmt::format(
+      "the drive has no speed limit of its own in torque mode that the manual tells: servoctl looks at the "
+      "speed every {} ms and stops above {} {}",
+      std::chrono::duration_cast<std::chrono::milliseconds>(MotionMonitor::kPeriod).count(),
+      number_text(cap * kOvershoot), unit));
+  return {};
+}
+
+void soften(const Motion& motion, double torque, MotionPlan& plan) {
+  if (!motion.units().has(objects::kTorqueSlope) || motion.units().unit(objects::kTorqueSlope) != "%/s")
+    return;
+  (void)motion.add_setting(objects::kTorqueSlope, std::abs(torque) / Motion::kRampSeconds, plan);
+}
+
+Result<void> check_torque(const Motion& motion, const Physical& torque) {
+  if (torque.value == 0) return fail(Errc::usage, "a torque of 0 does nothing", "say how much");
+  const auto cap = motion.torque_cap();
+  if (!cap) return tl::unexpected<Error>(cap.error());
+  if (std::abs(torque.value) <= *cap * kRounding) return {};
+  const auto numbers = told_apart(std::abs(torque.value), *cap);
+  return fail(motion.error(
+      Errc::refused,
+      fmt::format("{} {} is above the limit of {} {}", numbers.first, torque.unit, numbers.second,
+                  torque.unit),
+      fmt::format("`--max-torque {}{}` raises it, when machine and motor may take it; 6072h bounds it",
+                  numbers.first, torque.unit)));
+}
+
+}  // namespace
+
+Result<MotionPlan> plan_torque(Motion& motion, const Torque& torque) {
+  const auto mode = motion.rules().torque;
+  if (!mode) return fail(motion.error(Errc::refused, "this family has no torque mode"));
+  const auto cap = motion.speed_cap();
+  if (!cap) return tl::unexpected<Error>(cap.error());
+  if (*cap <= 0) return fail(Errc::usage, "a speed limit of 0 lets nothing move", "give --limit a speed");
+  const auto data = motion.units().parse(objects::kTargetTorque, torque.torque);
+  if (!data) return tl::unexpected<Error>(data.error());
+  const auto& value = data->value;
+  if (const auto allowed = check_torque(motion, value); !allowed)
+    return tl::unexpected<Error>(allowed.error());
+  MotionPlan plan;
+  plan.mode = *mode;
+  plan.command = data->data;
+  plan.tell(data->rounding);
+  plan.moving = {{objects::kTargetTorque, plan.command}};
+  plan.value = value.value;
+  plan.unit = value.unit;
+  plan.speed = *cap;
+  if (const auto limited = limit_speed(motion, *cap, plan); !limited)
+    return tl::unexpected<Error>(limited.error());
+  soften(motion, value.value, plan);
+  if (!motion.supervise_speed(*cap * kOvershoot))
+    return fail(motion.error(
+        Errc::refused, "tells its speed in another unit than its limit: nobody would watch it",
+        motion.is_told_turn() ? ""
+                              : "add --turn (increments of 6064h in a turn), if the drive does not tell it"));
+  motion.set_standstill(*cap);
+  plan.summary = fmt::format("push with {} {} for {}, no faster than {} {}", number_text(value.value),
+                             value.unit, servoctl::to_string(torque.length), number_text(*cap),
+                             motion.units().unit(objects::kTargetVelocity));
+  return plan;
+}
+
+MotionReport run_torque(Motion& motion, const Torque& torque, const MotionPlan& plan) {
+  auto done = motion.begin(plan.mode, plan.settings, plan.kept_target);
+  if (done) done = motion.write(objects::kTargetTorque, plan.command);
+  MotionJudgement judgement;
+  if (done) {
+    const auto told_at = motion.session().now();
+    const auto watched =
+        motion.watch([](const MotionSample&) -> Result<bool> { return false; }, torque.length);
+    if (!watched) done = tl::unexpected<Error>(watched.error());
+    judgement.judge_torque(motion, plan, told_at, motion.session().now());
+  }
+  return judgement.into(motion.finish(std::move(done)));
+}
+
+}  // namespace servoctl::motion

@@ -1,0 +1,130 @@
+#include "motion/motion_units.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+
+#include "session/measure.hpp"
+
+namespace servoctl::motion {
+
+namespace {
+
+Physical physical_of(const drive::Meaning& what, const od::Value& value) {
+  if (const auto familiar = drive::familiar(what, value))
+    if (what.unit != "%") return {familiar->value, std::string(familiar->unit)};
+  return {drive::scaled(what, value), std::string(what.unit)};
+}
+
+/// Whole numbers beyond it have no double of their own.
+constexpr double kMostSteps = 9.0e15;
+
+}  // namespace
+
+MotionUnits::MotionUnits(session::Session& session, const drive::Profile& profile, std::uint8_t node,
+                         std::optional<double> turn, std::optional<double> encoder,
+                         std::optional<double> learned)
+    : profile_(&profile), node_(node) {
+  const session::MeasureQuestion questions[] = {{node, drive::Measure::increments_per_turn, learned},
+                                                {node, drive::Measure::pulses_per_turn},
+                                                {node, drive::Measure::rated_torque}};
+  const auto answers = session::read_measures(session, profile, questions);
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    if (!answers[i]) continue;
+    measures_[questions[i].measure] = answers[i]->value;
+    uses_learned_ = uses_learned_ || (answers[i]->learned && !turn);
+  }
+  if (turn) measures_[drive::Measure::increments_per_turn] = *turn;
+  if (encoder) measures_[drive::Measure::pulses_per_turn] = *encoder;
+}
+
+bool MotionUnits::has(ObjectAddress object) const { return profile_->dictionary.find(object) != nullptr; }
+
+drive::Meaning MotionUnits::meaning(ObjectAddress object) const {
+  auto out = drive::meaning(drive::target_at(profile_, object), node_);
+  if (!out.measure) return out;
+  const auto known = measures_.find(*out.measure);
+  if (known != measures_.end()) out.bridge = drive::bridge(out.unit, object, known->second);
+  return out;
+}
+
+std::optional<double> MotionUnits::turn() const {
+  const auto known = measures_.find(drive::Measure::increments_per_turn);
+  return known == measures_.end() ? std::nullopt : std::optional(known->second);
+}
+
+Error MotionUnits::unknown_turn(ObjectAddress object, Error error) const {
+  const auto what = meaning(object);
+  if (what.measure == drive::Measure::increments_per_turn && !what.bridge)
+    error.hint += fmt::format("; --turn says how many increments of 6064h a turn has{}",
+                              profile_->rules.learn.speed.empty() ? "" : ", `units learn` measures it");
+  return error;
+}
+
+Result<Setpoint> MotionUnits::parse(ObjectAddress object, std::string_view text) const {
+  const auto what = meaning(object);
+  const auto quantity = drive::nearest_quantity(what, text);
+  if (!quantity) return fail(unknown_turn(object, quantity.error()));
+  auto data = od::encode(what.type, quantity->value);
+  if (!data) return tl::unexpected<Error>(data.error());
+  Setpoint out{std::move(*data), {}, quantity->rounding ? drive::to_string(*quantity->rounding) : ""};
+  out.value = physical(object, out.data).value_or(Physical{});
+  return out;
+}
+
+std::optional<Physical> MotionUnits::physical(ObjectAddress object, ByteSpan bytes) const {
+  const auto what = meaning(object);
+  const auto value = what.type_known ? od::decode(what.type, bytes) : Result<od::Value>(od::Value());
+  if (!what.type_known || !value) return std::nullopt;
+  return physical_of(what, *value);
+}
+
+Result<Physical> MotionUnits::parse_physical(ObjectAddress object, std::string_view text) const {
+  auto what = meaning(object);
+  auto value = drive::parse_quantity(what, text);
+  if (!value && what.encoding == od::Encoding::plain && od::is_integer(what.type)) {
+    what.type = od::DataType::f64;
+    if (auto between = drive::parse_quantity(what, text)) value = std::move(between);
+  }
+  if (!value) return fail(unknown_turn(object, value.error()));
+  return physical_of(what, *value);
+}
+
+std::optional<Bytes> MotionUnits::bytes(ObjectAddress object, double value) const {
+  const auto what = meaning(object);
+  if (!what.type_known || !std::isfinite(value)) return std::nullopt;
+  const bool plain = what.encoding == od::Encoding::plain;
+  const auto one = od::encode(
+      what.type, plain ? od::Value(std::int64_t{1})
+                       : od::encode_number(what.encoding, what.type, 1).value_or(od::Value(std::int64_t{0})));
+  const auto step = one ? physical(object, *one) : std::nullopt;
+  if (!step || step->value == 0) return std::nullopt;
+  double raw = value / step->value;
+  if (plain && raw != 0 && std::abs(raw) < 1) raw = std::copysign(1, raw);
+  const auto limit = [&](const std::optional<od::Value>& bound) {
+    return plain ? od::to_double(*bound) : od::decode_number(what.encoding, *bound);
+  };
+  if (what.min) raw = std::max(raw, limit(what.min));
+  if (what.max) raw = std::min(raw, limit(what.max));
+  if (plain && std::abs(raw) > kMostSteps) return std::nullopt;
+  const auto number = plain ? Result<od::Value>(od::Value(static_cast<std::int64_t>(std::llround(raw))))
+                            : od::encode_number(what.encoding, what.type, raw);
+  const auto data = number ? od::encode(what.type, *number) : tl::unexpected<Error>(number.error());
+  return data ? std::optional(*data) : std::nullopt;
+}
+
+std::string MotionUnits::unit(ObjectAddress object) const {
+  const auto what = meaning(object);
+  const auto size = what.type_known ? od::size_of(what.type).value_or(4) : 4;
+  const auto zero = physical(object, Bytes(size, 0));
+  return zero ? zero->unit : std::string();
+}
+
+std::optional<ObjectAddress> MotionUnits::object(std::string_view name) const {
+  if (name.empty()) return std::nullopt;
+  const auto target = drive::resolve(profile_, name);
+  if (!target) return std::nullopt;
+  return target->address;
+}
+
+}  // namespace servoctl::motion

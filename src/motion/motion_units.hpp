@@ -1,0 +1,71 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "drive/quantity.hpp"
+#include "drive/standard_objects.hpp"
+#include "session/session.hpp"
+
+namespace servoctl::motion {
+
+/// A number with the unit people think in (`rpm`, `deg`, `%`), or the drive's own where nothing better is
+/// known (`inc/s`).
+struct Physical {
+  double value = 0;
+  std::string unit;
+};
+
+/// What is written to an object for what was asked, and what that is.
+struct Setpoint {
+  Bytes data;
+  Physical value;
+  std::string rounding;  ///< What was lost between two steps, when it is worth a word; else empty.
+};
+
+/// What the objects of one drive mean, with its gear and ratings, which are read once.
+class MotionUnits {
+ public:
+  /// `turn`: increments in one turn of the motor, `encoder`: counts of its encoder, where the user tells them
+  /// and the drive does not. `learned`: the number that no object tells, measured earlier
+  /// (drive::Quotient::learned).
+  MotionUnits(session::Session& session, const drive::Profile& profile, std::uint8_t node,
+              std::optional<double> turn, std::optional<double> encoder = {},
+              std::optional<double> learned = {});
+
+  bool has(ObjectAddress object) const;
+  drive::Meaning meaning(ObjectAddress object) const;
+  /// What to write for what a user wrote (`60rpm`); errors as drive::nearest_quantity().
+  Result<Setpoint> parse(ObjectAddress object, std::string_view text) const;
+  /// The number in these bytes in the unit people think in; empty when they are none.
+  std::optional<Physical> physical(ObjectAddress object, ByteSpan bytes) const;
+  /// What a user wrote about this object, as a number in the same unit as physical(); nothing is written, so
+  /// nothing is rounded.
+  Result<Physical> parse_physical(ObjectAddress object, std::string_view text) const;
+  /// The bytes for a number in the unit of physical() that servoctl itself chose: the nearest step within the
+  /// object's limits, and never zero for what is not. Empty when it cannot be said in this object.
+  std::optional<Bytes> bytes(ObjectAddress object, double value) const;
+  std::string unit(ObjectAddress object) const;
+
+  /// Increments in one turn of the motor, by whoever told it; empty when nobody has.
+  std::optional<double> turn() const;
+  /// Whether they come from the number that was measured earlier.
+  bool uses_learned() const { return uses_learned_; }
+
+  /// The object behind a name of the family's rules (`0x6080`, `Fn_95`); empty for none.
+  std::optional<ObjectAddress> object(std::string_view name) const;
+  const drive::Profile& profile() const { return *profile_; }
+  std::uint8_t node() const { return node_; }
+
+ private:
+  /// The error, with what to do where nobody has told how many counts a turn has.
+  Error unknown_turn(ObjectAddress object, Error error) const;
+
+  const drive::Profile* profile_;
+  std::uint8_t node_;
+  std::map<drive::Measure, double> measures_;
+  bool uses_learned_ = false;
+};
+
+}  // namespace servoctl::motion

@@ -1,0 +1,81 @@
+#include "motion/operation_mode.hpp"
+
+#include <fmt/format.h>
+
+#include "base/text.hpp"
+#include "drive/quantity.hpp"
+#include "drive/standard_objects.hpp"
+#include "motion/power.hpp"
+
+namespace servoctl::motion {
+namespace {
+
+constexpr Duration kPatience = std::chrono::seconds(1);
+constexpr Duration kPause = std::chrono::milliseconds(5);
+
+std::string known_modes(const drive::Meaning& meaning) {
+  std::string out;
+  for (const auto& label : *meaning.labels) append(out, fmt::format("{} {}", label.value, label.label));
+  return out;
+}
+
+}  // namespace
+
+std::string mode_text(const drive::Profile& profile, std::int8_t mode, bool chinese) {
+  const auto meaning = drive::meaning(drive::target_at(&profile, objects::kModeDisplay), 0);
+  const auto* label = drive::label_of(meaning, od::Value(std::int64_t{mode}));
+  if (label == nullptr) return mode == 0 ? std::string("0 none") : fmt::format("{}", mode);
+  return fmt::format("{} {}", mode, chinese && !label->label_zh.empty() ? label->label_zh : label->label);
+}
+
+Result<std::int8_t> read_mode(session::Session& session, std::uint8_t node) {
+  const auto answer = session.upload(node, objects::kModeDisplay);
+  if (!answer) return tl::unexpected<Error>(answer.error());
+  return static_cast<std::int8_t>(load_le(*answer));
+}
+
+Result<void> check_mode(session::Session& session, const drive::Profile& profile, std::uint8_t node,
+                        std::int8_t mode) {
+  const auto meaning = drive::meaning(drive::target_at(&profile, objects::kModeOfOperation), node);
+  if (meaning.labels != nullptr && drive::label_of(meaning, od::Value(std::int64_t{mode})) == nullptr)
+    return fail(session::drive_error(Errc::refused, node, fmt::format("this family has no mode {}", mode),
+                                     "modes: " + known_modes(meaning)));
+  if (mode < 1 || mode > 32 || profile.dictionary.find(objects::kSupportedModes) == nullptr) return {};
+  const auto supported = session.upload(node, objects::kSupportedModes);
+  if (!supported && supported.error().code != Errc::sdo_abort)
+    return tl::unexpected<Error>(supported.error());
+  const auto bits = supported ? load_le(*supported) : 0;
+  if (bits == 0 || (bits >> static_cast<unsigned>(mode - 1) & 1U) != 0) return {};
+  return fail(session::drive_error(
+      Errc::refused, node,
+      fmt::format("the drive does not support mode {} (6502h is 0x{:X})", mode_text(profile, mode), bits),
+      "6502h tells the modes it has: bit 0 is mode 1"));
+}
+
+session::SdoRequest mode_write(const drive::Profile& profile, std::uint8_t node, std::int8_t mode) {
+  const auto meaning = drive::meaning(drive::target_at(&profile, objects::kModeOfOperation), node);
+  const auto size = meaning.type_known ? od::size_of(meaning.type).value_or(1) : 1;
+  const auto raw = static_cast<std::uint64_t>(static_cast<std::int64_t>(mode));
+  return {node, objects::kModeOfOperation, store_le(raw, size)};
+}
+
+Result<void> set_mode(session::Session& session, const drive::Profile& profile, std::uint8_t node,
+                      std::int8_t mode) {
+  const auto write = mode_write(profile, node, mode);
+  if (const auto written = session.download(node, write.object, *write.data); !written) return written;
+  const auto end = session.now() + kPatience;
+  for (;;) {
+    const auto now_in = read_mode(session, node);
+    if (!now_in) return tl::unexpected<Error>(now_in.error());
+    if (*now_in == mode) return {};
+    if (session.now() >= end)
+      return fail(
+          session::drive_error(Errc::negative, node,
+                               fmt::format("was told mode {} and stays in mode {} (6061h)",
+                                           mode_text(profile, mode), mode_text(profile, *now_in)),
+                               "is it in the control mode for CANopen motion? `info` names what it needs"));
+    if (const auto paused = pause(session, kPause); !paused) return paused;
+  }
+}
+
+}  // namespace servoctl::motion

@@ -1,0 +1,174 @@
+#include "motion/power.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "drive/quantity.hpp"
+#include "drive/standard_objects.hpp"
+
+namespace servoctl::motion {
+namespace {
+
+using drive::DriveState;
+
+constexpr Duration kPause = std::chrono::milliseconds(5);
+/// No way between two states has more steps; a drive that changes its state by itself could make it endless.
+constexpr int kMostSteps = 12;
+
+}  // namespace
+
+Error enabled_by_others(std::uint8_t node, DriveState state) {
+  return session::drive_error(Errc::refused, node,
+                              fmt::format("somebody else has enabled it: it is in {}", drive::name(state)),
+                              "nothing was moved; `disable` it when no other master commands it");
+}
+
+Result<void> pause(session::Session& session, Duration time) {
+  const auto waited = session.wait([] { return false; }, session.now() + time);
+  if (!waited) return tl::unexpected<Error>(waited.error());
+  return {};
+}
+
+Result<std::uint16_t> Power::statusword() {
+  const auto answer = session_->upload(node_, objects::kStatusword);
+  if (!answer) return tl::unexpected<Error>(answer.error());
+  statusword_ = static_cast<std::uint16_t>(load_le(*answer));
+  return statusword_;
+}
+
+Result<DriveState> Power::state() {
+  const auto word = statusword();
+  if (!word) return tl::unexpected<Error>(word.error());
+  const auto out = drive::decode_state(*word);
+  if (!drive::is_energised(out) && session_->energised().contains(node_) && !says_go())
+    session_->energised().erase(node_);
+  return out;
+}
+
+/// Whether the drive would start again by itself, if what keeps its power away (an enable input, STO) went.
+/// One that does not tell may.
+bool Power::says_go() {
+  constexpr std::uint64_t kCommand = 0x8F;
+  constexpr std::uint64_t kEnableOperation = 0x0F;
+  const auto held = session_->upload(node_, objects::kControlword);
+  return !held || (load_le(*held) & kCommand) == kEnableOperation;
+}
+
+Result<void> Power::command(std::uint16_t controlword) {
+  return session_->download(node_, objects::kControlword, store_le(controlword, 2));
+}
+
+bool Power::tells(std::uint16_t bit) const {
+  const auto& words = profile_->rules.statusword;
+  return (words[static_cast<std::size_t>(DriveState::switched_on)] & bit) != 0;
+}
+
+/// 605Ah decides whether a quick stop can be left upwards.
+bool Power::resumes() {
+  const auto& staying = profile_->rules.quick_stop_stays_enabled;
+  const auto option = session_->upload(node_, objects::kQuickStopOption);
+  const auto value = option ? static_cast<std::int16_t>(load_le(*option)) : std::int16_t{0};
+  return std::find(staying.begin(), staying.end(), value) != staying.end();
+}
+
+Result<bool> Power::wait_for(DriveState wanted) {
+  const auto end = session_->now() + kPatience;
+  for (;;) {
+    const auto now_in = state();
+    if (!now_in) return tl::unexpected<Error>(now_in.error());
+    if (*now_in == wanted) return true;
+    if (session_->now() >= end) return false;
+    if (const auto paused = pause(*session_, kPause); !paused) return tl::unexpected<Error>(paused.error());
+  }
+}
+
+Error Power::stuck(DriveState from, const drive::PowerStep& next) const {
+  const auto now_in = drive::decode_state(statusword_);
+  auto what = fmt::format("does not go to {}; it is in {} (statusword 0x{:04X})", drive::name(next.reached),
+                          drive::name(now_in), statusword_);
+  std::string hint;
+  if (now_in == DriveState::fault || now_in == DriveState::fault_reaction_active)
+    hint = "`fault show` tells the fault";
+  else if (tells(kRemote) && (statusword_ & kRemote) == 0)
+    hint = "bit 9 (remote) is low: the drive obeys its panel or inputs, not the bus";
+  else if (tells(kVoltageEnabled) && (statusword_ & kVoltageEnabled) == 0)
+    hint = "bit 4 (voltage enabled) is low: is the main supply on?";
+  else if (from == DriveState::switch_on_disabled)
+    hint = "emergency stop, main supply, enable input? The manual's enable conditions are not met";
+  else
+    hint = "the manual's conditions for enabling are not met: inputs, main supply, brake, mode";
+  return session::drive_error(Errc::negative, node_, what, hint);
+}
+
+Result<void> Power::step(DriveState from, const drive::PowerStep& next) {
+  if (next.controlword)
+    if (const auto written = command(*next.controlword); !written) return written;
+  const auto end = session_->now() + kPatience;
+  for (;;) {
+    const auto now_in = state();
+    if (!now_in) return tl::unexpected<Error>(now_in.error());
+    if (*now_in == next.reached) return {};
+    // Some pass through a state faster than it can be read.
+    if (*now_in != from && *now_in != DriveState::fault_reaction_active && *now_in != DriveState::unknown)
+      return {};
+    if (session_->now() >= end) return fail(stuck(from, next));
+    if (const auto paused = pause(*session_, kPause); !paused) return paused;
+  }
+}
+
+Result<std::vector<drive::PowerStep>> Power::path_to(DriveState from, DriveState goal) {
+  const bool resuming = from == DriveState::quick_stop_active && resumes();
+  if (auto path = drive::power_path(from, goal, resuming)) return std::move(*path);
+  const bool fault = from == DriveState::fault || from == DriveState::fault_reaction_active;
+  return fail(
+      session::drive_error(Errc::refused, node_,
+                           fmt::format("is in {}: no command leads from there to {} (statusword 0x{:04X})",
+                                       drive::name(from), drive::name(goal), statusword_),
+                           fault ? "`fault show` tells the fault; when its cause is gone, `fault reset`"
+                                 : "power the drive off and on again"));
+}
+
+Result<void> Power::reach(DriveState goal) {
+  for (int i = 0; i < kMostSteps; ++i) {
+    const auto from = state();
+    if (!from) return tl::unexpected<Error>(from.error());
+    if (*from == goal) return {};
+    const auto path = path_to(*from, goal);
+    if (!path) return tl::unexpected<Error>(path.error());
+    if (const auto done = step(*from, path->front()); !done) return done;
+  }
+  return fail(session::drive_error(
+      Errc::negative, node_,
+      fmt::format("changes its state by itself and never stays in {}", drive::name(goal)),
+      "does another master command it?"));
+}
+
+Result<void> Power::disable() { return take_down(PowerAim::disable); }
+
+Result<void> Power::quick_stop() { return take_down(PowerAim::stop); }
+
+Result<void> Power::take_down(PowerAim aim) {
+  std::vector<PowerDownPlan> plans(1);
+  plans.front().node = node_;
+  plans.front().aim = aim;
+  const auto done = std::move(motion::take_down(*session_, std::move(plans)).front());
+  statusword_ = done.statusword.value_or(statusword_);
+  return done.outcome;
+}
+
+std::vector<std::pair<std::uint8_t, Result<void>>> de_energise(session::Session& session) {
+  std::vector<std::pair<std::uint8_t, Result<void>>> out;
+  if (session.energised().empty()) return out;
+  const auto hold = session.protect(session::Care::guarded);
+  std::vector<PowerDownPlan> plans;
+  for (const auto node : session.energised().nodes()) {
+    plans.emplace_back();
+    plans.back().node = node;
+    plans.back().aim = PowerAim::stop_and_disable;
+  }
+  const auto done = take_down(session, plans);
+  for (std::size_t i = 0; i < plans.size(); ++i) out.emplace_back(plans[i].node, done[i].outcome);
+  return out;
+}
+
+}  // namespace servoctl::motion

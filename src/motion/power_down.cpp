@@ -1,0 +1,228 @@
+#include "motion/power_down.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "base/text.hpp"
+#include "drive/standard_objects.hpp"
+#include "motion/power.hpp"
+#include "session/link_wait.hpp"
+#include "session/option_scope.hpp"
+
+namespace servoctl::motion {
+namespace {
+
+using canopen::NmtCommand;
+using drive::DriveState;
+
+constexpr Duration kPause = std::chrono::milliseconds(5);
+/// An NMT command is not answered; CiA 301 names no time.
+constexpr Duration kNmtPause = std::chrono::milliseconds(20);
+/// Answers in a row that do not come.
+constexpr int kMostSilences = 4;
+
+}  // namespace
+
+bool is_without_power(DriveState state) {
+  return !drive::is_energised(state) && state != DriveState::switched_on &&
+         state != DriveState::ready_to_switch_on;
+}
+
+DriveState PowerDownResult::state() const {
+  return statusword ? drive::decode_state(*statusword) : DriveState::unknown;
+}
+
+bool PowerDownResult::is_without_power() const { return motion::is_without_power(state()); }
+
+PowerDown::PowerDown(PowerDownPlan plan) : plan_(std::move(plan)) { begin(); }
+
+void PowerDown::begin() {
+  state_ = plan_.gentle                     ? State::look
+           : plan_.aim == PowerAim::disable ? State::switch_off
+                                            : State::quick_stop;
+  pause_ = TimePoint::min();
+  has_seen_ = gently_ = woken_ = false;
+  silences_ = 0;
+  tries_ = means_ = held_ = 0;
+  first_speed_.reset();
+  standing_since_.reset();
+  untaken_ = "no answer";
+  unread_.reset();
+}
+
+void PowerDown::on_bus_back() { begin(); }
+
+std::optional<session::SdoRequest> PowerDown::last_word() const {
+  return command(plan_.aim == PowerAim::stop ? kQuickStopWord : kDisableVoltageWord);
+}
+
+void PowerDown::on_end(const Error& error) {
+  result_.statusword.reset();
+  result_.written = false;
+  result_.silent = true;
+  finish(tl::unexpected<Error>(error));
+}
+
+session::SdoRequest PowerDown::command(std::uint16_t controlword) const {
+  return {plan_.node, objects::kControlword, store_le(controlword, 2)};
+}
+
+session::SdoRequest PowerDown::read(ObjectAddress object) const {
+  return {.node = plan_.node, .object = object};
+}
+
+/// Of the statusword, for messages.
+std::string PowerDown::word() const {
+  return result_.statusword ? fmt::format("statusword 0x{:04X}", *result_.statusword)
+                            : std::string("its statusword was not read");
+}
+
+DialogueStep PowerDown::next(TimePoint now) {
+  if (now < pause_) return {.pause = pause_};
+  switch (state_) {
+    case State::look:
+    case State::slowing:
+    case State::stopping:
+    case State::switching_off:
+    case State::cutting: return {.request = read(objects::kStatusword)};
+    case State::holding: return {.request = read(objects::kControlword)};
+    case State::halt: return {.request = command(kHalted)};
+    case State::read_mode: return {.request = read(objects::kModeDisplay)};
+    case State::zero_target: {
+      const auto& targets = plan_.gentle->targets;
+      return {.request = targets[static_cast<std::size_t>(tries_)].second};
+    }
+    case State::slowing_speed:
+    case State::stopping_speed: return {.request = read(objects::kVelocityActual)};
+    case State::quick_stop: result_.quick_stop = true; return {.request = command(kQuickStopWord)};
+    case State::switch_off: return {.request = command(kSwitchOffWord)};
+    case State::cut: return {.request = command(kDisableVoltageWord)};
+    case State::silence_by_nmt:
+      state_ = State::wake_again;
+      return {.nmt = NmtCommand::stop, .pause = now + kNmtPause};
+    case State::wake:
+    case State::wake_again:
+      enter(back_to_, now);
+      return {.nmt = NmtCommand::enter_pre_operational, .pause = now + kNmtPause};
+    case State::done: break;
+  }
+  return {.done = true};
+}
+
+void PowerDown::on_answer(Result<Bytes> answer, TimePoint now) {
+  if (!answer && answer.error().code == Errc::timeout) return on_silence(answer.error(), now);
+  silences_ = 0;
+  switch (state_) {
+    case State::look: return on_look(answer, now);
+    case State::halt: gently_ = gently_ || answer.has_value(); return enter(State::read_mode, now);
+    case State::read_mode: return on_mode(answer, now);
+    case State::zero_target:
+      gently_ = gently_ || answer.has_value();
+      tries_ = 0;
+      return enter(gently_ ? State::slowing : State::quick_stop, now);
+    case State::slowing: return on_slowing(answer, now);
+    case State::slowing_speed: return on_slowing_speed(answer, now);
+    case State::quick_stop: return on_quick_stop(answer, now);
+    case State::stopping: return on_stopping(answer, now);
+    case State::stopping_speed: return on_stopping_speed(answer, now);
+    case State::switch_off: return on_switch_off(answer, now);
+    case State::switching_off: return on_switching_off(answer, now);
+    case State::cut: return on_cut(answer, now);
+    case State::cutting: return on_cutting(answer, now);
+    case State::holding: return on_holding(answer, now);
+    case State::wake:
+    case State::silence_by_nmt:
+    case State::wake_again:
+    case State::done: return;
+  }
+}
+
+void PowerDown::enter(State state, TimePoint now) {
+  state_ = state;
+  since_ = now;
+}
+
+/// Without taking the time anew.
+void PowerDown::poll_again(State state, TimePoint now) {
+  state_ = state;
+  pause_ = now + kPause;
+}
+
+/// An answer may be lost, so it is asked again. Then the node may be one that was sent NMT "stop": it answers
+/// no SDO. What is dead at last has been sent the commands all the same.
+void PowerDown::on_silence(const Error& error, TimePoint now) {
+  const bool cutting = state_ >= State::switch_off && plan_.aim != PowerAim::stop;
+  if (state_ == State::stopping) state_ = State::quick_stop;
+  if (state_ == State::cutting) state_ = State::cut;
+  if (++silences_ == 1) return;
+  if (!std::exchange(told_silence_, true) && plan_.on_silence) plan_.on_silence();
+  if (silences_ >= kMostSilences) {
+    result_.silent = true;
+    result_.written = false;
+    unread_ = error;
+    result_.statusword.reset();
+    return finish(tl::unexpected<Error>(error));
+  }
+  if (std::exchange(woken_, true)) {
+    if (cutting || plan_.aim != PowerAim::stop) enter(State::cut, now);
+    return;
+  }
+  result_.notes.emplace_back(
+      "it did not answer, and was sent NMT \"enter pre-operational\": a node that is stopped answers "
+      "nothing");
+  back_to_ = cutting ? State::cut : State::quick_stop;
+  state_ = State::wake;
+}
+
+DriveState PowerDown::take_state(const Result<Bytes>& answer) {
+  has_seen_ = answer.has_value();
+  result_.statusword.reset();
+  unread_.reset();
+  if (answer)
+    result_.statusword = static_cast<std::uint16_t>(load_le(*answer));
+  else
+    unread_ = answer.error();
+  seen_ = result_.state();
+  return seen_;
+}
+
+std::vector<session::PlannedMessage> planned_power_down(std::uint8_t node, PowerAim aim) {
+  std::vector<session::PlannedMessage> out;
+  const auto say = [&](std::uint16_t word) {
+    out.push_back(session::planned_write({node, objects::kControlword, store_le(word, 2)}));
+  };
+  if (aim != PowerAim::disable) say(kQuickStopWord);
+  if (aim != PowerAim::stop) {
+    say(kSwitchOffWord);
+    say(kDisableVoltageWord);
+  }
+  out.push_back(session::planned_frame(
+      node, canopen::nmt_frame(NmtCommand::enter_pre_operational, node),
+      aim == PowerAim::stop ? "if it does not answer" : "if it does not obey or answer"));
+  return out;
+}
+
+std::vector<PowerDownResult> take_down(session::Session& session, std::vector<PowerDownPlan> plans) {
+  const session::Deaf deaf(session);
+  std::vector<std::unique_ptr<PowerDown>> drives;
+  std::vector<Dialogue*> dialogues;
+  std::string nodes;
+  for (auto& plan : plans) {
+    append(nodes, fmt::format("{}", plan.node));
+    drives.push_back(std::make_unique<PowerDown>(std::move(plan)));
+    dialogues.push_back(drives.back().get());
+  }
+  session::LinkWait link(session, fmt::format("stopping node{} {}", plans.size() == 1 ? "" : "s", nodes));
+  hold_all(session, dialogues, [&](const Error& lost) { return link.comes_back(lost); });
+  std::vector<PowerDownResult> out;
+  for (const auto& drive : drives) {
+    out.push_back(drive->result());
+    const bool seen = out.back().statusword && !drive::is_energised(out.back().state());
+    if (out.back().written && seen && out.back().outcome) session.energised().erase(drive->node());
+  }
+  return out;
+}
+
+}  // namespace servoctl::motion

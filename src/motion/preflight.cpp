@@ -1,0 +1,177 @@
+#include "motion/preflight.hpp"
+
+#include <fmt/format.h>
+#include <array>
+
+#include "base/number.hpp"
+#include "base/text.hpp"
+#include "drive/standard_objects.hpp"
+#include "motion/operation_mode.hpp"
+#include "motion/power.hpp"
+
+namespace servoctl::motion {
+namespace {
+
+using Weight = PreflightItem::Weight;
+
+/// Settings and readings that are shown as they are.
+struct Shown {
+  ObjectAddress object;
+  std::string_view what;
+};
+constexpr std::array kShown{
+    Shown{objects::kSupplyVoltage, "supply"},
+    Shown{objects::kFollowingErrorWindow, "following error window"},
+    Shown{{0x607F, 0}, "max speed"},
+    Shown{{0x6080, 0}, "max motor speed"},
+    Shown{{0x607D, 1}, "lower position limit"},
+    Shown{{0x607D, 2}, "upper position limit"},
+    Shown{{0x6072, 0}, "max torque"},
+};
+
+class Preflight {
+ public:
+  Preflight(session::Session& session, const MotionUnits& units, std::uint8_t node, bool chinese)
+      : session_(&session), units_(&units), node_(node), chinese_(chinese) {}
+
+  Result<std::vector<PreflightItem>> run(const WatchdogPlan& watchdog) {
+    if (const auto done = look_at_state(); !done) return tl::unexpected<Error>(done.error());
+    if (const auto done = look_at_objects(); !done) return tl::unexpected<Error>(done.error());
+    if (const auto done = look_at_cautions(); !done) return tl::unexpected<Error>(done.error());
+    const bool sure = watchdog.kind != WatchdogPlan::Kind::none && !watchdog.assumed;
+    add(sure ? Weight::good : Weight::caution, "watchdog", to_string(watchdog));
+    return std::move(items_);
+  }
+
+ private:
+  void add(Weight weight, std::string_view what, std::string text) {
+    items_.push_back({weight, std::string(what), std::move(text)});
+  }
+
+  Result<void> look_at_state() {
+    Power power(*session_, units_->profile(), node_);
+    const auto word = power.statusword();
+    if (!word) return tl::unexpected<Error>(word.error());
+    const auto state = drive::decode_state(*word);
+    const bool fault = state == drive::DriveState::fault || state == drive::DriveState::fault_reaction_active;
+    const bool bad =
+        fault || drive::is_energised(state) || state == drive::DriveState::not_ready_to_switch_on;
+    auto text =
+        fmt::format("{} (statusword 0x{:04X})", chinese_ ? drive::name_zh(state) : drive::name(state), *word);
+    if (fault) text += ": `fault show` tells why, `fault reset` resets it when its cause is gone";
+    if (!fault && drive::is_energised(state)) text += ": somebody has enabled it; `disable` it first";
+    add(bad ? Weight::stop : Weight::good, "state", std::move(text));
+    if ((*word & kWarning) != 0) add(Weight::caution, "warning", "bit 7 of the statusword is set");
+    if ((*word & kInternalLimit) != 0)
+      add(Weight::caution, "limit", "bit 11 of the statusword: an internal limit is active");
+    if (power.tells(kRemote) && (*word & kRemote) == 0)
+      add(Weight::stop, "remote", "bit 9 of the statusword is low: the drive obeys its panel, not the bus");
+    const auto mode = read_mode(*session_, node_);
+    if (!mode) return tl::unexpected<Error>(mode.error());
+    add(Weight::good, "mode", mode_text(units_->profile(), *mode, chinese_));
+    return {};
+  }
+
+  Result<void> look_at_objects() {
+    std::vector<session::SdoRequest> requests;
+    std::vector<std::string_view> names;
+    const auto ask = [&](ObjectAddress object, std::string_view what) {
+      if (!units_->has(object)) return;
+      requests.push_back({.node = node_, .object = object});
+      names.push_back(what);
+    };
+    ask(objects::kDigitalInputs, "inputs");
+    for (const auto& shown : kShown) ask(shown.object, shown.what);
+    const auto answers = session_->transfer(requests);
+    for (std::size_t i = 0; i < answers.size(); ++i) {
+      if (!answers[i] && answers[i].error().code != Errc::sdo_abort)
+        return tl::unexpected<Error>(answers[i].error());
+      if (!answers[i]) continue;
+      if (requests[i].object == objects::kDigitalInputs) {
+        add_inputs(static_cast<std::uint32_t>(load_le(*answers[i])));
+      } else if (const auto value = units_->physical(requests[i].object, *answers[i])) {
+        if (value->value != 0 || requests[i].object == objects::kFollowingErrorWindow ||
+            requests[i].object == objects::kSupplyVoltage)
+          add(Weight::note, names[i], fmt::format("{} {}", number_text(value->value), value->unit));
+      }
+    }
+    return {};
+  }
+
+  /// Limits are shown and do not stop: which motion they are in the way of is not known.
+  void add_inputs(std::uint32_t word) {
+    constexpr std::array<std::string_view, 3> kNames{"negative limit", "positive limit", "home switch"};
+    const auto& rules = units_->profile().rules;
+    std::string text;
+    bool limit = false;
+    for (std::size_t i = 0; i < kNames.size(); ++i) {
+      if (!rules.motion.is_actuated(word, rules.motion.inputs[i])) continue;
+      append(text, std::string(kNames[i]));
+      limit = limit || i < 2;
+    }
+    if (text.empty()) text = "no limit, no home switch";
+    if (rules.is_assumed("motion.inputs_active_low"))
+      text += " (assumed: the manual does not say which level means that)";
+    add(limit ? Weight::caution : Weight::good, "inputs", fmt::format("60FDh is 0x{:08X}: {}", word, text));
+  }
+
+  /// The number a caution depends on; empty where nothing tells it.
+  Result<std::optional<std::int64_t>> number(const std::string& name) {
+    const auto object = units_->object(name);
+    if (!object) return std::optional<std::int64_t>();
+    const auto answer = session_->upload(node_, *object);
+    if (!answer && answer.error().code != Errc::sdo_abort) return tl::unexpected<Error>(answer.error());
+    if (!answer || answer->empty()) return std::optional<std::int64_t>();
+    const auto meaning = drive::fitted(units_->meaning(*object), answer->size());
+    const auto value = od::decode(meaning.type, *answer);
+    if (value && meaning.type_known && meaning.encoding == od::Encoding::plain && od::is_signed(meaning.type))
+      return std::optional(static_cast<std::int64_t>(od::to_double(*value)));
+    return std::optional(static_cast<std::int64_t>(load_le(*answer)));
+  }
+
+  /// What cannot be read may hold.
+  Result<void> look_at_cautions() {
+    for (const auto& caution : units_->profile().rules.cautions) {
+      std::string unread;
+      if (caution.is_conditional()) {
+        const auto now = number(caution.name);
+        if (!now) return tl::unexpected<Error>(now.error());
+        if (*now && !caution.holds(**now)) continue;
+        if (!*now)
+          unread = chinese_ ? fmt::format("{} 无法读取，请在面板上查看：", caution.name)
+                            : fmt::format("{} cannot be read (look at the panel): ", caution.name);
+      }
+      add(Weight::caution, "",
+          unread + (chinese_ && !caution.text_zh.empty() ? caution.text_zh : caution.text));
+    }
+    return {};
+  }
+
+  session::Session* session_;
+  const MotionUnits* units_;
+  std::uint8_t node_;
+  bool chinese_;
+  std::vector<PreflightItem> items_;
+};
+
+}  // namespace
+
+std::string_view name(PreflightItem::Weight weight) {
+  constexpr std::array<std::string_view, 4> kNames{"ok", "note", "caution", "stop"};
+  return kNames[static_cast<std::size_t>(weight)];
+}
+
+Result<std::vector<PreflightItem>> preflight(session::Session& session, const MotionUnits& units,
+                                             std::uint8_t node, const WatchdogPlan& watchdog, bool chinese) {
+  return Preflight(session, units, node, chinese).run(watchdog);
+}
+
+Result<void> check_preflight(const std::vector<PreflightItem>& items, std::uint8_t node) {
+  for (const auto& item : items)
+    if (item.weight == Weight::stop)
+      return fail(session::drive_error(Errc::refused, node, fmt::format("{}: {}", item.what, item.text),
+                                       "nothing was moved"));
+  return {};
+}
+
+}  // namespace servoctl::motion

@@ -1,0 +1,204 @@
+#include "motion/watchdog.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <vector>
+
+#include "base/duration.hpp"
+#include "canopen/cob_id.hpp"
+#include "canopen/error_control.hpp"
+#include "drive/naming.hpp"
+#include "drive/quantity.hpp"
+#include "drive/standard_objects.hpp"
+#include "motion/power.hpp"
+#include "session/option_scope.hpp"
+
+namespace servoctl::motion {
+namespace {
+
+constexpr std::uint8_t kMostEntries = 8;
+/// A node answers within some milliseconds.
+constexpr Duration kProbe = std::chrono::milliseconds(50);
+
+bool has(const drive::Profile& profile, ObjectAddress object) {
+  return profile.dictionary.find(object) != nullptr;
+}
+
+std::uint8_t node_of(std::uint64_t entry) { return canopen::watched_node(static_cast<std::uint32_t>(entry)); }
+
+/// Whether a node is there that has not been heard: its heartbeats must not be sent by two.
+bool answers(session::Session& session, std::uint8_t node) {
+  const session::Hurry hurry(session, kProbe, 0);
+  const auto answer = session.upload(node, objects::kDeviceType);
+  return answer || answer.error().code == Errc::sdo_abort;
+}
+
+/// Takes in what all send, until the bus has been listened to for long enough.
+Result<void> hear_others(session::Session& session) {
+  const auto waited = session.wait([] { return false; }, session.opened_at() + kListening);
+  if (!waited) return tl::unexpected<Error>(waited.error());
+  return session.listen();
+}
+
+Result<std::optional<std::uint8_t>> free_producer(session::Session& session, std::uint8_t node,
+                                                  const std::set<std::uint8_t>& watched) {
+  if (const auto heard = hear_others(session); !heard) return tl::unexpected<Error>(heard.error());
+  return next_producer(session, node, watched);
+}
+
+Result<WatchdogPlan> plan_heartbeat(session::Session& session, const drive::Profile& profile,
+                                    std::uint8_t node, std::optional<std::uint8_t> producer) {
+  std::vector<session::SdoRequest> requests;
+  for (std::uint8_t sub = 1; sub <= kMostEntries; ++sub)
+    if (has(profile, {objects::kConsumerHeartbeatIndex, sub}))
+      requests.push_back({.node = node, .object = {objects::kConsumerHeartbeatIndex, sub}});
+  const auto answers = session.transfer(requests);
+  bool any = false;
+  std::uint8_t own = 0;
+  WatchdogPlan plan;
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    if (!answers[i] && answers[i].error().code != Errc::sdo_abort)
+      return tl::unexpected<Error>(answers[i].error());
+    if (!answers[i]) continue;
+    any = true;
+    const auto entry = load_le(*answers[i]);
+    const auto watched = node_of(entry);
+    if (watched != 0) plan.watched.insert(watched);
+    if (plan.entry == 0 && watched == 0) plan.entry = requests[i].object.sub;
+    // One that is left from before is used again: a drive takes no second entry for the same node.
+    if (watched != 0 && watched == producer) own = requests[i].object.sub;
+  }
+  if (own != 0) plan.entry = own;
+  if (plan.entry == 0) {
+    if (any) plan.remark = "all entries of 1016h are taken";
+    return plan;
+  }
+  const auto id =
+      producer ? Result<std::optional<std::uint8_t>>(producer) : free_producer(session, node, plan.watched);
+  if (!id) return tl::unexpected<Error>(id.error());
+  if (!*id) {
+    plan.remark = "no node-ID is free for the heartbeat of servoctl";
+    return plan;
+  }
+  plan.kind = WatchdogPlan::Kind::heartbeat;
+  plan.time = kWatchdogTime;
+  plan.producer = **id;
+  return plan;
+}
+
+/// The number in an object; empty where the drive does not give it.
+Result<std::optional<std::uint64_t>> number(session::Session& session, std::uint8_t node,
+                                            ObjectAddress object) {
+  const auto value = session.upload(node, object);
+  if (!value && value.error().code != Errc::sdo_abort) return tl::unexpected<Error>(value.error());
+  return value ? std::optional(load_le(*value)) : std::nullopt;
+}
+
+/// Why life guarding would stop nothing; empty when it does.
+Result<std::string> against_guarding(session::Session& session, const drive::Profile& profile,
+                                     std::uint8_t node) {
+  for (const auto object : {objects::kGuardTime, objects::kLifeTimeFactor}) {
+    const auto there = number(session, node, object);
+    if (!there) return tl::unexpected<Error>(there.error());
+    if (!*there) return "it has no " + to_string(object);
+  }
+  if (has(profile, objects::kProducerHeartbeat)) {
+    const auto period = number(session, node, objects::kProducerHeartbeat);
+    if (!period) return tl::unexpected<Error>(period.error());
+    // CiA 301, 7.2.8.2.2: one of the two protocols.
+    if (period->value_or(0) != 0) return "it sends heartbeats (1017h), so it does not answer node guarding";
+  }
+  const auto& name = profile.rules.nmt.guarding_alarm;
+  if (name.empty()) return {};
+  const auto alarm = drive::resolve(&profile, name);
+  if (!alarm) return tl::unexpected<Error>(alarm.error());
+  const auto on = number(session, node, alarm->address);
+  if (!on) return tl::unexpected<Error>(on.error());
+  if (on->value_or(0) != 0) return {};
+  const bool at_restart = drive::meaning(*alarm, node).effect == od::Effect::restart;
+  return fmt::format("the end of life guarding is no alarm while {} is {}{}", name,
+                     *on ? "0" : "not readable",
+                     at_restart ? " (a change takes effect when the drive starts)" : "");
+}
+
+/// Life guarding where it stops the drive.
+Result<void> plan_guarding(session::Session& session, const drive::Profile& profile, std::uint8_t node,
+                           WatchdogPlan& plan) {
+  const auto why_not = against_guarding(session, profile, node);
+  if (!why_not) return tl::unexpected<Error>(why_not.error());
+  if (!why_not->empty()) {
+    plan.remark += (plan.remark.empty() ? "" : ", and ") + *why_not;
+    return {};
+  }
+  const auto& alarm = profile.rules.nmt.guarding_alarm;
+  plan.remark = alarm.empty() ? "" : fmt::format("provided that {} was on when the drive started", alarm);
+  plan.kind = WatchdogPlan::Kind::guarding;
+  plan.time = 2 * kWatchdogTime;
+  return {};
+}
+
+}  // namespace
+
+Result<std::optional<std::uint8_t>> next_producer(session::Session& session, std::uint8_t node,
+                                                  const std::set<std::uint8_t>& watched) {
+  for (std::uint8_t id = canopen::kLastNode; id >= canopen::kFirstNode; --id)
+    if (id != node && watched.count(id) == 0 && !session.watch().state(id) && !answers(session, id))
+      return std::optional(id);
+  return std::optional<std::uint8_t>();
+}
+
+Result<WatchdogPlan> plan_watchdog(session::Session& session, const drive::Profile& profile,
+                                   std::uint8_t node, std::optional<std::uint8_t> producer) {
+  if (producer && *producer == node)
+    return fail(Errc::usage, fmt::format("{} is the drive's own node-ID", node),
+                "give servoctl another one, such as 127");
+  if (producer && session.watch().state(*producer))
+    return fail(Errc::refused,
+                fmt::format("--master-node {}: somebody was heard under this number", *producer),
+                "a node-ID belongs to one only; leave it out, and servoctl takes one that is free");
+  auto plan = plan_heartbeat(session, profile, node, producer);
+  if (!plan) return plan;
+  if (plan->kind == WatchdogPlan::Kind::none && has(profile, objects::kGuardTime) &&
+      has(profile, objects::kLifeTimeFactor)) {
+    if (const auto done = plan_guarding(session, profile, node, *plan); !done)
+      return tl::unexpected<Error>(done.error());
+  }
+  plan->assumed = profile.rules.is_assumed("watchdog");
+  plan->alarms = profile.rules.nmt.lost_alarms;
+  if (plan->kind == WatchdogPlan::Kind::none || !has(profile, objects::kAbortConnectionOption)) return plan;
+  const auto option = session.upload(node, objects::kAbortConnectionOption);
+  if (!option) return plan;
+  const auto meaning = drive::meaning(drive::target_at(&profile, objects::kAbortConnectionOption), node);
+  plan->reaction_off = load_le(*option) == 0;
+  const auto value =
+      od::decode(meaning.type, plan->reaction_off ? store_le(kReactWithFault, option->size()) : *option);
+  const auto* label = value ? drive::label_of(meaning, *value) : nullptr;
+  if (label != nullptr) plan->reaction = label->label;
+  return plan;
+}
+
+std::string to_string(const WatchdogPlan& plan) {
+  auto then = plan.reaction.empty() ? std::string() : fmt::format("; it reacts with: {}", plan.reaction);
+  if (!plan.remark.empty()) then += "; " + plan.remark;
+  if (plan.assumed) then += "; ASSUMED: its manual does not say what the motor does then";
+  switch (plan.kind) {
+    case WatchdogPlan::Kind::heartbeat:
+      return fmt::format(
+          "heartbeat of servoctl as node {}: the drive stops by itself {} after the last one{}",
+          plan.producer, servoctl::to_string(plan.time), then);
+    case WatchdogPlan::Kind::guarding:
+      return fmt::format("life guarding by servoctl: the drive stops by itself {} after the last question{}",
+                         servoctl::to_string(plan.time), then);
+    case WatchdogPlan::Kind::none: break;
+  }
+  auto none =
+      plan.alarms.empty()
+          ? std::string("none: nothing stops the drive when the cable is cut or servoctl dies")
+          : fmt::format(
+                "none that servoctl can arm: the manual names alarm {} for a lost communication, "
+                "but not whether and when the motor stops; when servoctl alone dies it may keep turning",
+                fmt::join(plan.alarms, ", "));
+  return none + (plan.remark.empty() ? "" : "; " + plan.remark);
+}
+
+}  // namespace servoctl::motion

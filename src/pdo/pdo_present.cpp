@@ -1,0 +1,32 @@
+// The PDOs that a drive has.
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "base/text.hpp"
+#include "pdo/pdo_changing.hpp"
+
+namespace servoctl::pdo {
+
+using canopen::Pdo;
+
+bool same_pdo(const Pdo& a, const Pdo& b) { return a.direction == b.direction && a.number == b.number; }
+
+const Pdo* PresentPdos::find(const Pdo& like) const {
+  const auto found =
+      std::find_if(pdos.begin(), pdos.end(), [&](const Pdo& pdo) { return same_pdo(pdo, like); });
+  return found == pdos.end() ? nullptr : &*found;
+}
+
+Result<Pdo> find_pdo(const PresentPdos& present, std::string_view name) {
+  const auto like = canopen::parse_pdo_name(name);
+  if (!like)
+    return fail(Errc::usage, fmt::format("'{}' names no PDO", name), "RPDO1, TPDO2: as the drive sees them");
+  if (const auto* found = present.find(*like)) return *found;
+  std::string there;
+  for (const auto& pdo : present.pdos) append(there, canopen::name(pdo.direction, pdo.number));
+  return fail(Errc::usage,
+              fmt::format("node {} has no {}", present.node, canopen::name(like->direction, like->number)),
+              there.empty() ? "it has no PDOs that can be read" : "it has " + there);
+}
+
+}  // namespace servoctl::pdo

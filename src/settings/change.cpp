@@ -1,0 +1,285 @@
+#include "settings/change.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <set>
+
+#include "drive/cia402.hpp"
+#include "drive/standard_objects.hpp"
+#include "session/cob_id_check.hpp"
+#include "session/measure.hpp"
+#include "settings/keeping_nodes.hpp"
+
+namespace servoctl::settings {
+namespace {
+
+using report::Show;
+using report::Value;
+
+constexpr std::uint32_t kNoSuchObject = 0x0602'0000;  ///< CiA 301, table of SDO abort codes.
+
+/// An object whose length no manual tells is read to learn it: a write of another length would be refused or
+/// worse.
+Result<drive::Meaning> learn_size(show::Desk& desk, std::uint8_t node, const drive::Target& target,
+                                  const drive::Meaning& meaning) {
+  const auto bytes = desk.session->upload(node, target.address);
+  if (!bytes) {
+    auto error = bytes.error();
+    error.message = "the object's size is not known and reading it to learn it failed: " + error.message;
+    const bool absent = error.abort_code == kNoSuchObject;
+    error.hint = desk.profile == nullptr ? "say the type: --type i32, or the drive family: -d FAMILY"
+                 : absent ? fmt::format("`objects -d {}` lists the objects it has", desk.profile->family)
+                          : std::string("say the type: --type i32");
+    return tl::unexpected<Error>(std::move(error));
+  }
+  auto learned = drive::fitted(meaning, bytes->size());
+  if (!meaning.type_known) learned.type = show::type_of({node, target, {}, *bytes}, *bytes);
+  if (learned.type != meaning.type || !meaning.type_known)
+    desk.notices.push_back(fmt::format("node {}, object {}: taken as {} by the length of what it holds", node,
+                                       to_string(target.address), od::name(learned.type)));
+  if (const auto size = od::size_of(learned.type); size && *size != bytes->size())
+    return fail(Errc::negative,
+                fmt::format("the object holds {} bytes, and {} is none of that length", bytes->size(),
+                            od::name(learned.type)),
+                "say the type: --type i32");
+  return learned;
+}
+
+/// Whether only the drive's own gear and ratings tell what the unit in the text is.
+bool asks_measure(const show::Desk& desk, const drive::Meaning& meaning, std::string_view text) {
+  return meaning.measure && desk.profile != nullptr && drive::needs_bridge(meaning, text);
+}
+
+/// A gear that takes effect at a restart may be set and not in force: what is written then is converted by
+/// numbers the drive does not go by yet.
+void warn_of_gear(show::Desk& desk, std::uint8_t node, drive::Measure measure) {
+  std::set<std::string> ids;
+  for (const auto& way : desk.profile->rules.units.at(measure))
+    for (const auto object : way.objects()) {
+      const auto target = drive::target_at(desk.profile, object);
+      if (drive::meaning(target, node).effect == od::Effect::restart && target.parameter != nullptr)
+        ids.insert(target.parameter->id);
+    }
+  if (ids.empty()) return;
+  const auto names = fmt::to_string(fmt::join(ids, ", "));
+  const auto notice = fmt::format(
+      "node {}: the unit is converted by {}, right only if the drive was restarted since they were changed",
+      node, names);
+  if (std::find(desk.notices.begin(), desk.notices.end(), notice) == desk.notices.end())
+    desk.notices.push_back(notice);
+}
+
+/// What the drive's gear makes of the unit in the text, where only the drive can tell.
+void add_bridge(show::Desk& desk, std::uint8_t node, const drive::Target& target, std::string_view text,
+                drive::Meaning& meaning) {
+  if (!asks_measure(desk, meaning, text)) return;
+  const session::MeasureQuestion question[] = {{node, *meaning.measure}};
+  const auto measure = session::read_measures(*desk.session, *desk.profile, question).front();
+  if (!measure) return;
+  meaning.bridge = drive::bridge(meaning.unit, target.address, measure->value);
+  warn_of_gear(desk, node, question[0].measure);
+}
+
+tl::unexpected<Error> named(Error error, std::uint8_t node, const drive::Target& target,
+                            std::string_view separator = ": ") {
+  error.message = name_of(target) + std::string(separator) + error.message;
+  return tl::unexpected<Error>(show::located(std::move(error), node, target.address));
+}
+
+Result<drive::Meaning> writable_meaning(std::uint8_t node, const drive::Target& target,
+                                        std::optional<od::DataType> type) {
+  auto meaning = drive::meaning(target, node);
+  if (!od::writable(meaning.access)) {
+    Error error;
+    error.code = Errc::usage;
+    error.message = "is read-only";
+    error.hint = "it can be read, not written";
+    return named(std::move(error), node, target, " ");
+  }
+  if (type) meaning.type = *type;
+  return meaning;
+}
+
+Result<Change> change_to(const drive::Profile* profile, std::uint8_t node, const drive::Target& target,
+                         const drive::Meaning& meaning, std::string_view value) {
+  const auto parsed = drive::parse_quantity(meaning, value);
+  if (!parsed) return named(parsed.error(), node, target);
+  const auto data = od::encode(meaning.type, *parsed);
+  if (!data) return named(data.error(), node, target);
+  if (const auto free = session::check_cob_id(profile, target.address, *data, node); !free)
+    return named(free.error(), node, target);
+  Change out{node, target, meaning.type, *data};
+  out.bridge = meaning.bridge;
+  return out;
+}
+
+bool is_parameter(const drive::Profile& profile, const Change& change, const std::string& id) {
+  return drive::place_of(profile, id) == change.target.address;
+}
+
+/// Whether it is a controlword that enables a drive.
+bool enables(const Change& change) {
+  // Bit 7 is left out: with it set the drive looks at its edge only, and the word may follow another.
+  const auto controlword = static_cast<std::uint16_t>(load_le(change.data) & 0xFF7FU);
+  return change.target.address == objects::kControlword &&
+         drive::decode_command(controlword, 0) == drive::ControlCommand::enable_operation;
+}
+
+/// What the write does beside changing a value; empty when nothing.
+std::string_view reason_to_ask(const drive::Profile* profile, const Change& change) {
+  const auto* entry = change.target.entry;
+  const auto* parameter = change.target.parameter;
+  const auto index = change.target.address.index;
+  if (index == objects::kStoreIndex || index == objects::kRestoreIndex ||
+      (entry != nullptr && entry->command) || (parameter != nullptr && parameter->command))
+    return "It starts an action or stores or restores parameters.";
+  if (enables(change)) return "It enables the drive: the motor is energised and may move.";
+  if (profile != nullptr && (is_parameter(*profile, change, profile->rules.nmt.node_id) ||
+                             is_parameter(*profile, change, profile->rules.nmt.bitrate)))
+    return "After a restart the drive is found under another address.";
+  return {};
+}
+
+std::string effect_text(od::Effect effect) {
+  switch (effect) {
+    case od::Effect::immediate: return "at once";
+    case od::Effect::restart: return "after a restart of the drive";
+    case od::Effect::standstill: return "at standstill";
+    case od::Effect::unstated: break;
+  }
+  return {};
+}
+
+/// A refusal that the family's password may explain says so.
+Error with_password_hint(const show::Desk& desk, const Change& change, Error error) {
+  if (desk.profile == nullptr || error.code != Errc::sdo_abort) return error;
+  const auto& store = desk.profile->rules.store;
+  const auto* password = desk.profile->parameter(store.unlock);
+  const bool vendor_object = change.target.address.index >= 0x2000 && change.target.address.index < 0x6000;
+  if (password == nullptr || !password->object || !store.unlock_open || !vendor_object) return error;
+  error.hint = fmt::format("it may be locked: `param set {} {}` opens", password->id, *store.unlock_open);
+  if (store.unlock_closed) error.hint += fmt::format(", {} closes", *store.unlock_closed);
+  return error;
+}
+
+report::List change_row(const Change& change, const Result<session::Written>& written, const Value& kept,
+                        const show::Desk& desk) {
+  const show::Reading reading{change.node, change.target, change.type, change.data, change.bridge};
+  const auto decoded = show::decode_value(reading, change.data);
+  const auto effect = drive::meaning(change.target, change.node).effect;
+  const auto name = desk.chinese ? change.target.label_zh() : change.target.label();
+  std::string state = "not written";
+  if (written && written->answer_lost)
+    state = "written (the answer was lost, the value was read back)";
+  else if (written && written->read_back)
+    state = "written, read back";
+  else if (written)
+    state = "written";
+  return {change.node,
+          to_string(change.target.address),
+          change.target.address.index,
+          change.target.address.sub,
+          report::text_or_null(name),
+          change.target.parameter != nullptr ? Value(change.target.parameter->id) : Value(),
+          decoded.text,
+          decoded.raw.is_null() ? decoded.value : decoded.raw,
+          decoded.value,
+          report::text_or_null(decoded.unit),
+          decoded.familiar,
+          decoded.label,
+          state,
+          written.has_value(),
+          written ? Value(written->read_back.has_value()) : Value(false),
+          written ? kept : Value(),
+          written ? kept_text(kept) : Value(),
+          written ? report::text_or_null(effect_text(effect)) : Value(),
+          report::text_or_null(std::string(od::name(effect))),
+          written ? Value() : show::error_record(written.error(), show::abort_words(desk, written.error()))};
+}
+
+}  // namespace
+
+std::string name_of(const drive::Target& target) {
+  const auto label = target.label();
+  return label.empty() ? to_string(target.address) : label;
+}
+
+Result<Change> make_change(show::Desk& desk, std::uint8_t node, const drive::Target& target,
+                           std::string_view value, std::optional<od::DataType> type) {
+  auto meaning = writable_meaning(node, target, type);
+  if (!meaning) return tl::unexpected<Error>(meaning.error());
+  if (!type && (!meaning->type_known || !meaning->size_known)) {
+    meaning = learn_size(desk, node, target, *meaning);
+    if (!meaning) return tl::unexpected<Error>(meaning.error());
+  }
+  add_bridge(desk, node, target, value, *meaning);
+  return change_to(desk.profile, node, target, *meaning, value);
+}
+
+Result<void> check_change(const show::Desk& desk, std::uint8_t node, const drive::Target& target,
+                          std::string_view value, std::optional<od::DataType> type) {
+  const auto meaning = writable_meaning(node, target, type);
+  if (!meaning) return tl::unexpected<Error>(meaning.error());
+  const bool asks_size = !type && (!meaning->type_known || !meaning->size_known);
+  if (asks_size || asks_measure(desk, *meaning, value)) return {};
+  if (const auto change = change_to(desk.profile, node, target, *meaning, value); !change)
+    return tl::unexpected<Error>(change.error());
+  return {};
+}
+
+Result<void> confirm_changes(show::Desk& desk, std::span<const Change> changes) {
+  for (const auto& change : changes) {
+    const auto reason = reason_to_ask(desk.profile, change);
+    if (reason.empty()) continue;
+    const auto question = fmt::format("Write {} on node {}? {}", name_of(change.target), change.node, reason);
+    if (const auto answer = desk.confirm(question); !answer) return answer;
+  }
+  return {};
+}
+
+Result<Value> write_changes(show::Desk& desk, std::span<const Change> changes, const WriteOptions& options) {
+  std::vector<session::SdoRequest> requests;
+  for (const auto& change : changes)
+    requests.push_back({change.node, change.target.address, change.data, change.transfer});
+  KeepingNodes keeping(desk, changes);
+  if (const auto opened = keeping.open(options); !opened) return tl::unexpected<Error>(opened.error());
+  const bool energises = std::any_of(changes.begin(), changes.end(), enables);
+  const auto hold = desk.session->protect(energises ? session::Care::energised : session::Care::none);
+  const auto written = session::write_all(*desk.session, requests, options.read_back || options.keep);
+  keeping.close(written);
+  for (const auto& change : changes)
+    if (enables(change)) desk.session->energised().insert(change.node);
+  report::Table table;
+  table.columns = {{"node"},
+                   {"object", "", Show::text},
+                   {"index", "", Show::json},
+                   {"sub", "", Show::json},
+                   {"name"},
+                   {"id", "", Show::json},
+                   {"text", "value", Show::text},
+                   {"raw", "", Show::json},
+                   {"value", "", Show::json},
+                   {"unit", "", Show::json},
+                   {"si", "", Show::json},
+                   {"label", "", Show::json},
+                   {"state", "result", Show::text},
+                   {"written", "", Show::json},
+                   {"read_back", "", Show::json},
+                   {"kept", "", Show::json},
+                   {"kept_text", "kept", Show::text},
+                   {"when", "takes effect", Show::text},
+                   {"effect", "", Show::json},
+                   {"error", "", Show::json}};
+  table.json_only = std::none_of(written.begin(), written.end(), [](const auto& w) { return w.has_value(); });
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    table.rows.push_back(change_row(changes[i], written[i], keeping.kept(changes[i]), desk));
+    if (!written[i]) desk.errors.push_back(with_password_hint(desk, changes[i], written[i].error()));
+    if (written[i] && written[i]->answer_lost)
+      desk.notices.push_back(fmt::format(
+          "node {}, object {}: the answer to the write was lost; the value read back is the one written",
+          changes[i].node, to_string(changes[i].target.address)));
+  }
+  return table;
+}
+
+}  // namespace servoctl::settings

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "session/write.hpp"
+#include "show/desk.hpp"
+#include "show/reading.hpp"
+#include "show/records.hpp"
+
+namespace servoctl::settings {
+
+/// One value that a user wants in one object.
+struct Change {
+  std::uint8_t node = 0;
+  drive::Target target;
+  od::DataType type = od::DataType::u32;
+  Bytes data;
+  canopen::Transfer transfer = canopen::Transfer::automatic;
+  std::optional<drive::Bridge> bridge = {};  ///< What the drive's own measures say of the unit.
+};
+
+/// Name of the object for a message: its label, else its address.
+std::string name_of(const drive::Target& target);
+
+/// Turns a name and a value into a change. Errc::usage for an unknown name, a read-only object, a value that
+/// does not fit; an object of unknown type is read first to learn its size.
+Result<Change> make_change(show::Desk& desk, std::uint8_t node, const drive::Target& target,
+                           std::string_view value, std::optional<od::DataType> type);
+
+/// Whether make_change() would take the value, as far as the dictionary alone can tell.
+Result<void> check_change(const show::Desk& desk, std::uint8_t node, const drive::Target& target,
+                          std::string_view value, std::optional<od::DataType> type);
+
+/// Asks before changes that do more than change a value: store or restore commands, node-ID, bitrate.
+Result<void> confirm_changes(show::Desk& desk, std::span<const Change> changes);
+
+/// The frames of these changes, in the order they would be sent.
+report::Value planned_frames(std::span<const Change> changes);
+
+/// What is to be done beside writing.
+struct WriteOptions {
+  bool read_back = false;
+  bool keep = false;    ///< Make the values survive power-off, by the family's way.
+  bool unlock = false;  ///< Give the family's password before, and take it back after.
+};
+
+/// What write_changes() would send: the values, and what the family's password and memory need around them.
+/// Only reads. Errors as there.
+Result<report::Value> planned_changes(show::Desk& desk, std::span<const Change> changes,
+                                      const WriteOptions& options);
+
+/// Writes the changes and tells of each: written, read back, kept, when it takes effect. Failures go to
+/// `desk.errors`.
+Result<report::Value> write_changes(show::Desk& desk, std::span<const Change> changes,
+                                    const WriteOptions& options);
+
+}  // namespace servoctl::settings

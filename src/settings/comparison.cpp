@@ -1,0 +1,129 @@
+#include "settings/comparison.hpp"
+
+#include <fmt/format.h>
+
+#include "base/pdo_index.hpp"
+#include "drive/naming.hpp"
+#include "show/reading.hpp"
+
+namespace servoctl::settings {
+namespace {
+
+using report::Record;
+using report::Show;
+using report::Value;
+
+struct Shown {
+  std::string text = "-";
+  Value record;
+};
+
+Shown show(const drive::Profile* profile, const Side& side, ObjectAddress object) {
+  const auto found = side.values.find(object);
+  if (found == side.values.end()) return {};
+  const show::Reading reading{side.node, drive::target_at(profile, object), {}, found->second};
+  const auto decoded = show::decode_value(reading, found->second);
+  // COB-IDs, mappings and heartbeat entries are made of fields: decimal says nothing.
+  const bool fields = object.index < 0x2000 && found->second.size() == 4 && decoded.unit.empty();
+  auto text = fields                  ? fmt::format("0x{:08X}", load_le(found->second))
+              : found->second.empty() ? std::string("\"\"")
+                                      : decoded.text;
+  if (const auto* label = std::get_if<std::string>(&decoded.label.data())) text += " " + *label;
+  return {std::move(text), Record{{"value", decoded.value},
+                                  {"raw", decoded.raw},
+                                  {"unit", report::text_or_null(decoded.unit)},
+                                  {"label", decoded.label},
+                                  {"bytes", to_hex(found->second)}}};
+}
+
+/// Whether a mapping entry is above the count of its PDO: it is nothing, whatever it holds.
+bool is_unused(const Side& side, ObjectAddress object) {
+  const auto count = side.values.find({object.index, 0});
+  return is_pdo_mapping(object.index) && object.sub > 0 && count != side.values.end() &&
+         load_le(count->second) < object.sub;
+}
+
+}  // namespace
+
+Side side_of(const Backup& backup, std::string title) {
+  Side out{std::move(title), backup.identity.node, {}};
+  for (const auto& entry : backup.entries)
+    if (entry.bytes) out.values.emplace(entry.object, *entry.bytes);
+  return out;
+}
+
+Side factory_side(const drive::Profile& profile, std::uint8_t node) {
+  Side out{"factory", node, {}};
+  for (const auto& setting : drive::settings_of(profile)) {
+    const auto& entry = *setting.entry;
+    if (!setting.left_out.empty() || !entry.default_value) continue;
+    if (const auto bytes = od::encode(entry.type, entry.default_value->for_node(node)))
+      out.values.emplace(entry.address, *bytes);
+  }
+  return out;
+}
+
+bool is_address(const drive::Profile* profile, ObjectAddress object) {
+  if (profile == nullptr) return false;
+  const auto& rules = profile->rules.nmt;
+  return drive::place_of(*profile, rules.node_id) == object ||
+         drive::place_of(*profile, rules.bitrate) == object;
+}
+
+Bytes for_node(const drive::Profile* profile, ObjectAddress object, const Bytes& bytes, std::uint8_t from,
+               std::uint8_t to) {
+  if (profile == nullptr || from == to) return bytes;
+  const auto number = load_le(bytes);
+  if (drive::place_of(*profile, profile->rules.nmt.node_id) == object)
+    return number == from ? store_le(to, bytes.size()) : bytes;
+  const auto* entry = profile->dictionary.find(object);
+  const bool with_node = entry != nullptr && entry->default_value && entry->default_value->plus_node_id;
+  if (!with_node || bytes.size() != 4 || (number & 0x7FU) != from) return bytes;
+  return store_le(number - from + to, 4);
+}
+
+Comparison compare(const drive::Profile* profile, const Side& a, const Side& b, bool whole, bool chinese) {
+  Comparison out;
+  report::Table table;
+  table.columns = {{"object", "", Show::text},
+                   {"index", "", Show::json},
+                   {"sub", "", Show::json},
+                   {"id", "", Show::json},
+                   {"name"},
+                   {"a_text", a.title, Show::text},
+                   {"a", "", Show::json},
+                   {"b_text", b.title, Show::text},
+                   {"b", "", Show::json}};
+  std::map<ObjectAddress, int> objects;
+  for (const auto* side : {&a, &b})
+    for (const auto& value : side->values) ++objects[value.first];
+  for (const auto& [object, sides] : objects) {
+    if (sides < 2 && (!whole || is_unused(a, object) || is_unused(b, object))) continue;
+    ++out.compared;
+    if (sides == 2 && for_node(profile, object, a.values.at(object), a.node, b.node) == b.values.at(object))
+      continue;
+    ++out.different;
+    const auto target = drive::target_at(profile, object);
+    auto left = show(profile, a, object);
+    auto right = show(profile, b, object);
+    table.rows.push_back({to_string(object), object.index, object.sub,
+                          target.parameter != nullptr ? Value(target.parameter->id) : Value(),
+                          report::text_or_null(chinese ? target.label_zh() : target.label()), left.text,
+                          std::move(left.record), right.text, std::move(right.record)});
+  }
+  out.record = {{"compared", out.compared},
+                {"different", out.different},
+                {"differences", table, Show::json},
+                {"table", out.different == 0 ? Value() : Value(std::move(table)), Show::text, "differences"}};
+  return out;
+}
+
+Error differences_error(const Comparison& comparison, const Side& a, const Side& b) {
+  Error error;
+  error.code = Errc::negative;
+  error.message = fmt::format("{} of {} values differ between {} and {}", comparison.different,
+                              comparison.compared, a.title, b.title);
+  return error;
+}
+
+}  // namespace servoctl::settings

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "report/value.hpp"
+#include "settings/backup_file.hpp"
+
+namespace servoctl::settings {
+
+/// One side of a comparison: what it is called, and the bytes of its settings.
+struct Side {
+  std::string title;
+  std::uint8_t node = 1;
+  std::map<ObjectAddress, Bytes> values;
+};
+
+/// The values of a backup; what it left out is not compared.
+Side side_of(const Backup& backup, std::string title);
+
+/// The factory values the family's data knows, for this node.
+Side factory_side(const drive::Profile& profile, std::uint8_t node);
+
+/// Whether it is the node-ID or the bitrate, by the family's rules. `profile` may be null.
+bool is_address(const drive::Profile* profile, ObjectAddress object);
+
+/// Bytes read from node `from` as node `to` would hold them: a COB-ID that contains the node-ID, and the
+/// parameter of the node-ID itself, follow the node. `profile` may be null.
+Bytes for_node(const drive::Profile* profile, ObjectAddress object, const Bytes& bytes, std::uint8_t from,
+               std::uint8_t to);
+
+/// `{compared, different, differences[{index sub id name a{…} b{…}}]}`. An entry that one side lacks counts
+/// as different only where `whole` asks for it. Each side's values are compared as its own node's. `profile`
+/// may be null.
+struct Comparison {
+  report::Record record;
+  std::size_t compared = 0;
+  std::size_t different = 0;
+};
+Comparison compare(const drive::Profile* profile, const Side& a, const Side& b, bool whole, bool chinese);
+
+/// The command lines that give the drive of `a` the values of `b`, PDOs by procedure: what compare() finds
+/// different. Node-ID and bitrate are comments, as what only `a` has.
+std::vector<std::string> lines_between(const drive::Profile* profile, const Side& a, const Side& b,
+                                       bool whole);
+
+/// The exit code 1 of a comparison that found differences.
+Error differences_error(const Comparison& comparison, const Side& a, const Side& b);
+
+}  // namespace servoctl::settings

@@ -1,0 +1,41 @@
+#include <fmt/format.h>
+
+#include "session/write_plan.hpp"
+#include "settings/backup_formats.hpp"
+#include "settings/comparison.hpp"
+
+namespace servoctl::settings {
+
+std::vector<std::string> lines_between(const drive::Profile* profile, const Side& a, const Side& b,
+                                       bool whole) {
+  session::Values present;
+  session::Values wanted;
+  std::vector<std::string> comments;
+  for (const auto& [object, theirs] : b.values) {
+    const auto data = for_node(profile, object, theirs, b.node, a.node);
+    const auto ours = a.values.find(object);
+    const bool both = ours != a.values.end();
+    const auto line =
+        both && ours->second != data ? write_line(profile, a.node, object, data) : std::string();
+    if (!both && whole)
+      comments.push_back(fmt::format("# {} alone has {}", comment_text(b.title), to_string(object)));
+    else if (!line.empty() && is_address(profile, object))
+      comments.push_back("# not changed: " + line);
+    else if (both)
+      wanted.emplace(object, data);
+  }
+  for (const auto& [object, ours] : a.values) {
+    if (wanted.count(object) > 0) present.emplace(object, ours);
+    if (whole && b.values.count(object) == 0)
+      comments.push_back(fmt::format("# {} alone has {}", comment_text(a.title), to_string(object)));
+  }
+  std::vector<std::string> out;
+  if (profile != nullptr) out.push_back(fmt::format("drive {}", batch_word(profile->family)));
+  out.push_back(fmt::format("use {}", a.node));
+  for (const auto& step : session::plan_writes(profile, present, wanted))
+    out.push_back(commented_line(profile, a.node, step.object, step.data));
+  out.insert(out.end(), comments.begin(), comments.end());
+  return out;
+}
+
+}  // namespace servoctl::settings

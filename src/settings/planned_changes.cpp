@@ -1,0 +1,42 @@
+// What --dry-run shows of values that would be written.
+#include "settings/change.hpp"
+#include "settings/keeping_nodes.hpp"
+#include "show/planned_messages.hpp"
+
+namespace servoctl::settings {
+namespace {
+
+using report::Value;
+
+void add_writes(std::span<const Change> changes, session::Rehearsal& rehearsal) {
+  for (const auto& change : changes)
+    rehearsal.add(session::planned_write({change.node, change.target.address, change.data, change.transfer}));
+}
+
+}  // namespace
+
+Value planned_frames(std::span<const Change> changes) {
+  session::Rehearsal rehearsal;
+  add_writes(changes, rehearsal);
+  report::Table table;
+  table.columns = {{"node"}, {"object"}, {"name"}, {"frame"}};
+  for (std::size_t i = 0; i < changes.size(); ++i)
+    table.rows.push_back({changes[i].node, to_string(changes[i].target.address),
+                          report::text_or_null(changes[i].target.label()),
+                          show::frame_text(rehearsal.messages()[i])});
+  return table;
+}
+
+Result<Value> planned_changes(show::Desk& desk, std::span<const Change> changes,
+                              const WriteOptions& options) {
+  session::Rehearsal rehearsal;
+  KeepingNodes keeping(desk, changes);
+  keeping.rehearse(rehearsal);
+  if (const auto opened = keeping.open(options); !opened) return tl::unexpected<Error>(opened.error());
+  add_writes(changes, rehearsal);
+  const std::vector<Result<session::Written>> written(changes.size(), session::Written{});
+  keeping.close(written);
+  return show::planned_messages(desk, rehearsal.messages());
+}
+
+}  // namespace servoctl::settings

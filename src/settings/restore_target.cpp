@@ -1,0 +1,223 @@
+#include "settings/restore_target.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <map>
+
+#include "drive/cia402.hpp"
+#include "drive/drive_settings.hpp"
+#include "drive/standard_objects.hpp"
+#include "session/cob_id_check.hpp"
+#include "session/pdo_setup.hpp"
+#include "settings/change.hpp"
+#include "settings/comparison.hpp"
+#include "show/identity.hpp"
+#include "show/pdo_check.hpp"
+
+namespace servoctl::settings {
+namespace {
+
+using canopen::Pdo;
+
+/// As `pdo map` and its kin would take it: `all` are the PDOs of the drive as they will be.
+Result<void> check_pdo(const drive::Profile& profile, const Pdo& present, const Pdo& wanted,
+                       std::span<const Pdo> all) {
+  if (present.entries != wanted.entries)
+    if (const auto maps = show::check_mapping(profile, wanted); !maps) return maps;
+  return show::check_communication(profile, present, wanted, all);
+}
+
+}  // namespace
+
+Result<void> RestoreTarget::prepare() {
+  for (const auto step :
+       {&RestoreTarget::check_identity, &RestoreTarget::choose_values, &RestoreTarget::read_present})
+    if (const auto done = (this->*step)(); !done) return done;
+  if (const auto still = check_standstill(); !still) return still;
+  if (const auto fit = check_values(); !fit) return fit;
+  return check_pdos();
+}
+
+Result<void> RestoreTarget::check_identity() {
+  const bool force = choice_.force;
+  if (backup_->family != desk_->profile->family && !force)
+    return fail(Errc::refused,
+                fmt::format("{} is of {}, not of {}", title_, backup_->family, desk_->profile->family),
+                "--force restores what fits all the same");
+  const std::uint8_t nodes[] = {node_};
+  const auto found = session::scan(*desk_->session, nodes);
+  if (!found) return tl::unexpected<Error>(found.error());
+  if (found->empty())
+    return fail(Errc::timeout, fmt::format("node {} does not answer", node_), "`scan` shows who does");
+  identity_ = found->front();
+  const auto& drive = identity_;
+  if (const auto what = show::other_kind(backup_->identity, drive); !what.empty() && !force)
+    return fail(Errc::refused,
+                fmt::format("node {} is another drive than that of {}: {} differs", node_, title_, what),
+                "--force restores what fits all the same");
+  const bool says_firmware = backup_->identity.revision || !backup_->identity.software_version.empty();
+  if (says_firmware && (backup_->identity.revision != drive.revision ||
+                        backup_->identity.software_version != drive.software_version))
+    desk_->notices.push_back(fmt::format(
+        "node {}: the firmware differs from that of the backup: compare the values that matter", node_));
+  return {};
+}
+
+/// Gains and limits are no things to change under a drive that holds a load.
+Result<void> RestoreTarget::check_standstill() const {
+  const auto word = desk_->session->upload(node_, objects::kStatusword);
+  if (!word && word.error().code != Errc::sdo_abort) return tl::unexpected<Error>(word.error());
+  if (!word || !drive::is_energised(drive::decode_state(static_cast<std::uint16_t>(load_le(*word)))))
+    return {};
+  return fail(Errc::refused, fmt::format("node {} is energised, its settings are not changed now", node_),
+              "`disable` takes its power away; make sure that the load is held");
+}
+
+/// Only what this drive's own data calls a setting is ever written, whatever the file says.
+Result<void> RestoreTarget::leave_out(const Backup::Entry& entry, std::string_view reason) {
+  const auto what = fmt::format("{}:{}: {} is no setting of this drive: {}", title_, entry.line,
+                                to_string(entry.object), reason);
+  if (!choice_.force) return fail(Errc::refused, what, "nothing was written; --force restores the rest");
+  desk_->notices.push_back(what + "; it is left out");
+  return {};
+}
+
+Result<void> RestoreTarget::choose_values() {
+  std::map<ObjectAddress, std::string_view> settings;
+  for (const auto& setting : drive::settings_of(*desk_->profile))
+    settings.emplace(setting.entry->address, setting.left_out);
+  for (const auto& entry : backup_->entries) {
+    const bool address = is_address(desk_->profile, entry.object);
+    if (!entry.bytes || (address && !choice_.with_address)) continue;
+    const auto setting = settings.find(entry.object);
+    const auto reason =
+        setting == settings.end() ? std::string_view("not in its data, or read-only") : setting->second;
+    if (reason.empty())
+      wanted_.emplace(entry.object, address ? *entry.bytes
+                                            : for_node(desk_->profile, entry.object, *entry.bytes,
+                                                       backup_->identity.node, node_));
+    else if (const auto left_out = leave_out(entry, reason); !left_out)
+      return left_out;
+  }
+  return {};
+}
+
+/// A text and a domain are as long as what is written.
+bool RestoreTarget::same_length(ObjectAddress object, const Bytes& data) const {
+  const auto target = drive::target_at(desk_->profile, object);
+  const bool fixed = target.entry == nullptr || od::size_of(target.entry->type);
+  return !fixed || data.size() == wanted_.at(object).size();
+}
+
+Result<void> RestoreTarget::read_present() {
+  std::vector<ObjectAddress> objects;
+  for (const auto& value : wanted_) objects.push_back(value.first);
+  const auto read = session::read_objects(*desk_->session, node_, objects);
+  if (!read) return tl::unexpected<Error>(read.error());
+  for (const auto& entry : *read) {
+    if (entry.bytes && same_length(entry.object, *entry.bytes)) {
+      present_.emplace(entry.object, *entry.bytes);
+      continue;
+    }
+    if (!choice_.force)
+      return fail(
+          Errc::negative,
+          fmt::format("{}:{}: {} of the backup: {}", title_, line_of(entry.object), to_string(entry.object),
+                      entry.bytes ? "the drive's has another length" : entry.left_out),
+          "nothing was written; --force restores the rest");
+    wanted_.erase(entry.object);
+  }
+  return {};
+}
+
+std::uint32_t RestoreTarget::line_of(ObjectAddress object) const {
+  for (const auto& entry : backup_->entries)
+    if (entry.object == object) return entry.line;
+  return 0;
+}
+
+tl::unexpected<Error> RestoreTarget::unfit(Errc code, ObjectAddress object, std::string_view what,
+                                           std::string hint) const {
+  const auto name = name_of(drive::target_at(desk_->profile, object));
+  auto error =
+      fail(code, fmt::format("{}:{}: {}: {}", title_, line_of(object), name, what), std::move(hint)).value();
+  error.node = node_;
+  error.object = object;
+  return fail(std::move(error));
+}
+
+/// `outside` tells whether the only thing against it is a limit.
+Result<void> RestoreTarget::check_value(ObjectAddress object, const Bytes& data, bool& outside) const {
+  const auto target = drive::target_at(desk_->profile, object);
+  const auto meaning = drive::fitted(drive::meaning(target, node_), data.size());
+  const auto value =
+      meaning.type_known ? od::decode(meaning.type, data) : Result<od::Value>(od::Value(std::uint64_t{0}));
+  if (!od::writable(meaning.access))
+    return unfit(Errc::negative, object, "is read-only", "nothing was written");
+  if (!value) return unfit(Errc::negative, object, value.error().message, "nothing was written");
+  if (const auto free = session::check_cob_id(desk_->profile, object, data, node_); !free)
+    return unfit(Errc::refused, object, free.error().message, "nothing was written; " + free.error().hint);
+  const auto limits = meaning.type_known ? drive::check_limits(meaning, *value) : Result<void>{};
+  outside = !limits;
+  return limits ? limits : unfit(Errc::negative, object, limits.error().message, "nothing was written");
+}
+
+/// Nothing is written unless everything can be. What the drive holds already is none of it. A backup of ours
+/// says what a drive held, within its limits or not: that is named and stays as it is, and keeps nobody from
+/// the rest.
+Result<void> RestoreTarget::check_values() {
+  for (auto next = wanted_.begin(); next != wanted_.end();) {
+    const auto [object, data] = *next++;
+    bool outside = false;
+    const auto fits = present_.at(object) == data ? Result<void>() : check_value(object, data, outside);
+    if (fits) continue;
+    auto error = fits.error();
+    const bool skipped = choice_.skip_invalid && error.code == Errc::negative;
+    if (!skipped && (!outside || !backup_->proven)) {
+      if (error.code == Errc::negative) error.hint += "; --skip-invalid restores the rest";
+      return fail(std::move(error));
+    }
+    error.message += "; node " + fmt::format("{} keeps {}", node_, to_hex(present_.at(object)));
+    error.hint =
+        skipped ? ""
+                : "what the drive itself came with is not known to be taken back: `write` it when it matters";
+    left_.push_back(std::move(error));
+    wanted_.erase(object);
+    present_.erase(object);
+  }
+  return {};
+}
+
+/// What a drive held as a whole, it takes as a whole; what others wrote, or a part, has to fit the PDOs that
+/// are there.
+Result<void> RestoreTarget::check_pdos() {
+  if (backup_->proven) return {};
+  const auto changes = [this](const auto& value) {
+    return pdo_at(value.first.index) && present_.at(value.first) != value.second;
+  };
+  if (std::none_of(wanted_.begin(), wanted_.end(), changes)) return {};
+  const std::uint8_t nodes[] = {node_};
+  auto values = std::move(session::read_pdo_values(*desk_->session, desk_->profile, nodes).front());
+  if (!values) return tl::unexpected<Error>(values.error());
+  const auto present = session::pdos_of(*values);
+  for (const auto& [object, data] : wanted_)
+    if (pdo_at(object.index)) values->insert_or_assign(object, data);
+  const auto wanted = session::pdos_of(*values);
+  for (const auto& was : present) {
+    const auto same = [&](const Pdo& pdo) {
+      return pdo.direction == was.direction && pdo.number == was.number;
+    };
+    const auto of_it = [&](const auto& value) {
+      return changes(value) &&
+             (value.first.index == was.communication_index() || value.first.index == was.mapping_index());
+    };
+    const auto now = std::find_if(wanted.begin(), wanted.end(), same);
+    if (now == wanted.end() || std::none_of(wanted_.begin(), wanted_.end(), of_it)) continue;
+    if (const auto fits = check_pdo(*desk_->profile, was, *now, wanted); !fits)
+      return unfit(Errc::refused, std::find_if(wanted_.begin(), wanted_.end(), of_it)->first,
+                   fits.error().message, "nothing was written; " + fits.error().hint);
+  }
+  return {};
+}
+
+}  // namespace servoctl::settings

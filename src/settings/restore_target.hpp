@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "session/restore.hpp"
+#include "session/scan.hpp"
+#include "settings/backup_file.hpp"
+#include "show/desk.hpp"
+
+namespace servoctl::settings {
+
+/// What of a backup goes into a drive.
+struct RestoreChoice {
+  bool with_address = false;  ///< Node-ID and bitrate as well.
+  bool force = false;         ///< Although identity or family are others; what does not fit is left out.
+  bool skip_invalid = false;  ///< Values that the drive cannot take are named and left out.
+};
+
+/// A drive that a backup is to go into: whether it may, and which values. Writes nothing.
+class RestoreTarget {
+ public:
+  /// `desk` and `backup` outlive it. `title` names the backup in messages.
+  RestoreTarget(show::Desk& desk, const Backup& backup, std::string title, std::uint8_t node,
+                const RestoreChoice& choice)
+      : desk_(&desk), backup_(&backup), title_(std::move(title)), node_(node), choice_(choice) {}
+
+  /// Checks family, identity and standstill, reads what the drive holds, and checks every value against its
+  /// data. Errc::refused for another or an energised drive, for what is no setting of this one, for a COB-ID
+  /// that no drive may have, and for PDOs that `pdo map` and `pdo enable` would refuse; Errc::negative, with
+  /// line and entry, for a value that this drive cannot take.
+  Result<void> prepare();
+
+  const session::Identity& identity() const { return identity_; }
+  const session::Values& wanted() const { return wanted_; }
+  const session::Values& present() const { return present_; }
+  /// Values of a backup of ours that are outside of the family's limits, and why: the drive held them, but
+  /// none is sent. They are not among wanted().
+  const std::vector<Error>& left() const { return left_; }
+
+ private:
+  Result<void> check_identity();
+  Result<void> check_standstill() const;
+  Result<void> leave_out(const Backup::Entry& entry, std::string_view reason);
+  Result<void> choose_values();
+  Result<void> read_present();
+  bool same_length(ObjectAddress object, const Bytes& data) const;
+  std::uint32_t line_of(ObjectAddress object) const;
+  Result<void> check_values();
+  Result<void> check_value(ObjectAddress object, const Bytes& data, bool& outside) const;
+  Result<void> check_pdos();
+  tl::unexpected<Error> unfit(Errc code, ObjectAddress object, std::string_view what, std::string hint) const;
+
+  show::Desk* desk_;
+  const Backup* backup_;
+  std::string title_;
+  std::uint8_t node_;
+  RestoreChoice choice_;
+  session::Identity identity_;
+  session::Values wanted_;
+  session::Values present_;
+  std::vector<Error> left_;
+};
+
+}  // namespace servoctl::settings

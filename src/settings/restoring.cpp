@@ -1,0 +1,229 @@
+#include "settings/restoring.hpp"
+
+#include <fmt/format.h>
+
+#include "base/file_lock.hpp"
+#include "drive/drive_settings.hpp"
+#include "settings/change.hpp"
+#include "settings/comparison.hpp"
+#include "settings/restore_journal.hpp"
+
+namespace servoctl::settings {
+namespace {
+
+namespace fs = std::filesystem;
+using report::Record;
+using report::Value;
+
+/// One restore, from file to outcome.
+class Restoring {
+ public:
+  Restoring(show::Desk& desk, const Backup& backup, const std::string& title, std::uint8_t node,
+            const fs::path& before, const RestoringOptions& options, const fs::path& undoes)
+      : desk_(&desk),
+        backup_(&backup),
+        title_(title),
+        node_(node),
+        before_(before),
+        undoes_(undoes),
+        options_(options) {}
+
+  Result<Restored> run() {
+    const auto locked = lock();
+    if (!locked) return tl::unexpected<Error>(locked.error());
+    const auto errors = desk_->errors.size();
+    auto answer = carry_through();
+    if (!answer) return tl::unexpected<Error>(answer.error());
+    const bool failed = desk_->errors.size() > errors;
+    desk_->errors.insert(desk_->errors.end(), left_over_.begin(), left_over_.end());
+    return Restored{std::move(*answer), failed};
+  }
+
+ private:
+  /// Two restores of one file and node would take each other's notes for their own.
+  Result<std::vector<FileLock>> lock() const {
+    std::vector<FileLock> out;
+    if (desk_->dry_run) return out;
+    for (const auto& file : {journal(), undoes_}) {
+      if (file.empty() || (!out.empty() && file == journal())) continue;
+      auto taken = FileLock::take(file.string() + ".lock");
+      if (!taken) return tl::unexpected<Error>(taken.error());
+      if (!*taken)
+        return fail(Errc::refused,
+                    fmt::format("another servoctl is restoring {} into node {}", title_, node_),
+                    "wait for its end, or look with `ps` who it is");
+      out.push_back(std::move(**taken));
+    }
+    return out;
+  }
+
+  Result<Value> carry_through() {
+    if (const auto known = take_up_journals(); !known) return tl::unexpected<Error>(known.error());
+    RestoreTarget target(*desk_, *backup_, title_, node_, options_.choice);
+    if (const auto fits = target.prepare(); !fits) return tl::unexpected<Error>(fits.error());
+    auto comparison = compare(desk_->profile, {fmt::format("node {}", node_), node_, target.present()},
+                              {title_, node_, target.wanted()}, true, desk_->chinese);
+    left_over_ = target.left();
+    const bool idle = comparison.different == 0 && !options_.keep && left_.means.empty();
+    if (idle) return take_away_journals(result(std::move(comparison.record), said("nothing differs"), {}));
+    if (desk_->dry_run) return planned(target);
+    if (const auto answer = desk_->confirm(question(comparison.different)); !answer)
+      return tl::unexpected<Error>(answer.error());
+    if (const auto noted = note(target); !noted) return tl::unexpected<Error>(noted.error());
+    if (const auto back = put_means_back(*desk_->session, left_); !back)
+      return tl::unexpected<Error>(back.error());
+    return carry_out(target, std::move(comparison.record));
+  }
+
+  fs::path journal() const { return journal_of(before_); }
+
+  /// A restore that was cut off is gone on with or undone, never begun anew: what the drive held before is in
+  /// its file, and must not be replaced by what it holds now.
+  Result<void> take_up_journals() {
+    const auto found = read_journal(*desk_, journal());
+    if (!found) return tl::unexpected<Error>(found.error());
+    if (*found && !options_.resume)
+      return fail(Errc::refused,
+                  fmt::format("a restore of {} into node {} was cut off before its end", title_, node_),
+                  fmt::format("--resume goes on with it; `restore {} -n {}` puts back what was there before",
+                              before_.string(), node_));
+    if (!*found && options_.resume)
+      return fail(Errc::usage,
+                  fmt::format("there is nothing to go on with: {} does not exist", journal().string()),
+                  "leave --resume away");
+    if (options_.resume) return resume(**found);
+    if (undoes_.empty()) return {};
+    const auto undone = read_journal(*desk_, undoes_);
+    if (!undone) return tl::unexpected<Error>(undone.error());
+    if (!*undone || (*undone)->node != node_) return {};
+    left_ = **undone;
+    // What went to the flash has to go there again.
+    options_.keep = options_.keep || left_.keep;
+    options_.unlock = options_.unlock || left_.unlock;
+    return {};
+  }
+
+  Result<void> resume(const RestoreJournal& found) {
+    if (found.checksum != checksum(*backup_) || found.node != node_)
+      return fail(
+          Errc::refused, fmt::format("{} is not what was being restored into node {}", title_, node_),
+          fmt::format(
+              "the same values are needed to go on; `restore {} -n {}` puts back what was there before",
+              before_.string(), node_));
+    left_ = found;
+    options_.choice = {found.with_address, found.force, options_.choice.skip_invalid};
+    options_.keep = found.keep;
+    options_.unlock = found.unlock;
+    return {};
+  }
+
+  std::string question(std::size_t different) const {
+    if (different == 0)
+      return fmt::format("All values of node {} are those of {}. {}?", node_, title_,
+                         options_.keep ? "Make it keep them" : "Put its memory switch and password back");
+    return fmt::format("Write {} values of {} to node {}?", different, title_, node_);
+  }
+
+  Value planned(const RestoreTarget& target) const {
+    std::vector<Change> changes;
+    for (const auto& step : session::plan_writes(desk_->profile, target.present(), target.wanted()))
+      changes.push_back({node_, drive::target_at(desk_->profile, step.object), {}, step.data});
+    return planned_frames(changes);
+  }
+
+  /// What the drive holds now, beside the backup: the way back when everything else fails. One that is gone
+  /// on with has noted it already.
+  Result<void> note(const RestoreTarget& target) {
+    if (options_.resume) return {};
+    session::Snapshot snapshot;
+    snapshot.identity = target.identity();
+    for (const auto& [object, data] : target.present()) snapshot.entries.push_back({object, data, {}});
+    RestoreJournal journal;
+    journal.checksum = checksum(*backup_);
+    journal.node = node_;
+    journal.with_address = options_.choice.with_address;
+    journal.force = options_.choice.force;
+    journal.keep = options_.keep;
+    journal.unlock = options_.unlock;
+    journal.means = left_.means;
+    return note_before(*desk_, before_, snapshot, std::move(journal));
+  }
+
+  Value take_away_journals(Value done) {
+    std::error_code ignored;
+    fs::remove(journal(), ignored);
+    if (!left_.checksum.empty() && !undoes_.empty()) fs::remove(undoes_, ignored);
+    return done;
+  }
+
+  Result<Value> carry_out(const RestoreTarget& target, Record record) {
+    const auto outcome =
+        session::restore(*desk_->session, desk_->profile, node_, target.present(), target.wanted(),
+                         {.roll_back = options_.roll_back, .keep = options_.keep, .unlock = options_.unlock});
+    for (const auto& notice : outcome.notices) desk_->notices.push_back(notice);
+    desk_->notices.push_back(fmt::format("what node {} held before is in {}", node_, before_.string()));
+    if (!outcome.failure) return take_away_journals(result(std::move(record), said("restored"), outcome));
+    desk_->errors.push_back(*outcome.failure);
+    add_astray(outcome);
+    auto out = result(std::move(record), failed_state(outcome), outcome);
+    // Undone to the end: nothing is left to go on with. What is being taken back itself stays begun.
+    if (outcome.rolled_back && left_.checksum.empty()) return take_away_journals(std::move(out));
+    desk_->notices.push_back(
+        fmt::format("node {}: --resume goes on with it when the cause is removed", node_));
+    return out;
+  }
+
+  void add_astray(const session::RestoreOutcome& outcome) {
+    for (const auto object : outcome.astray) {
+      Error error;
+      error.code = Errc::negative;
+      error.node = node_;
+      error.object = object;
+      error.message = fmt::format(
+          "node {}, object {}: neither the value of the backup nor the one from before is certain", node_,
+          to_string(object));
+      desk_->errors.push_back(std::move(error));
+    }
+  }
+
+  std::string said(std::string state) const {
+    return left_over_.empty() ? state : fmt::format("{}; {} left as it is", state, left_over_.size());
+  }
+
+  static std::string_view failed_state(const session::RestoreOutcome& outcome) {
+    if (outcome.rolled_back) return "failed; every value is as it was before";
+    if (outcome.all_written) return "written and read back; see the error";
+    return outcome.astray.empty() ? "failed; what was written stays written" : "failed; see the errors";
+  }
+
+  static Value kept_value(const std::optional<session::RestoreOutcome>& outcome) {
+    if (!outcome || outcome->kept == session::Kept::unknown) return {};
+    return outcome->kept == session::Kept::yes;
+  }
+
+  Value result(Record record, std::string_view state,
+               const std::optional<session::RestoreOutcome>& outcome) const {
+    Record out{{"node", node_}, {"result", state}, {"kept", kept_value(outcome)}};
+    for (auto& field : record) out.push_back(std::move(field));
+    return out;
+  }
+
+  show::Desk* desk_;
+  const Backup* backup_;
+  std::string title_;
+  std::uint8_t node_;
+  fs::path before_;
+  fs::path undoes_;
+  RestoringOptions options_;
+  std::vector<Error> left_over_;  ///< Values outside of the limits.
+  RestoreJournal left_;           ///< Of what was cut off and is gone on with, or undone.
+};
+
+}  // namespace
+
+Result<Restored> put_into(show::Desk& desk, const Backup& backup, const std::string& title, std::uint8_t node,
+                          const fs::path& before, const RestoringOptions& options, const fs::path& undoes) {
+  return Restoring(desk, backup, title, node, before, options, undoes).run();
+}
+
+}  // namespace servoctl::settings

@@ -1,0 +1,33 @@
+#include "settings/selection.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <set>
+
+#include "base/pdo_index.hpp"
+#include "base/text.hpp"
+
+namespace servoctl::settings {
+
+Result<Selection> selection_of(const drive::Profile& profile, std::string_view word) {
+  if (word.empty()) return Selection{};
+  if (word == "communication") return Selection{[](ObjectAddress object) { return object.index < 0x2000; }};
+  if (word == "pdo") return Selection{[](ObjectAddress object) { return pdo_at(object.index).has_value(); }};
+  if (word == "params")
+    return Selection{[&profile](ObjectAddress object) { return profile.parameter(object) != nullptr; }};
+  std::set<std::string> groups;
+  for (const auto& parameter : profile.parameters)
+    if (!parameter.group.empty()) groups.insert(parameter.group);
+  if (groups.count(std::string(word)) == 0) {
+    std::vector<std::string> parts{"communication", "pdo", "params"};
+    parts.insert(parts.end(), groups.begin(), groups.end());
+    return fail(Errc::usage, fmt::format("'{}' is no part of a drive's settings", word),
+                "there are " + one_of(parts));
+  }
+  return Selection{[&profile, group = std::string(word)](ObjectAddress object) {
+    const auto* parameter = profile.parameter(object);
+    return parameter != nullptr && parameter->group == group;
+  }};
+}
+
+}  // namespace servoctl::settings

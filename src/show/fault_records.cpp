@@ -1,0 +1,97 @@
+#include "show/fault_records.hpp"
+
+#include <fmt/format.h>
+
+#include "base/text.hpp"
+#include "canopen/emergency.hpp"
+#include "show/records.hpp"
+
+namespace servoctl::show {
+namespace {
+
+using report::Show;
+using report::Value;
+
+std::string code_text(const drive::Fault& fault) {
+  return fault.code ? fmt::format("0x{:04X}", *fault.code) : std::string();
+}
+
+std::string name_of(const drive::Fault& fault, bool chinese) {
+  return chinese && !fault.name_zh.empty() ? fault.name_zh : fault.name;
+}
+
+}  // namespace
+
+report::Table fault_table(std::span<const drive::Fault* const> faults, bool chinese) {
+  report::Table table;
+  table.columns = {{"code_text", "code", Show::text},
+                   {"code", "", Show::json},
+                   {"extra", "", Show::json},
+                   {"panel"},
+                   {"kind"},
+                   {"name_text", "name", Show::text},
+                   {"name", "", Show::json},
+                   {"name_zh", "", Show::json},
+                   {"resettable"},
+                   {"check_text", "check", Show::text},
+                   {"check", "", Show::json},
+                   {"check_zh", "", Show::json},
+                   {"mark", "?!", Show::text},
+                   {"assumed", "", Show::json},
+                   {"assumed_fields", "", Show::json},
+                   {"contradicted", "", Show::json},
+                   {"contradicted_fields", "", Show::json}};
+  for (const auto* f : faults) {
+    const auto check = chinese && !f->check_zh.empty() ? f->check_zh : f->check;
+    table.rows.push_back({code_text(*f), f->code ? Value(*f->code) : Value(), report::text_or_null(f->extra),
+                          report::text_or_null(f->panel), drive::name(f->kind), name_of(*f, chinese), f->name,
+                          report::text_or_null(f->name_zh), f->resettable ? Value(*f->resettable) : Value(),
+                          check, report::text_or_null(f->check), report::text_or_null(f->check_zh),
+                          f->doubts.sign(), !f->doubts.assumed.empty(), marks_record(f->doubts.assumed),
+                          !f->doubts.contradicted.empty(), marks_record(f->doubts.contradicted)});
+  }
+  return table;
+}
+
+report::Record fault_record(const drive::Fault& fault, bool chinese) {
+  const auto& check = chinese && !fault.check_zh.empty() ? fault.check_zh : fault.check;
+  const auto power_cycle = std::string("no, it needs a power cycle");
+  report::Record out{
+      {"code_text", report::text_or_null(code_text(fault)), Show::text, "code"},
+      {"code", fault.code ? Value(*fault.code) : Value(), Show::json},
+      {"extra", report::text_or_null(fault.extra)},
+      {"panel", report::text_or_null(fault.panel)},
+      {"kind", drive::name(fault.kind)},
+      {"name_text", name_of(fault, chinese), Show::text, "name"},
+      {"name", fault.name, Show::json},
+      {"name_zh", report::text_or_null(fault.name_zh), Show::json},
+      {"resettable_text",
+       !fault.resettable   ? Value()
+       : *fault.resettable ? Value("yes")
+                           : Value(power_cycle),
+       Show::text, "resettable"},
+      {"resettable", fault.resettable ? Value(*fault.resettable) : Value(), Show::json},
+      {"check_text", report::text_or_null(check), Show::text, "check"},
+      {"check", report::text_or_null(fault.check), Show::json},
+      {"check_zh", report::text_or_null(fault.check_zh), Show::json},
+  };
+  for (auto& field : doubts_record(fault.doubts)) out.push_back(std::move(field));
+  return out;
+}
+
+std::string fault_words(const drive::Profile* profile, bool chinese, std::uint16_t code,
+                        const std::array<std::uint8_t, 5>& vendor) {
+  if (profile == nullptr) return canopen::emergency_text(code);
+  const auto found = drive::faults_of(profile->faults, profile->rules.emergency, code, vendor);
+  if (found.empty()) return canopen::emergency_text(code);
+  if (found.size() == 1) {
+    const auto& fault = *found.front();
+    return (fault.panel.empty() ? "" : fault.panel + " ") + name_of(fault, chinese);
+  }
+  std::string panels;
+  for (const auto* fault : found)
+    append(panels, (fault->panel.empty() ? name_of(*fault, chinese) : fault->panel));
+  return fmt::format("one of {} alarms: {}", found.size(), panels);
+}
+
+}  // namespace servoctl::show

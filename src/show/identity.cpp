@@ -1,0 +1,111 @@
+#include "show/identity.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "show/field_reader.hpp"
+
+namespace servoctl::show {
+namespace {
+
+using report::Value;
+
+/// Without leading zeros: four of them and the names have to fit a line of 80 columns.
+Value hex(std::optional<std::uint32_t> number) { return number ? Value(report::Hex{*number, 1}) : Value(); }
+
+Value guess_records(std::span<const session::Guess> guesses) {
+  report::List out;
+  for (const auto& guess : guesses)
+    out.emplace_back(report::Record{{"family", guess.family}, {"certain", guess.certain}});
+  return out;
+}
+
+/// A line of 80 columns has room for what tells the drive apart: its profile fits beside that.
+std::span<const session::Guess> without_generic(std::span<const session::Guess> guesses) {
+  const auto first = std::find_if(guesses.begin(), guesses.end(), [](const auto& g) { return g.generic; });
+  const auto own = static_cast<std::size_t>(first - guesses.begin());
+  return own == 0 ? guesses : guesses.first(own);
+}
+
+Value number_or_null(const std::optional<std::uint32_t>& number) { return number ? Value(*number) : Value(); }
+
+std::optional<std::uint32_t> narrow(std::optional<std::uint64_t> number) {
+  return number ? std::optional(static_cast<std::uint32_t>(*number)) : std::nullopt;
+}
+
+}  // namespace
+
+std::string guess_text(std::span<const session::Guess> guesses) {
+  std::string out;
+  for (const auto& guess : guesses) {
+    if (!out.empty()) out += " or ";
+    out += guess.family + (guess.certain ? "" : "?");
+  }
+  return out;
+}
+
+report::Table identity_table(std::span<const session::Identity> nodes,
+                             std::span<const drive::Family> families) {
+  using report::Show;
+  report::Table table;
+  table.columns = {{"node"},
+                   {"device_type", "device type"},
+                   {"vendor_id", "vendor"},
+                   {"product_code", "product"},
+                   {"revision"},
+                   {"serial"},
+                   {"device_name", "name"},
+                   {"hardware_version", "hardware", Show::json},
+                   {"software_version", "software"},
+                   {"nmt", "", Show::json},
+                   {"guess", "family", Show::text},
+                   {"families", "", Show::json}};
+  table.json_only = nodes.empty();
+  for (const auto& node : nodes) {
+    const auto guesses = session::guess_families(node, families);
+    table.rows.push_back(
+        {node.node, hex(node.device_type), hex(node.vendor_id), hex(node.product_code), hex(node.revision),
+         hex(node.serial), report::text_or_null(node.device_name),
+         report::text_or_null(node.hardware_version), report::text_or_null(node.software_version),
+         node.nmt ? Value(canopen::name(*node.nmt)) : Value(),
+         report::text_or_null(guess_text(without_generic(guesses))), guess_records(guesses)});
+  }
+  return table;
+}
+
+report::Record identity_record(const session::Identity& i) {
+  return {{"device_type", number_or_null(i.device_type)},
+          {"vendor_id", number_or_null(i.vendor_id)},
+          {"product_code", number_or_null(i.product_code)},
+          {"revision", number_or_null(i.revision)},
+          {"serial", number_or_null(i.serial)},
+          {"device_name", report::text_or_null(i.device_name)},
+          {"hardware_version", report::text_or_null(i.hardware_version)},
+          {"software_version", report::text_or_null(i.software_version)}};
+}
+
+std::optional<session::Identity> identity_of(const Value& record, std::uint8_t node) {
+  session::Identity out;
+  out.node = node;
+  FieldReader fields(record, "identity");
+  out.device_type = narrow(fields.number("device_type"));
+  out.vendor_id = narrow(fields.number("vendor_id"));
+  out.product_code = narrow(fields.number("product_code"));
+  out.revision = narrow(fields.number("revision"));
+  out.serial = narrow(fields.number("serial"));
+  out.device_name = fields.text("device_name");
+  out.hardware_version = fields.text("hardware_version");
+  out.software_version = fields.text("software_version");
+  return fields.error() ? std::nullopt : std::optional(std::move(out));
+}
+
+std::string other_kind(const session::Identity& one, const session::Identity& other) {
+  const auto differ = [](const auto& a, const auto& b) { return a && b && *a != *b; };
+  if (differ(one.device_type, other.device_type)) return "its device type (1000h)";
+  if (differ(one.vendor_id, other.vendor_id)) return "its vendor (1018h:01)";
+  if (differ(one.product_code, other.product_code)) return "its product code (1018h:02)";
+  return {};
+}
+
+}  // namespace servoctl::show

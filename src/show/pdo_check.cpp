@@ -1,0 +1,178 @@
+#include "show/pdo_check.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "drive/naming.hpp"
+#include "session/cob_id_check.hpp"
+#include "show/pdo_report.hpp"
+
+namespace servoctl::show {
+namespace {
+
+using canopen::Pdo;
+using canopen::PdoDirection;
+using canopen::PdoEntry;
+
+/// Lengths of the data types 0001h to 0007h, which stand for gaps (CiA 301, 7.4.8.2).
+constexpr std::uint8_t kGapBits[] = {0, 1, 8, 16, 32, 8, 16, 32};
+/// Bits of a COB-ID that hold a CAN-ID of 11 bits.
+constexpr std::uint32_t kBasicCanId = 0x7FF;
+
+std::string name_of(const Pdo& pdo) { return canopen::name(pdo.direction, pdo.number); }
+
+std::string name_of(const drive::Profile& profile, ObjectAddress object) {
+  const auto label = drive::target_at(&profile, object).label();
+  return label.empty() ? to_string(object) : fmt::format("{} ({})", to_string(object), label);
+}
+
+tl::unexpected<Error> no(const Pdo& pdo, std::string why, std::string hint = {}) {
+  return fail(Errc::usage, fmt::format("{}: {}", name_of(pdo), std::move(why)), std::move(hint));
+}
+
+bool fits_direction(const od::Entry& entry, PdoDirection direction) {
+  const auto wanted = direction == PdoDirection::receive ? od::PdoMapping::rpdo : od::PdoMapping::tpdo;
+  if (entry.pdo != wanted && entry.pdo != od::PdoMapping::both) return false;
+  return direction == PdoDirection::receive ? od::writable(entry.access) : od::readable(entry.access);
+}
+
+std::string direction_hint(const od::Entry& entry) {
+  switch (entry.pdo) {
+    case od::PdoMapping::no: return "this drive maps it into no PDO";
+    case od::PdoMapping::rpdo: return "it can be received only: an RPDO";
+    case od::PdoMapping::tpdo: return "it can be sent only: a TPDO";
+    case od::PdoMapping::both: return "it is read-only";
+  }
+  return {};
+}
+
+Result<void> check_entry(const drive::Profile& profile, const Pdo& pdo, const PdoEntry& entry) {
+  if (entry.is_gap()) {
+    if (pdo.direction == PdoDirection::receive) return {};
+    return no(pdo, "only an RPDO has gaps");
+  }
+  const auto name = name_of(profile, entry.object);
+  const auto* known = profile.dictionary.find(entry.object);
+  if (known == nullptr) {
+    if (profile.is_generic()) return {};
+    return no(pdo, fmt::format("{} is not in the dictionary of {}", to_string(entry.object), profile.family),
+              fmt::format("`objects -d {}` lists what it has", profile.family));
+  }
+  const bool stated = !known->doubts.about("pdo");
+  if (stated && !fits_direction(*known, pdo.direction))
+    return no(pdo, name + " cannot be mapped here", direction_hint(*known));
+  const auto bits = bits_of(profile, entry.object);
+  const bool sure = !profile.is_generic() && !known->doubts.about("type");
+  if (bits && sure && *bits != entry.bits)
+    return no(pdo, fmt::format("{} has {} bits, not {}", name, *bits, entry.bits));
+  if (profile.rules.pdo.whole_bytes && entry.bits % 8 != 0)
+    return no(pdo, fmt::format("{}: {} bits are no whole bytes", name, entry.bits),
+              "this drive maps bytes only");
+  return {};
+}
+
+bool is_fixed(const drive::Profile& profile, const Pdo& pdo) {
+  const auto* count = profile.dictionary.find({pdo.mapping_index(), 0});
+  return count != nullptr && !od::writable(count->access);
+}
+
+Result<void> check_type(const drive::Profile& profile, const Pdo& pdo) {
+  const auto& refused = profile.rules.pdo.refused_types;
+  const bool reserved = pdo.type > 240 && pdo.type < 252;
+  const bool remote = pdo.type == 252 || pdo.type == 253;
+  const bool transmit = pdo.direction == PdoDirection::transmit;
+  if (reserved || (remote && !transmit))
+    return no(pdo, fmt::format("there is no transmission type {}", pdo.type),
+              transmit ? "0 to 240 by SYNC, 252 and 253 by remote frame, 254 and 255 by event"
+                       : "0 to 240 at the next SYNC, 254 and 255 at once");
+  if (transmit && std::count(refused.begin(), refused.end(), pdo.type) > 0)
+    return no(pdo, fmt::format("this drive does not know transmission type {}", pdo.type));
+  return {};
+}
+
+/// A drive refuses to be asked by what its COB-ID forbids (CiA 301, table 71).
+Result<void> check_remote(const Pdo& wanted) {
+  const bool remote = wanted.type == 252 || wanted.type == 253;
+  const bool forbidden = (wanted.cob_id & canopen::kPdoNoRtr) != 0;
+  if (wanted.direction != PdoDirection::transmit || !remote || !forbidden) return {};
+  return no(wanted,
+            fmt::format("transmission type {} is sent on remote frames, which bit 30 of its COB-ID forbids",
+                        wanted.type),
+            "0 to 240 are sent by SYNC, 254 and 255 by event");
+}
+
+Result<void> check_bits(const drive::Profile& profile, const Pdo& present, const Pdo& wanted) {
+  const auto may_change = profile.rules.pdo.cob_id_bits | canopen::kPdoInvalid;
+  if (((present.cob_id ^ wanted.cob_id) & ~may_change) == 0) return {};
+  const bool other_id = (may_change & kBasicCanId) != 0;
+  if (other_id && (wanted.cob_id & canopen::kPdoExtended) != 0)
+    return no(wanted,
+              fmt::format("the CAN-IDs of this drive have 11 bits, {} has 29", can_id_text(wanted.cob_id)),
+              "write one up to 0x7FF");
+  return no(wanted, fmt::format("this drive keeps its COB-ID {}", can_id_text(present.cob_id)),
+            "it can be enabled and disabled only");
+}
+
+Result<void> check_can_id(const Pdo& wanted, std::span<const Pdo> all) {
+  const auto text = can_id_text(wanted.cob_id);
+  const auto cob_id = store_le(wanted.cob_id, 4);
+  if (const auto may = session::check_cob_id(nullptr, {wanted.communication_index(), 1}, cob_id, 0); !may)
+    return no(wanted, may.error().message, may.error().hint);
+  for (const auto& other : all) {
+    const bool same = other.direction == wanted.direction && other.number == wanted.number;
+    if (!same && other.is_valid() && other.can_id() == wanted.can_id())
+      return no(wanted, fmt::format("CAN-ID {} is that of {} of the same node", text, name_of(other)),
+                fmt::format("`pdo disable {}` frees it", name_of(other)));
+  }
+  return {};
+}
+
+}  // namespace
+
+std::optional<std::uint8_t> bits_of(const drive::Profile& profile, ObjectAddress object) {
+  if (object.index < std::size(kGapBits)) return kGapBits[object.index];
+  const auto* entry = profile.dictionary.find(object);
+  if (entry == nullptr) return std::nullopt;
+  if (entry->type == od::DataType::boolean) return std::uint8_t{1};
+  const auto size = od::size_of(entry->type);
+  return size && *size <= 8 ? std::optional(static_cast<std::uint8_t>(*size * 8)) : std::nullopt;
+}
+
+Result<void> check_mapping(const drive::Profile& profile, const Pdo& pdo) {
+  const auto& rules = profile.rules.pdo;
+  if (is_fixed(profile, pdo))
+    return no(pdo, fmt::format("its mapping 0x{:04X} is fixed", pdo.mapping_index()),
+              "`pdo enable` chooses it, `pdo show` lists what it carries");
+  if (pdo.entries.size() > rules.most_entries)
+    return no(pdo, fmt::format("{} objects are too many, {} fit", pdo.entries.size(), rules.most_entries));
+  for (const auto& entry : pdo.entries)
+    if (const auto fits = check_entry(profile, pdo, entry); !fits) return fits;
+  if (pdo.bits() > rules.most_bits)
+    return no(pdo, fmt::format("{} bits are too many, {} fit", pdo.bits(), rules.most_bits),
+              "spread the objects over two PDOs");
+  return {};
+}
+
+Result<void> check_communication(const drive::Profile& profile, const Pdo& present, const Pdo& wanted,
+                                 std::span<const Pdo> all) {
+  if (const auto may = check_bits(profile, present, wanted); !may) return may;
+  if (wanted.is_valid() && wanted.cob_id != present.cob_id)
+    if (const auto free = check_can_id(wanted, all); !free) return free;
+  const auto missing = [&](bool now, bool then, std::string_view what) {
+    return then && !now ? Result<void>(no(wanted, fmt::format("it has no {} on this drive", what)))
+                        : Result<void>();
+  };
+  if (const auto r = missing(present.inhibit.has_value(), wanted.inhibit.has_value(), "inhibit time"); !r)
+    return r;
+  if (const auto r = missing(present.event.has_value(), wanted.event.has_value(), "event timer"); !r)
+    return r;
+  if (const auto r =
+          missing(present.sync_start.has_value(), wanted.sync_start.has_value(), "SYNC start value");
+      !r)
+    return r;
+  if (wanted.type == present.type) return {};
+  if (const auto known = check_type(profile, wanted); !known) return known;
+  return check_remote(wanted);
+}
+
+}  // namespace servoctl::show

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <span>
+
+#include "session/rehearsal.hpp"
+#include "show/desk.hpp"
+
+namespace servoctl::show {
+
+/// The frame that begins to send a message: `601#2B40600006000000`.
+std::string frame_text(const session::PlannedMessage& message);
+
+/// What --dry-run shows of commands that change a drive: `node object name when frame`, one row a message.
+report::Value planned_messages(const Desk& desk, std::span<const session::PlannedMessage> messages);
+
+}  // namespace servoctl::show

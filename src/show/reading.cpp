@@ -1,0 +1,185 @@
+#include "show/reading.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "base/number.hpp"
+#include "session/measure.hpp"
+#include "show/records.hpp"
+
+namespace servoctl::show {
+namespace {
+
+using report::List;
+using report::Record;
+using report::Show;
+using report::Table;
+using report::Value;
+
+/// A long text ends where nobody reads on; JSON carries it whole.
+std::string shortened(std::string text, std::size_t bytes) {
+  constexpr std::size_t kMost = 200;
+  if (text.size() <= kMost) return text;
+  std::size_t end = kMost;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80) --end;
+  return text.substr(0, end) + fmt::format("… ({} bytes; --to FILE keeps them)", bytes);
+}
+
+/// Asks the drives for the gear and ratings that the units of these readings need, each once.
+void add_bridges(session::Session& session, const drive::Profile& profile, std::vector<Reading>& readings) {
+  const auto question_of = [&](const Reading& reading) -> std::optional<session::MeasureQuestion> {
+    const auto measure = drive::meaning(reading.target, reading.node).measure;
+    if (!measure || !reading.bytes || profile.rules.units.count(*measure) == 0) return std::nullopt;
+    return session::MeasureQuestion{reading.node, *measure};
+  };
+  std::vector<session::MeasureQuestion> questions;
+  for (const auto& reading : readings)
+    if (const auto question = question_of(reading))
+      if (std::find(questions.begin(), questions.end(), *question) == questions.end())
+        questions.push_back(*question);
+  if (questions.empty()) return;
+  const auto measures = session::read_measures(session, profile, questions);
+  for (auto& reading : readings) {
+    const auto question = question_of(reading);
+    if (!question) continue;
+    const auto place = std::find(questions.begin(), questions.end(), *question) - questions.begin();
+    const auto& measure = measures[static_cast<std::size_t>(place)];
+    const auto unit = drive::meaning(reading.target, reading.node).unit;
+    if (measure) reading.bridge = drive::bridge(unit, reading.target.address, measure->value);
+  }
+}
+
+List reading_row(const Desk& desk, const Reading& reading) {
+  const bool chinese = desk.chinese;
+  const auto& target = reading.target;
+  const auto name = chinese ? target.label_zh() : target.label();
+  List row{reading.node, to_string(target.address), target.address.index, target.address.sub,
+           report::text_or_null(name)};
+  if (target.parameter != nullptr)
+    row.emplace_back(target.parameter->id);
+  else
+    row.emplace_back();
+  if (!reading.bytes) {
+    const auto type = reading.type              ? std::optional(*reading.type)
+                      : target.entry != nullptr ? std::optional(target.entry->type)
+                                                : std::nullopt;
+    row.insert(row.end(), {Value("-"), type ? Value(od::name(*type)) : Value(), Value(), Value(), Value(),
+                           Value(), Value(), Value(), Value(), Value(), Value(),
+                           error_record(reading.bytes.error(), abort_words(desk, reading.bytes.error()))});
+    return row;
+  }
+  const auto& bytes = *reading.bytes;
+  auto decoded = decode_value(reading, bytes);
+  const bool number = std::holds_alternative<std::uint64_t>(decoded.raw.data()) ||
+                      std::holds_alternative<std::int64_t>(decoded.raw.data());
+  Value hex;
+  // Where the value is hexadecimal already, once is enough.
+  const bool told = drive::meaning(reading.target, reading.node).bits;
+  if (number && !told) hex = fmt::format("0x{:0{}X}", load_le(bytes), bytes.size() * 2);
+  const auto label = chinese && !decoded.label_zh.is_null() ? decoded.label_zh : decoded.label;
+  row.insert(row.end(), {Value(decoded.text), Value(decoded.type), decoded.value, decoded.raw,
+                         report::text_or_null(decoded.unit), decoded.encoding, decoded.familiar,
+                         label.is_null() ? Value("") : label, decoded.label, hex.is_null() ? Value("") : hex,
+                         Value(to_hex(bytes)), Value()});
+  return row;
+}
+
+}  // namespace
+
+std::size_t size_of(const Reading& reading) {
+  const auto meaning = drive::meaning(reading.target, reading.node);
+  const auto type = reading.type         ? reading.type
+                    : meaning.type_known ? std::optional(meaning.type)
+                                         : std::nullopt;
+  return type ? od::size_of(*type).value_or(0) : 0;
+}
+
+od::DataType type_of(const Reading& reading, ByteSpan bytes) {
+  if (reading.type) return *reading.type;
+  const auto meaning = drive::fitted(drive::meaning(reading.target, reading.node), bytes.size());
+  if (meaning.type_known) return meaning.type;
+  const auto index = reading.target.address.index;
+  if (index >= 0x1008 && index <= 0x100A)
+    return od::DataType::string;  // CiA 301, 7.5.2: device name and versions.
+  switch (bytes.size()) {
+    case 1: return od::DataType::u8;
+    case 2: return od::DataType::u16;
+    case 4: return od::DataType::u32;
+    case 8: return od::DataType::u64;
+    default: break;
+  }
+  const bool printable = !bytes.empty() && std::all_of(bytes.begin(), bytes.end(),
+                                                       [](std::uint8_t b) { return b == 0 || b >= 0x20; });
+  return printable ? od::DataType::string : od::DataType::bytes;
+}
+
+DecodedValue decode_value(const Reading& reading, ByteSpan bytes) {
+  DecodedValue out;
+  auto meaning = drive::fitted(drive::meaning(reading.target, reading.node), bytes.size());
+  meaning.bridge = reading.bridge;
+  const auto type = type_of(reading, bytes);
+  out.type = std::string(od::name(type));
+  out.encoding = report::text_or_null(std::string(od::name(meaning.encoding)));
+  const auto value = od::decode(type, bytes);
+  if (!value) {
+    out.value = to_hex(bytes);
+    out.text = shortened(to_hex(bytes), bytes.size());
+    return out;
+  }
+  const bool plain = meaning.encoding == od::Encoding::plain;
+  out.raw = od_value(*value);
+  out.value = meaning.scale == 1 && plain ? out.raw : Value(drive::scaled(meaning, *value));
+  out.unit = std::string(meaning.unit);
+  out.text = shortened(drive::plain_text(meaning, *value), bytes.size());
+  if (meaning.scale != 1 && plain)
+    out.text += fmt::format(" = {:.12g} {}", drive::scaled(meaning, *value), meaning.unit);
+  else if (!meaning.unit.empty())
+    out.text += " " + out.unit;
+  auto familiar = familiar_value(meaning, *value);
+  if (!familiar.text.empty()) out.text += " = " + familiar.text;
+  out.familiar = std::move(familiar.record);
+  if (const auto* label = drive::label_of(meaning, *value)) {
+    out.label = label->label;
+    out.label_zh = report::text_or_null(label->label_zh);
+  }
+  return out;
+}
+
+FamiliarValue familiar_value(const drive::Meaning& meaning, const od::Value& value) {
+  const auto familiar = drive::familiar(meaning, value);
+  if (!familiar) return {};
+  return {fmt::format("{} {}", plain_number(familiar->value, 7), familiar->unit),
+          Record{{"value", familiar->value}, {"unit", familiar->unit}}};
+}
+
+Table reading_table(Desk& desk, std::vector<Reading> readings) {
+  if (desk.profile != nullptr) add_bridges(*desk.session, *desk.profile, readings);
+  Table table;
+  table.columns = {{"node"},
+                   {"object", "", Show::text},
+                   {"index", "", Show::json},
+                   {"sub", "", Show::json},
+                   {"name"},
+                   {"id", "", Show::json},
+                   {"text", "value", Show::text},
+                   {"type", "", Show::json},
+                   {"value", "", Show::json},
+                   {"raw", "", Show::json},
+                   {"unit", "", Show::json},
+                   {"encoding", "", Show::json},
+                   {"si", "", Show::json},
+                   {"meaning", "label", Show::text},
+                   {"label", "", Show::json},
+                   {"hex", "", Show::text},
+                   {"bytes", "", Show::json},
+                   {"error", "", Show::json}};
+  for (const auto& reading : readings) {
+    table.rows.push_back(reading_row(desk, reading));
+    if (!reading.bytes) desk.errors.push_back(reading.bytes.error());
+  }
+  table.json_only =
+      std::none_of(readings.begin(), readings.end(), [](const Reading& r) { return r.bytes.has_value(); });
+  return table;
+}
+
+}  // namespace servoctl::show

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "can/frame.hpp"
+#include "canopen/emergency_ids.hpp"
+#include "canopen/sdo_observer.hpp"
+#include "report/json_writer.hpp"
+#include "show/desk.hpp"
+#include "show/pdo_book.hpp"
+
+namespace servoctl::traffic {
+
+/// What a frame can be, as `--service` names it.
+inline constexpr std::string_view kServices[] = {
+    "nmt", "sync", "time", "emcy", "pdo", "sdo", "boot-up", "heartbeat", "guarding", "controller", "other"};
+
+/// What a frame means.
+struct DecodedFrame {
+  std::string_view service;          ///< One of kServices.
+  std::optional<std::uint8_t> node;  ///< Empty for frames of the whole bus.
+  std::string text;                  ///< For people, without the node.
+  std::string fields;  ///< What is special to the service, as members of JSON; empty where not asked for.
+  std::vector<ObjectAddress> objects;  ///< Those it carries or names.
+};
+
+/// Explains frames one by one: NMT, SYNC, TIME, emergencies in the family's words, PDOs by their mapping, SDO
+/// with the object's name and value, heartbeat, node guarding. Remembers what SDO transfers are under way,
+/// and learns PDO mappings from those that read or write them.
+class FrameDecoder {
+ public:
+  struct Options {
+    const drive::Profile* profile = nullptr;  ///< May be null; outlives the decoder.
+    bool chinese = false;
+    bool fields = true;  ///< Whether DecodedFrame::fields are wanted: they take longer than the text.
+  };
+  explicit FrameDecoder(Options options) : options_(options), pdos_(options.profile, options.chinese) {}
+  FrameDecoder(const FrameDecoder&) = delete;
+  FrameDecoder& operator=(const FrameDecoder&) = delete;
+
+  /// The answer holds until the next call.
+  const DecodedFrame& decode(const can::Frame& frame);
+
+  show::PdoBook& pdos() { return pdos_; }
+
+ private:
+  void decode_service(const can::Frame& frame);
+  void decode_nmt(const can::Frame& frame);
+  void decode_sync(const can::Frame& frame);
+  void decode_time(const can::Frame& frame);
+  void decode_emergency(const canopen::Emergency& emergency);
+  void decode_pdo(const can::Frame& frame, std::uint8_t node, const show::PdoView* view);
+  void decode_error_control(const can::Frame& frame);
+  void decode_sdo(const can::Frame& frame);
+  void add_sdo_fields(const canopen::SdoStep& step, const drive::Target& target);
+  void add_sdo_value(const Bytes& data, const drive::Target& target);
+  std::string abort_words_of(const canopen::SdoStep& step) const;
+  void end_sdo_fields(const canopen::SdoStep& step);
+  void learn(const canopen::SdoStep& step);
+  std::string name_of(const drive::Target& target) const;
+
+  /// A write whose acknowledge has not come.
+  struct Pending {
+    ObjectAddress object;
+    Bytes data;
+  };
+
+  Options options_;
+  show::PdoBook pdos_;
+  canopen::EmergencyIds emergency_ids_;
+  DecodedFrame out_;
+  report::JsonWriter fields_{out_.fields};
+  std::array<canopen::SdoObserver, 128> channels_;
+  std::array<std::optional<Pending>, 128> pending_;
+};
+
+}  // namespace servoctl::traffic

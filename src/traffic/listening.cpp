@@ -1,0 +1,36 @@
+#include "traffic/listening.hpp"
+
+#include <algorithm>
+
+namespace servoctl::traffic {
+namespace {
+
+/// How late what was gathered is shown, and an end by --for noticed, on a bus that is never silent.
+constexpr Duration kSlice = std::chrono::milliseconds(50);
+
+}  // namespace
+
+Result<void> listen(session::Session& session, std::optional<Duration> length, const Listener& listener) {
+  const auto end = length ? session.now() + *length : kNever;
+  auto shown = session.now();
+  for (;;) {
+    const auto due = listener.next ? listener.next() : kNever;
+    auto frame = session.receive(std::min({end, due, shown + kSlice}));
+    if (!frame && frame.error().code == Errc::interrupted) break;
+    if (!frame) return tl::unexpected<Error>(frame.error());
+    const auto now = session.received_at();
+    if (*frame && now < end && listener.on_frame) listener.on_frame(**frame, now);
+    if (!*frame || now >= shown + kSlice) {
+      if (listener.on_pause) listener.on_pause();
+      shown = now;
+    }
+    // A frame may have arrived long before it was taken: what is due is asked of the clock.
+    if (due != kNever && session.now() >= due && session.now() < end)
+      if (const auto done = listener.on_time(session.now()); !done) return done;
+    if (now >= end) break;
+  }
+  if (listener.on_pause) listener.on_pause();
+  return {};
+}
+
+}  // namespace servoctl::traffic

@@ -1,0 +1,248 @@
+#include "traffic/sampler.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "base/csv.hpp"
+#include "base/number.hpp"
+#include "canopen/cob_id.hpp"
+#include "canopen/sdo_frame.hpp"
+#include "session/measure.hpp"
+#include "show/records.hpp"
+
+namespace servoctl::traffic {
+namespace {
+
+using report::Value;
+
+/// What the drives say their units are worth, each asked once.
+void add_bridges(show::Desk& desk, std::vector<Channel>& channels) {
+  if (desk.profile == nullptr) return;
+  std::vector<session::MeasureQuestion> questions;
+  std::vector<Channel*> asking;
+  for (auto& channel : channels) {
+    const auto measure = drive::meaning(channel.target, channel.node).measure;
+    if (!measure || desk.profile->rules.units.count(*measure) == 0) continue;
+    questions.push_back({channel.node, *measure});
+    asking.push_back(&channel);
+  }
+  if (questions.empty()) return;
+  const auto measures = session::read_measures(*desk.session, *desk.profile, questions);
+  for (std::size_t i = 0; i < asking.size(); ++i) {
+    const auto unit = drive::meaning(asking[i]->target, asking[i]->node).unit;
+    if (measures[i]) asking[i]->bridge = drive::bridge(unit, asking[i]->target.address, measures[i]->value);
+  }
+}
+
+/// A number in the unit people think in, and that unit.
+struct Quantity {
+  double value = 0;
+  std::string_view unit;
+};
+std::optional<Quantity> quantity(const Channel& channel, ByteSpan bytes) {
+  auto meaning = drive::fitted(drive::meaning(channel.target, channel.node), bytes.size());
+  meaning.bridge = channel.bridge;
+  const auto type = show::type_of({channel.node, channel.target, {}, Bytes{}}, bytes);
+  const auto value = od::decode(type, bytes);
+  if (!value || !(od::is_integer(type) || od::is_real(type))) return std::nullopt;
+  if (const auto familiar = drive::familiar(meaning, *value))
+    return Quantity{familiar->value, familiar->unit};
+  return Quantity{drive::scaled(meaning, *value), meaning.unit};
+}
+
+Error no_number(const Channel& channel, const std::string& why) {
+  Error error;
+  error.code = Errc::usage;
+  error.message = fmt::format("{} is no number that could be drawn: {}", channel.name, why);
+  error.hint = "`read` and `watch` show it";
+  return show::located(std::move(error), channel.node, channel.target.address);
+}
+
+Value rounded(double number) { return parse_real(fmt::format("{:.9g}", number)).value_or(number); }
+
+}  // namespace
+
+Result<Sampler> Sampler::make(show::Desk& desk, std::span<const std::string> names) {
+  Sampler out(desk);
+  for (const auto node : desk.nodes)
+    for (const auto& name : names) {
+      const auto target = drive::resolve(desk.profile, name);
+      if (!target) return tl::unexpected<Error>(target.error());
+      auto label = desk.chinese ? target->label_zh() : target->label();
+      if (label.empty()) label = to_string(target->address);
+      out.channels_.push_back({node, *target, std::move(label), desk.nodes.size() > 1});
+    }
+  out.brought_.resize(out.channels_.size());
+  out.answered_.resize(out.channels_.size());
+  add_bridges(desk, out.channels_);
+  out.find_pdos();
+  return out;
+}
+
+void Sampler::find_pdos() {
+  const auto answers = session::read_pdos(*desk_->session, desk_->profile, desk_->nodes);
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    if (!answers[i]) continue;
+    for (const auto& pdo : *answers[i]) {
+      if (!pdo.is_valid() || pdo.direction != canopen::PdoDirection::transmit) continue;
+      const auto view = show::make_view(desk_->profile, desk_->chinese, desk_->nodes[i], pdo);
+      for (std::size_t c = 0; c < channels_.size(); ++c)
+        for (const auto& field : view.fields)
+          if (channels_[c].node == view.node && channels_[c].target.address == field.entry.object)
+            sources_.push_back({c, view.can_id(), field, pdo.bits()});
+    }
+  }
+}
+
+std::vector<Sample> Sampler::on_frame(const can::Frame& frame, TimePoint time) {
+  std::vector<Sample> out;
+  if (frame.remote || frame.error) return out;
+  const auto data = frame.payload();
+  const auto can_id = canopen::can_id_of(frame);
+  if (!frame.extended && frame.id > canopen::kSdoAnswer &&
+      frame.id <= canopen::kSdoAnswer + canopen::kLastNode && data.size() >= 4)
+    for (std::size_t i = 0; i < channels_.size(); ++i)
+      if (channels_[i].node + canopen::kSdoAnswer == frame.id &&
+          channels_[i].target.address == canopen::sdo_object(frame))
+        answered_[i] = time;
+  for (const auto& source : sources_) {
+    if (source.can_id != can_id || data.size() * 8 < source.bits) continue;
+    const canopen::PdoEntry skipped{{0x0001, 0}, static_cast<std::uint8_t>(source.field.first_bit)};
+    const canopen::PdoEntry entries[] = {skipped, source.field.entry};
+    out.push_back({source.channel, time, canopen::unpack_pdo(entries, data)->back(), true});
+    brought_[source.channel] = out.back();
+  }
+  return out;
+}
+
+bool Sampler::is_carried(std::size_t channel) const {
+  return std::any_of(sources_.begin(), sources_.end(), [&](const Source& s) { return s.channel == channel; });
+}
+
+std::vector<Sample> Sampler::read(std::span<const std::size_t> wanted) {
+  auto& session = *desk_->session;
+  std::vector<session::SdoRequest> requests;
+  const auto begin = session.now();
+  for (const auto i : wanted) {
+    requests.push_back({.node = channels_[i].node, .object = channels_[i].target.address});
+    answered_[i] = begin;
+  }
+  auto answers = session.transfer(requests);
+  std::vector<Sample> out;
+  for (std::size_t k = 0; k < wanted.size(); ++k)
+    out.push_back({wanted[k], answers[k] ? answered_[wanted[k]] : session.now(), std::move(answers[k])});
+  return out;
+}
+
+std::vector<Sample> Sampler::take() {
+  std::vector<Sample> out(channels_.size());
+  std::vector<std::size_t> missing;
+  for (std::size_t i = 0; i < channels_.size(); ++i)
+    if (brought_[i])
+      out[i] = *std::exchange(brought_[i], std::nullopt);
+    else
+      missing.push_back(i);
+  for (auto& sample : read(missing)) out[sample.channel] = std::move(sample);
+  return out;
+}
+
+Result<void> check_number(const Channel& channel) {
+  const auto meaning = drive::meaning(channel.target, channel.node);
+  if (!meaning.type_known || od::is_integer(meaning.type) || od::is_real(meaning.type)) return {};
+  return fail(no_number(channel, fmt::format("it is of type {}", od::name(meaning.type))));
+}
+
+Result<void> check_number(const Channel& channel, ByteSpan bytes) {
+  if (quantity(channel, bytes)) return {};
+  return fail(no_number(channel, "it holds something else"));
+}
+
+std::vector<Error> failures_of(std::span<const Sample> last) {
+  std::vector<Error> out;
+  for (const auto& sample : last) {
+    if (sample.bytes) continue;
+    const auto& error = sample.bytes.error();
+    const bool told =
+        std::any_of(out.begin(), out.end(), [&](const Error& e) { return e.node == error.node; });
+    if (!told) out.push_back(error);
+  }
+  return out;
+}
+
+void ChannelRecord::add(double seconds, const Sample& sample) {
+  by_pdo_ += sample.by_pdo;
+  if (!sample.bytes) {
+    ++failures_;
+    return;
+  }
+  const auto number = quantity(*channel_, *sample.bytes);
+  if (!number) return;
+  series_.unit = number->unit;
+  series_.name = channel_->name;
+  if (channel_->several_nodes) series_.name += fmt::format(" (node {})", channel_->node);
+  series_.seconds.push_back(seconds);
+  series_.values.push_back(number->value);
+  statistics_.add(number->value);
+}
+
+report::Table sampling_table(std::span<const ChannelRecord> records) {
+  report::Table table;
+  table.columns = {{"node"},
+                   {"index", "", report::Show::json},
+                   {"sub", "", report::Show::json},
+                   {"name"},
+                   {"samples"},
+                   {"by_pdo", "by PDO"},
+                   {"failed"},
+                   {"min"},
+                   {"mean", "", report::Show::json},
+                   {"mean_text", "mean", report::Show::text},
+                   {"max"},
+                   {"unit"}};
+  for (const auto& record : records) {
+    const auto& channel = record.channel();
+    const auto& numbers = record.statistics();
+    const bool bits = drive::meaning(channel.target, channel.node).bits;
+    const auto number = [&](double value) {
+      if (numbers.count() == 0) return Value();
+      return bits ? Value(report::Hex{static_cast<std::uint64_t>(value), 4}) : rounded(value);
+    };
+    table.rows.push_back({channel.node, channel.target.address.index, channel.target.address.sub,
+                          channel.name, numbers.count(), record.by_pdo(), record.failures(),
+                          number(numbers.least()), numbers.count() == 0 ? Value() : rounded(numbers.mean()),
+                          bits ? Value() : number(numbers.mean()), number(numbers.greatest()),
+                          report::text_or_null(record.series().unit)});
+  }
+  return table;
+}
+
+std::vector<Series> series_of(std::span<const ChannelRecord> records) {
+  std::vector<Series> out;
+  for (const auto& record : records)
+    if (!record.series().values.empty()) out.push_back(record.series());
+  return out;
+}
+
+std::string series_csv(std::span<const Series> series) {
+  std::string out = "seconds";
+  for (const auto& entry : series)
+    out += ',' + csv_cell(entry.unit.empty() ? entry.name : fmt::format("{} ({})", entry.name, entry.unit));
+  out += '\n';
+  std::map<double, std::vector<std::string>> lines;
+  for (std::size_t i = 0; i < series.size(); ++i)
+    for (std::size_t k = 0; k < series[i].seconds.size(); ++k) {
+      auto& cells = lines[series[i].seconds[k]];
+      cells.resize(series.size());
+      cells[i] = fmt::format("{:.12g}", series[i].values[k]);
+    }
+  for (const auto& [seconds, cells] : lines) {
+    out += fmt::format("{:.6f}", seconds);
+    for (const auto& cell : cells) out += ',' + cell;
+    out += '\n';
+  }
+  return out;
+}
+
+}  // namespace servoctl::traffic

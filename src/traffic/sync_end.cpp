@@ -1,0 +1,48 @@
+#include "traffic/sync_end.hpp"
+
+#include <fmt/format.h>
+
+#include "drive/standard_objects.hpp"
+#include "session/option_scope.hpp"
+#include "traffic/rhythm_table.hpp"
+
+namespace servoctl::traffic {
+namespace {
+
+/// Modes of operation that take their targets at SYNC: ip, csp, csv, cst (CiA 402-2, 6060h).
+constexpr std::uint64_t kFirstCyclicMode = 7;
+constexpr std::uint64_t kLastCyclicMode = 10;
+
+/// Empty when its mode is known to be none that follows SYNC.
+std::string warning(session::Session& session, std::uint8_t node) {
+  const auto mode = session.upload(node, objects::kModeDisplay);
+  const bool known = mode && mode->size() == 1;
+  if (known && (mode->front() < kFirstCyclicMode || mode->front() > kLastCyclicMode)) return {};
+  return fmt::format(
+      "node {} is energised{}: without SYNC it gets no new targets, and by its own rules holds, runs on or "
+      "raises a fault; `disable -n {}`",
+      node, known ? " in a mode that follows SYNC" : ", and its mode cannot be read", node);
+}
+
+}  // namespace
+
+SyncEnd end_sync(session::Session& session) {
+  SyncEnd out;
+  const session::Deaf deaf(session);
+  // While SYNC still goes on: reading takes a moment.
+  for (const auto node : session.energised().nodes())
+    if (auto text = warning(session, node); !text.empty()) out.warnings.push_back(std::move(text));
+  const auto& production = *session.sync();
+  if (production.foreign > 0)
+    out.warnings.push_back(fmt::format(
+        "somebody else sent {} SYNCs meanwhile: drives took both, in no steady period", production.foreign));
+  out.table.columns = rhythm_columns();
+  out.table.columns.push_back({"missed"});
+  auto row = rhythm_cells(production.rhythm);
+  row.emplace_back(production.producer.missed());
+  out.table.rows.push_back(std::move(row));
+  session.stop_sync();
+  return out;
+}
+
+}  // namespace servoctl::traffic

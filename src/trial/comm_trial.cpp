@@ -1,0 +1,204 @@
+#include "trial/comm_trial.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "base/duration.hpp"
+#include "drive/standard_objects.hpp"
+#include "session/open_bus.hpp"
+#include "session/option_scope.hpp"
+#include "show/notice.hpp"
+#include "trial/verdict.hpp"
+
+namespace servoctl::trial {
+namespace {
+
+using report::Criterion;
+using report::Record;
+using report::Show;
+using report::TestResult;
+
+/// A node that has let so many reads in succession pass is not there: the rest would only cost time.
+constexpr std::uint32_t kGone = 3;
+constexpr std::uint32_t kHeartbeats = 4;
+/// How far a heartbeat may be from its time: CiA 301 names no tolerance.
+constexpr double kHeartbeatTolerance = 0.2;
+/// From 96 on a controller warns (ISO 11898-1, 12.1.4).
+constexpr int kMostErrors = 95;
+constexpr Duration kLeastTolerance = std::chrono::milliseconds(10);
+
+class Communication {
+ public:
+  Communication(show::Desk& desk, std::uint8_t node, const CommTrial& test)
+      : desk_(&desk), session_(desk.session), node_(node), test_(test) {}
+
+  Result<TestResult> run() {
+    const auto begin = session_->now();
+    out_.test = kCommTestName;
+    out_.node = node_;
+    take_notices();
+    emergencies_ = reports_ = 0;
+    boots_ = session_->watch().boots(node_);
+    if (const auto done = read_often(); !done) return tl::unexpected<Error>(done.error());
+    judge_round_trips();
+    if (const auto done = judge_heartbeat(); !done) return tl::unexpected<Error>(done.error());
+    judge_bus();
+    out_.seconds = seconds_of(session_->now() - begin);
+    return std::move(out_);
+  }
+
+ private:
+  std::string say(std::string_view english, std::string_view chinese) const {
+    return trial::say(*desk_, english, chinese);
+  }
+
+  Result<void> read_often() {
+    const session::OptionScope once(*session_, &session::Options::retries,
+                                    0U);  // A lost answer is to be seen.
+    std::uint32_t silent = 0;
+    for (sent_ = 0; sent_ < test_.count && silent < kGone; ++sent_) {
+      const auto begin = session_->now();
+      const auto answer = session_->upload(node_, objects::kDeviceType);
+      const auto code = answer ? Errc::negative : answer.error().code;
+      if (code == Errc::bus || code == Errc::interrupted) return tl::unexpected<Error>(answer.error());
+      silent = code == Errc::timeout ? silent + 1 : 0;
+      lost_ += code == Errc::timeout;
+      wrong_ += code == Errc::protocol;
+      // A refusal is an answer as well.
+      if (code != Errc::timeout) round_trips_.push_back(session_->now() - begin);
+    }
+    return {};
+  }
+
+  void judge_round_trips() {
+    auto lost = report::at_most("lost_answers", say("lost answers", "丢失的应答"), lost_, 0);
+    lost.note = say(fmt::format("in {} reads", sent_), fmt::format("共读取 {} 次", sent_));
+    if (sent_ < test_.count) lost.note += say(", then given up", "，之后放弃");
+    out_.criteria.push_back(std::move(lost));
+    out_.criteria.push_back(
+        report::at_most("wrong_answers", say("answers against the protocol", "违反协议的应答"), wrong_, 0));
+    if (round_trips_.empty()) return;
+    std::sort(round_trips_.begin(), round_trips_.end());
+    const auto at = [&](double part) {
+      const auto last = static_cast<double>(round_trips_.size() - 1);
+      return milliseconds_of(round_trips_[static_cast<std::size_t>(part * last + 0.5)]);
+    };
+    out_.criteria.push_back(report::at_most("longest_round_trip", say("longest round trip", "最长往返时间"),
+                                            at(1), milliseconds_of(test_.longest), "ms"));
+    out_.figures.push_back({"round_trip_ms",
+                            Record{{"reads", round_trips_.size()},
+                                   {"min", at(0)},
+                                   {"median", at(0.5)},
+                                   {"p95", at(0.95), Show::everywhere, "95 %"},
+                                   {"max", at(1)}},
+                            Show::everywhere, say("round trip (ms)", "往返时间 (ms)")});
+  }
+
+  Result<void> judge_heartbeat() {
+    const auto name = say("heartbeat", "心跳");
+    const auto period = session_->upload(node_, objects::kProducerHeartbeat);
+    if (!period && period.error().code != Errc::sdo_abort && period.error().code != Errc::timeout)
+      return tl::unexpected<Error>(period.error());
+    const auto milliseconds = period ? load_le(*period) & 0xFFFFU : 0;
+    if (milliseconds == 0) {
+      out_.criteria.push_back(report::skipped(
+          "heartbeat", name,
+          !period ? say("0x1017 cannot be read", "无法读取 0x1017")
+                  : say("the drive sends none: 0x1017 is 0", "驱动器不发送心跳：0x1017 为 0")));
+      return {};
+    }
+    return measure_heartbeat(name, std::chrono::milliseconds(milliseconds));
+  }
+
+  Result<void> measure_heartbeat(const std::string& name, Duration period) {
+    const auto& watch = session_->watch();
+    const auto patience = std::max<Duration>(3 * period, std::chrono::milliseconds(100));
+    std::vector<TimePoint> heard;
+    while (heard.size() < kHeartbeats) {
+      const auto before = watch.heartbeats(node_);
+      const auto waited =
+          session_->wait([&] { return watch.heartbeats(node_) > before; }, session_->now() + patience);
+      if (!waited) return tl::unexpected<Error>(waited.error());
+      if (!*waited) break;
+      heard.push_back(session_->now());
+    }
+    Duration worst{};
+    for (std::size_t i = 1; i < heard.size(); ++i) {
+      const auto off = heard[i] - heard[i - 1] - period;
+      worst = std::max(worst, off < Duration::zero() ? -off : off);
+    }
+    auto present = report::at_least("heartbeat", name, static_cast<double>(heard.size()), kHeartbeats);
+    present.note = fmt::format("0x1017: {}", to_string(period));
+    out_.criteria.push_back(std::move(present));
+    if (heard.size() < 2) return {};
+    const auto allowed = std::max<Duration>(
+        std::chrono::duration_cast<Duration>(period * kHeartbeatTolerance), kLeastTolerance);
+    out_.criteria.push_back(report::at_most("heartbeat_period",
+                                            say("heartbeat off its period", "心跳周期偏差"),
+                                            milliseconds_of(worst), milliseconds_of(allowed), "ms"));
+    return {};
+  }
+
+  void judge_bus() {
+    take_notices();
+    out_.criteria.push_back(
+        report::at_most("emergencies", say("emergency messages", "紧急报文"), emergencies_, 0));
+    out_.criteria.push_back(report::at_most("restarts", say("restarts of the drive", "驱动器重启"),
+                                            session_->watch().boots(node_) - boots_, 0));
+    out_.criteria.push_back(report::at_most(
+        "controller_reports", say("error reports of the CAN controller", "CAN 控制器错误报告"), reports_, 0));
+    judge_controller();
+  }
+
+  void judge_controller() {
+    auto name = say("state of the CAN controller", "CAN 控制器状态");
+    const auto link = session::link_of(session_->url());
+    if (!link || !link->health) {
+      out_.criteria.push_back(
+          report::skipped("controller", std::move(name), say("this bus does not tell it", "该总线不提供")));
+      return;
+    }
+    const auto wanted = can::LinkHealth::error_active;
+    out_.criteria.push_back(report::holds("controller", std::move(name), *link->health == wanted,
+                                          std::string(can::name(*link->health)),
+                                          std::string(can::name(wanted))));
+    if (!link->tx_errors || !link->rx_errors) return;
+    out_.criteria.push_back(report::at_most("error_counters",
+                                            say("error counters of the CAN controller", "CAN 控制器错误计数"),
+                                            std::max(*link->tx_errors, *link->rx_errors), kMostErrors));
+  }
+
+  /// What was heard is counted, and told as it would be without the test.
+  void take_notices() {
+    for (const auto report : session_->take_reports()) {
+      reports_ += report != can::ControllerReport::error_active;
+      desk_->notices.push_back(session_->url() + ": " + std::string(can::text(report)));
+    }
+    for (const auto& event : session_->take_events()) {
+      const auto* emergency = std::get_if<canopen::Emergency>(&event.what);
+      if (event.node == node_ && emergency != nullptr && !emergency->is_reset()) emergencies_ += event.times;
+      desk_->notices.push_back(show::notice_text(event, desk_->profile, desk_->chinese));
+    }
+  }
+
+  show::Desk* desk_;
+  session::Session* session_;
+  std::uint8_t node_;
+  CommTrial test_;
+  TestResult out_;
+  std::vector<Duration> round_trips_;
+  std::uint32_t sent_ = 0;
+  std::uint32_t lost_ = 0;
+  std::uint32_t wrong_ = 0;
+  std::uint32_t emergencies_ = 0;
+  std::uint32_t reports_ = 0;
+  std::uint32_t boots_ = 0;
+};
+
+}  // namespace
+
+Result<TestResult> test_communication(show::Desk& desk, std::uint8_t node, const CommTrial& test) {
+  return Communication(desk, node, test).run();
+}
+
+}  // namespace servoctl::trial

@@ -1,0 +1,80 @@
+#include "trial/drive_report.hpp"
+
+#include <fmt/format.h>
+
+#include "trial/report_words.hpp"
+#include "trial/verdict.hpp"
+
+namespace servoctl::trial {
+namespace {
+
+using report::List;
+using report::Record;
+using report::Show;
+using report::TestResult;
+using report::Value;
+
+std::string joined(const std::vector<std::string>& remarks) {
+  std::string out;
+  for (const auto& remark : remarks) out += (out.empty() ? "" : ". ") + remark;
+  return out;
+}
+
+/// Name and verdict are the heading.
+report::Page::Section test_section(const show::Desk& desk, const TestResult& test) {
+  auto record = verdict_record(desk, test, Show::everywhere);
+  std::erase_if(record, [](const report::Field& field) {
+    return field.key == "test" || field.key == "node" || field.key == "verdict";
+  });
+  const Value origin(test.origin);
+  if (const auto* time = report::find(origin, "time"))
+    record.insert(record.begin(), {"time", *time, Show::text, say(desk, "made at", "测试时间")});
+  return {fmt::format("{}: {}", test.test,
+                      passed(test) ? say(desk, "passed", "通过") : say(desk, "FAILED", "未通过")),
+          4,
+          std::move(record),
+          {}};
+}
+
+}  // namespace
+
+std::string report_page(const show::Desk& desk, const Report& report) {
+  report::Page page{.chinese = desk.chinese, .title = report.title};
+  if (desk.chinese) page.translate = heading_zh;
+  page.sections.push_back({say(desk, "Summary", "概要"), 2, report.head, {}});
+  page.sections.push_back(
+      {report.bus.title, 2, List{report.link, report.bus.value}, joined(report.bus.remarks)});
+  for (const auto& drive : report.drives) {
+    page.sections.push_back({drive.title, 2, {}, {}});
+    for (const auto& part : drive.parts)
+      page.sections.push_back({part.title, 3, part.value, joined(part.remarks)});
+    if (!drive.tests.empty()) page.sections.push_back({say(desk, "Tests", "测试"), 3, {}, {}});
+    for (const auto& test : drive.tests) page.sections.push_back(test_section(desk, test));
+  }
+  return report::html_page(page);
+}
+
+std::string report_json(const show::Desk& desk, const Report& report) {
+  List nodes;
+  for (const auto& drive : report.drives) {
+    Record node{{"node", drive.node}};
+    List remarks;
+    for (const auto& part : drive.parts) {
+      node.push_back({part.id, part.value});
+      for (const auto& remark : part.remarks) remarks.emplace_back(remark);
+    }
+    List tests;
+    for (const auto& test : drive.tests) tests.emplace_back(verdict_record(desk, test, Show::json));
+    node.push_back({"tests", std::move(tests)});
+    node.push_back({"remarks", std::move(remarks)});
+    nodes.emplace_back(std::move(node));
+  }
+  Record out{{"servoctl_report", 1}, {"title", report.title}};
+  for (const auto& field : report.head) out.push_back(field);
+  out.push_back({"link", report.link});
+  out.push_back({"found", report.bus.value});
+  out.push_back({"nodes", std::move(nodes)});
+  return report::to_json(std::move(out)) + "\n";
+}
+
+}  // namespace servoctl::trial

@@ -1,0 +1,165 @@
+#include "trial/earlier_tests.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <array>
+
+#include "base/file.hpp"
+#include "base/text.hpp"
+#include "canopen/cob_id.hpp"
+#include "show/identity.hpp"
+
+namespace servoctl::trial {
+namespace {
+
+using report::Criterion;
+using report::find;
+using report::List;
+using report::TestResult;
+using report::Value;
+using report::Verdict;
+
+std::string text(const Value* value) {
+  const auto* found = value == nullptr ? nullptr : std::get_if<std::string>(&value->data());
+  return found == nullptr ? std::string() : *found;
+}
+
+/// The relations a criterion may have, which outlive the file.
+std::string_view relation(const std::string& text) {
+  for (const std::string_view known : {"<=", ">=", "="})
+    if (known == text) return known;
+  return {};
+}
+
+std::optional<Criterion> criterion_of(const Value& value) {
+  Criterion out{.id = text(find(value, "id")),
+                .name = text(find(value, "name")),
+                .relation = relation(text(find(value, "relation"))),
+                .unit = text(find(value, "unit")),
+                .note = text(find(value, "note"))};
+  const auto verdict = text(find(value, "verdict"));
+  constexpr std::array kVerdicts{Verdict::passed, Verdict::failed, Verdict::skipped};
+  const auto* found =
+      std::find_if(kVerdicts.begin(), kVerdicts.end(), [&](Verdict v) { return report::name(v) == verdict; });
+  if (out.id.empty() || found == kVerdicts.end()) return std::nullopt;
+  out.verdict = *found;
+  if (const auto* figure = find(value, "figure")) out.figure = *figure;
+  if (const auto* limit = find(value, "limit")) out.limit = *limit;
+  return out;
+}
+
+std::optional<TestResult> test_of(const Value& value) {
+  TestResult out;
+  out.test = text(find(value, "test"));
+  const auto* node = find(value, "node");
+  const auto* number = node == nullptr ? nullptr : std::get_if<std::uint64_t>(&node->data());
+  const auto* criteria = find(value, "criteria");
+  const auto* list = criteria == nullptr ? nullptr : std::get_if<List>(&criteria->data());
+  if (out.test.empty() || number == nullptr || *number < canopen::kFirstNode ||
+      *number > canopen::kLastNode || list == nullptr)
+    return std::nullopt;
+  out.node = static_cast<std::uint8_t>(*number);
+  for (const auto* key : {"time", "family", "identity"})
+    if (const auto* told = find(value, key)) out.origin.push_back({key, *told});
+  for (const auto& one : *list) {
+    auto criterion = criterion_of(one);
+    if (!criterion) return std::nullopt;
+    out.criteria.push_back(std::move(*criterion));
+  }
+  if (const auto* samples = find(value, "samples")) {
+    auto plot = report::plot_of(*samples);
+    if (!plot) return std::nullopt;
+    out.samples = std::move(*plot);
+  }
+  return out;
+}
+
+tl::unexpected<Error> no_tests(std::string_view file) {
+  return fail(Errc::file, fmt::format("{} holds no results of tests", file),
+              "such a file is written by `test … --json >FILE`");
+}
+
+Result<void> add_tests(const Value& document, std::string_view file, std::vector<TestResult>& out) {
+  const auto* result = find(document, "result");
+  const auto* list = result == nullptr ? nullptr : std::get_if<List>(&result->data());
+  if (list == nullptr || !text(find(document, "command")).starts_with("test ")) return no_tests(file);
+  for (const auto& one : *list) {
+    auto test = test_of(one);
+    if (!test) return no_tests(file);
+    out.push_back(std::move(*test));
+  }
+  return {};
+}
+
+/// What says that the test was made of another drive than this one; empty when nothing does, nothing when it
+/// does not tell.
+std::optional<std::string> otherness(const show::Desk& desk, const TestResult& test,
+                                     const session::Identity& drive) {
+  const Value origin(test.origin);
+  const auto family = text(find(origin, "family"));
+  if (!family.empty() && family != desk.profile->family) return fmt::format("it was of {}", family);
+  const auto* record = find(origin, "identity");
+  const auto identity = record == nullptr ? std::nullopt : show::identity_of(*record, test.node);
+  if (!identity || record->is_null()) return std::nullopt;
+  auto out = show::other_kind(*identity, drive);
+  if (out.empty() && identity->serial && drive.serial && identity->serial != drive.serial)
+    out = "its serial number (1018h:04)";
+  return out.empty() ? out : out + " differs";
+}
+
+Error other_drive(const TestResult& test, const std::string& what) {
+  Error error;
+  error.code = Errc::refused;
+  error.node = test.node;
+  const auto time = text(find(Value(test.origin), "time"));
+  error.message = fmt::format("node {}: the test {}{} was made of another drive: {}", test.node, test.test,
+                              time.empty() ? "" : " of " + time, what);
+  error.hint = "leave this --tests out, or test the drive that is there now";
+  return error;
+}
+
+}  // namespace
+
+Result<std::vector<TestResult>> read_tests(const std::filesystem::path& file) {
+  const auto content = read_file(file);
+  if (!content) return tl::unexpected<Error>(content.error());
+  std::vector<TestResult> out;
+  const auto whole = report::parse_json(*content, file.string());
+  if (whole) {
+    if (const auto added = add_tests(*whole, file.string(), out); !added)
+      return tl::unexpected<Error>(added.error());
+    return out;
+  }
+  for (const auto line : split(std::string_view(*content), '\n')) {
+    if (trim(line).empty()) continue;
+    const auto document = report::parse_json(line, file.string());
+    if (!document) return tl::unexpected<Error>(whole.error());
+    if (const auto added = add_tests(*document, file.string(), out); !added)
+      return tl::unexpected<Error>(added.error());
+  }
+  if (out.empty()) return no_tests(file.string());
+  return out;
+}
+
+Result<void> check_tested(show::Desk& desk, const std::vector<TestResult>& tests) {
+  std::vector<std::uint8_t> nodes;
+  for (const auto node : desk.nodes)
+    if (std::any_of(tests.begin(), tests.end(), [&](const TestResult& test) { return test.node == node; }))
+      nodes.push_back(node);
+  if (nodes.empty()) return {};
+  const auto found = session::scan(*desk.session, nodes);
+  if (!found) return tl::unexpected<Error>(found.error());
+  for (const auto& drive : *found)
+    for (const auto& test : tests) {
+      if (test.node != drive.node) continue;
+      const auto what = otherness(desk, test, drive);
+      if (!what)
+        desk.notices.push_back(fmt::format("node {}: the test {} does not tell of which drive it was made",
+                                           test.node, test.test));
+      else if (!what->empty())
+        return fail(other_drive(test, *what));
+    }
+  return {};
+}
+
+}  // namespace servoctl::trial

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace servoctl::trial {
+
+/// A heading of a report, or yes or no, in Chinese; the word itself where there is nothing to translate
+/// (`TPDO1`, `603Fh`).
+std::string heading_zh(std::string_view heading);
+
+}  // namespace servoctl::trial

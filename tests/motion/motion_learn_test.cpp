@@ -1,0 +1,300 @@
+// How many counts a turn of the motor has is measured, or it is refused; and a number that was measured once
+// is watched while it is used.
+#include <cmath>
+
+#include "motion_support.hpp"
+#include "session/measure.hpp"
+
+namespace servoctl::motion {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr ObjectAddress kMonitor{0x2005, 3};
+constexpr ObjectAddress kMode{0x2002, 0x39};  // Pn0456
+
+class LearnBench : public MotionBench {
+ public:
+  explicit LearnBench(double counts) : MotionBench("gsd600") { drive().own_counts() = counts; }
+
+  LearnReport learn() {
+    const session::MeasureQuestion question[] = {{1, drive::Measure::increments_per_turn, 1.0}};
+    const auto gear = session::read_measures(*session, profile(), question).front();
+    LearnReport out;
+    if (!gear || !gear->learned) {
+      out.motion.outcome = fail(Errc::refused, "nothing to measure");
+      return out;
+    }
+    how.monitor = kMonitor;
+    how.monitor_name = "Pn1002";
+    how.least = profile().rules.learn.least;
+    how.gear = gear->value;
+    Motion motion(*session, profile(), 1, options);
+    auto ready = motion.prepare();
+    const auto plan = plan_learn(motion, how);
+    if (!plan) ready = tl::unexpected<Error>(plan.error());
+    if (!ready) {
+      out.motion.outcome = ready;
+      return out;
+    }
+    before = objects();
+    return run_learn(motion, how, *plan);
+  }
+
+  /// The monitor says what `lie` makes of its tenths of a rpm.
+  void lie(std::function<double(double)> lie) {
+    bus->alter = [lie = std::move(lie)](can::Frame& frame) {
+      constexpr std::uint8_t kAnswer[] = {0x43, 0x05, 0x20, 0x03};
+      if (frame.id != 0x581 || !std::equal(std::begin(kAnswer), std::end(kAnswer), frame.data.begin()))
+        return;
+      const auto bytes = std::span(frame.data).subspan(4, 4);
+      const auto raw = static_cast<std::int32_t>(load_le(bytes));
+      const auto told = store_le(static_cast<std::uint32_t>(std::lround(lie(raw))), 4);
+      std::copy(told.begin(), told.end(), bytes.begin());
+    };
+  }
+
+  /// The greatest speed that was written to 60FFh, in increments a second.
+  double fastest() const {
+    double out = 0;
+    for (const auto& text : bus->frames)
+      if (text.starts_with("601#23FF6000"))
+        out = std::max(out, std::abs(static_cast<double>(static_cast<std::int32_t>(
+                                load_le(can::parse_frame(text)->payload().subspan(4, 4))))));
+    return out;
+  }
+
+  Learn how;
+};
+
+void expect_refused(LearnBench& bench, const LearnReport& done, std::string_view why) {
+  ASSERT_FALSE(done.motion.outcome);
+  EXPECT_NE(done.motion.outcome.error().message.find(why), std::string::npos)
+      << done.motion.outcome.error().message;
+  EXPECT_FALSE(done.counts);
+  EXPECT_FALSE(bench.energised());
+  if (!done.motion.begun) return;
+  EXPECT_TRUE(done.motion.end.verified);
+  EXPECT_EQ(bench.changed(), std::vector<std::string>{});
+}
+
+TEST(Learn, FindsEveryPowerOfTwoWithoutKnowingItsSize) {
+  for (const int bits : {15, 17, 20, 23, 24}) {
+    SCOPED_TRACE(bits);
+    LearnBench bench(std::ldexp(1, bits));
+    const auto done = bench.learn();
+    ASSERT_TRUE(done.motion.outcome) << done.motion.outcome.error().message;
+    ASSERT_TRUE(done.counts);
+    EXPECT_EQ(done.counts->counts, std::ldexp(1, bits));
+    EXPECT_NE(done.counts->reason.find("2^" + std::to_string(bits)), std::string::npos)
+        << done.counts->reason;
+    EXPECT_LT(done.measured->uncertainty, 0.01);
+    EXPECT_NEAR(done.measured->increments, std::ldexp(1, bits), std::ldexp(0.004, bits));
+    EXPECT_NEAR(done.measured->rpm, 30, 3);
+    EXPECT_TRUE(done.motion.end.verified);
+    EXPECT_EQ(bench.changed(), std::vector<std::string>{});
+    EXPECT_LE(bench.fastest(), std::ldexp(33, bits) / 60);
+  }
+}
+
+TEST(Learn, TurnsTheOtherWayWhereThatIsAsked) {
+  LearnBench bench(131072);
+  bench.how.rpm = -20;
+  const auto done = bench.learn();
+  ASSERT_TRUE(done.motion.outcome) << done.motion.outcome.error().message;
+  EXPECT_EQ(done.counts->counts, 131072);
+  EXPECT_LT(done.motion.series.front().values.back(), 0);
+}
+
+TEST(Learn, TakesTheGearOut) {
+  LearnBench bench(8388608);
+  ASSERT_TRUE(bench.session->download(1, {0x6091, 1}, store_le(2, 4)));
+  const auto done = bench.learn();
+  ASSERT_TRUE(done.motion.outcome) << done.motion.outcome.error().message;
+  EXPECT_EQ(done.counts->counts, 8388608);
+  EXPECT_NEAR(done.measured->increments, 4194304, 4194304 * 0.004);
+}
+
+TEST(Learn, TakesADecimalNumberOnlyWhereTheScaleOfTheMonitorIsCertainOrSomebodyKnowsIt) {
+  LearnBench certain(100000);
+  const auto taken = certain.learn();
+  ASSERT_TRUE(taken.motion.outcome) << taken.motion.outcome.error().message;
+  EXPECT_EQ(taken.counts->counts, 100000);
+
+  LearnBench disputed(100000);
+  disputed.how.expected.disputed = true;
+  expect_refused(disputed, disputed.learn(), "100000 is near, but the manual prints two scales");
+
+  LearnBench told(100000);
+  told.how.expected = {100000, true};
+  EXPECT_EQ(told.learn().counts->counts, 100000);
+
+  LearnBench other(100000);
+  other.how.expected = {131072, true};
+  expect_refused(other, other.learn(), "not the 131072 of --nameplate");
+}
+
+TEST(Learn, RefusesANumberThatIsNoneOfThese) {
+  LearnBench bench(70000);
+  expect_refused(bench, bench.learn(), "neither a power of two nor a round decimal number");
+}
+
+TEST(Learn, NeverGoesFasterThanIsSafeWhileTheMonitorShowsNothing) {
+  LearnBench bench(32768);
+  bench.lie([](double) { return 0.; });
+  expect_refused(bench, bench.learn(), "Pn1002 shows 0 rpm: nothing to measure by");
+  EXPECT_LE(bench.fastest(), 300. * 32768 / 60);
+}
+
+TEST(Learn, RefusesAMonitorThatDoesNotGoWithTheSpeeds) {
+  LearnBench bench(8388608);
+  bench.lie([](double raw) { return raw == 0 ? 0 : 100; });
+  expect_refused(bench, bench.learn(), "does not go with what it showed");
+}
+
+TEST(Learn, RefusesAMonitorThatWavers) {
+  LearnBench bench(131072);
+  int look = 0;
+  bench.lie([&look](double raw) { return raw * (++look < 90 ? 1 : look / 40 % 2 == 0 ? 0.75 : 1.2); });
+  expect_refused(bench, bench.learn(), "does not go with its way");
+}
+
+TEST(Learn, ToleratesTheNoiseOfAMonitor) {
+  LearnBench bench(8388608);
+  std::uint32_t seed = 1;
+  bench.lie([&seed](double raw) {
+    seed = seed * 1664525 + 1013904223;
+    return raw == 0 ? 0 : raw + (static_cast<double>(seed >> 16U) / 65536 - 0.5) * 20;  // ±1 rpm
+  });
+  const auto done = bench.learn();
+  ASSERT_TRUE(done.motion.outcome) << done.motion.outcome.error().message;
+  EXPECT_EQ(done.counts->counts, 8388608);
+}
+
+TEST(Learn, RefusesAMonitorThatShowsASpeedAtRest) {
+  LearnBench bench(131072);
+  bench.lie([](double) { return 300.; });
+  const auto done = bench.learn();
+  expect_refused(bench, done, "has no power, and Pn1002 shows 30 rpm");
+  EXPECT_FALSE(done.motion.begun);
+}
+
+TEST(Learn, StopsAtOnceWhenTheMotorTurnsFasterThanWanted) {
+  LearnBench bench(4096);
+  expect_refused(bench, bench.learn(), "turns too fast");
+}
+
+TEST(Learn, NoticesAMotorThatDoesNotTurn) {
+  LearnBench bench(131072);
+  bench.drive().axis_faults().stalled = true;
+  expect_refused(bench, bench.learn(), "does not turn although it was told to");
+}
+
+TEST(Learn, LeavesTheDriveWithoutPowerWhenItIsInterruptedAnywhere) {
+  LearnBench whole(8388608);
+  ASSERT_TRUE(whole.learn().motion.outcome);
+  const int frames = whole.bus->sent;
+  for (int at = 60; at < frames; at += frames / 12) {
+    SCOPED_TRACE(at);
+    LearnBench bench(8388608);
+    bench.session->options().cancelled = [&] { return bench.bus->sent >= at; };
+    const auto done = bench.learn();
+    EXPECT_FALSE(done.counts);
+    EXPECT_FALSE(bench.energised());
+    if (done.motion.begun && !done.motion.outcome) {
+      EXPECT_EQ(done.motion.outcome.error().code, Errc::interrupted);
+      EXPECT_TRUE(done.motion.end.verified);
+    }
+  }
+}
+
+TEST(Learn, HasNothingToMeasureWhereTheParametersTell) {
+  LearnBench bench(8388608);
+  ASSERT_TRUE(bench.session->download(1, kMode, store_le(1, 2)));
+  EXPECT_FALSE(bench.learn().motion.outcome);
+  bench.options.learned = 8388608;
+  MotionUnits units(*bench.session, bench.profile(), 1, {}, {}, 8388608);
+  EXPECT_EQ(units.turn(), 131072);
+  EXPECT_FALSE(units.uses_learned());
+}
+
+TEST(Learn, UsesAKeptNumberWithTheGearOfNow) {
+  LearnBench bench(8388608);
+  ASSERT_TRUE(bench.session->download(1, {0x6091, 1}, store_le(4, 4)));
+  MotionUnits units(*bench.session, bench.profile(), 1, {}, {}, 8388608);
+  EXPECT_EQ(units.turn(), 2097152);
+  EXPECT_TRUE(units.uses_learned());
+  MotionUnits told(*bench.session, bench.profile(), 1, 131072, {}, 8388608);
+  EXPECT_EQ(told.turn(), 131072);
+  EXPECT_FALSE(told.uses_learned());
+}
+
+TEST(Learn, StopsAMotionWhoseKeptNumberIsThatOfAnotherMotor) {
+  LearnBench bench(131072);
+  bench.options.learned = 8388608;
+  const auto done = bench.jog(jog_for("60rpm", 5s));
+  ASSERT_FALSE(done.outcome);
+  EXPECT_NE(done.outcome.error().message.find("by the kept counts of a turn"), std::string::npos)
+      << done.outcome.error().message;
+  EXPECT_FALSE(bench.energised());
+  EXPECT_LT(done.series.front().values.back(), 360);
+
+  LearnBench right(8388608);
+  right.options.learned = 8388608;
+  EXPECT_TRUE(right.jog(jog_for("60rpm", 2s)).outcome);
+  const auto moved = right.move(move_to("720deg", "60rpm", true));
+  EXPECT_TRUE(moved.outcome) << moved.outcome.error().message;
+}
+
+std::vector<TurnLook> looks(double counts, double rpm, int number = 100) {
+  std::vector<TurnLook> out;
+  for (int i = 0; i < number; ++i) {
+    const double seconds = i * 0.02;
+    out.push_back({TimePoint{} + std::chrono::milliseconds(20 * i), counts * rpm / 60 * seconds,
+                   counts * rpm / 60, rpm});
+  }
+  return out;
+}
+
+TEST(TurnEstimate, IsTheWayOverTheTurns) {
+  const auto found = measure_turn(looks(131072, 30), 0.1);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->increments, 131072, 1);
+  EXPECT_NEAR(found->uncertainty, 0.1 / 30, 1e-6);
+  EXPECT_NEAR(found->by_speed, 131072, 1);
+}
+
+TEST(TurnEstimate, FollowsAPositionOverTheEndOfItsRange) {
+  auto over = looks(8388608, 30);
+  for (auto& look : over) {
+    look.position += 2147483000;
+    if (look.position > 2147483647) look.position -= 4294967296.0;
+  }
+  const auto found = measure_turn(over, 0.1);
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_NEAR(found->increments, 8388608, 10);
+}
+
+TEST(TurnEstimate, RefusesWhatIsNotExactEnough) {
+  EXPECT_FALSE(measure_turn(looks(131072, 30, 40), 0.1)) << "too few";
+  EXPECT_FALSE(measure_turn(looks(131072, 9), 0.1)) << "one step is more than 1 %";
+  EXPECT_FALSE(measure_turn(looks(131072, 0), 0.1));
+  auto quarrel = looks(131072, 30);
+  for (auto& look : quarrel) look.speed *= 1.03;
+  const auto found = measure_turn(quarrel, 0.1);
+  ASSERT_FALSE(found);
+  EXPECT_NE(found.error().message.find("tells two speeds"), std::string::npos);
+}
+
+TEST(TurnEstimate, TakesWhatIsWithinOnePercent) {
+  EXPECT_EQ(counts_behind(131072 * 1.0099, 0.003, {})->counts, 131072);
+  EXPECT_EQ(counts_behind(131072 / 1.0098, 0.003, {})->counts, 131072);
+  EXPECT_FALSE(counts_behind(131072 * 1.011, 0.003, {}));
+  EXPECT_EQ(counts_behind(8390000, 0.003, {})->counts, 8388608) << "a power of two goes before 8400000";
+  EXPECT_EQ(counts_behind(9950, 0.003, {})->counts, 10000);
+  EXPECT_EQ(counts_behind(36100, 0.003, {})->counts, 36000);
+  EXPECT_FALSE(counts_behind(10 * 131072, 0.003, {})) << "ten times a power of two is none";
+}
+
+}  // namespace
+}  // namespace servoctl::motion
