@@ -5,6 +5,7 @@
 #include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
 #include "sim/communication_guard.hpp"
+#include "sim/mapping_guard.hpp"
 #include "sim/pdo_guard.hpp"
 #include "sim/sim_drive.hpp"
 
@@ -51,7 +52,10 @@ std::uint32_t SimDrive::check_state(ObjectAddress object, ByteSpan data) const {
   }
   if (is_locked(object)) return abort::kLocalControl;
   if (const auto code = CommunicationGuard(values_).check(object, data); code != 0) return code;
-  return PdoGuard(*profile_, values_).check(object, data, nmt_ == NmtState::operational);
+  if (const auto code = PdoGuard(*profile_, values_).check(object, data, nmt_ == NmtState::operational);
+      code != 0)
+    return code;
+  return MappingGuard(*profile_, values_).check(object, data);
 }
 
 /// Parameters behind a password; the password itself never is.
