@@ -1,32 +1,25 @@
-// How a simulated drive fails, and what it says of it.
+// How a drive model fails, and what it says of it.
 #include <algorithm>
 
+#include "base/pdo_index.hpp"
 #include "canopen/sdo_abort.hpp"
 #include "drive/naming.hpp"
 #include "drive/standard_objects.hpp"
-#include "sim/pdo_guard.hpp"
-#include "sim/sim_drive.hpp"
+#include "sim/drive_model.hpp"
 
 namespace servoctl::sim {
 namespace abort = canopen::sdo_abort;
-using canopen::NmtState;
 
 namespace {
 
-/// EMCY of a life guarding or heartbeat error (CiA 301, table 26).
-constexpr std::uint16_t kLifeGuardError = 0x8130;
 constexpr std::uint16_t kQuickStopWord = 0x0002;
-/// Of 1014h: bit 31, the drive sends no EMCY; its CAN-ID has 11 bits.
-constexpr std::uint32_t kNoEmergency = 0x8000'0000;
-constexpr std::uint32_t kCanId = 0x7FF;
 
 }  // namespace
 
-void SimDrive::raise_fault(std::uint16_t code, std::array<std::uint8_t, 5> vendor, TimePoint now) {
+void DriveModel::raise_fault(std::uint16_t code, std::array<std::uint8_t, 5> vendor, TimePoint now) {
   now_ = now;
   const auto found = drive::faults_of(profile_->faults, profile_->rules.emergency, code, vendor);
-  if (!found.empty() && found.front()->kind == drive::Fault::Kind::status)
-    return send_emergency(code, vendor);
+  if (!found.empty() && found.front()->kind == drive::Fault::Kind::status) return tell(code, vendor);
   fault_ = found.size() == 1 ? found.front() : nullptr;
   power_.raise_fault(now);
   values_.set_number(objects::kErrorCode, code);
@@ -35,49 +28,32 @@ void SimDrive::raise_fault(std::uint16_t code, std::array<std::uint8_t, 5> vendo
   begin_error(ErrorLog::Source::fault, code, vendor);
 }
 
-/// An error that is no fault of the drive, or is one: told once, when it begins.
-void SimDrive::begin_error(ErrorLog::Source source, std::uint16_t code, std::array<std::uint8_t, 5> vendor) {
+void DriveModel::begin_error(ErrorLog::Source source, std::uint16_t code,
+                             std::array<std::uint8_t, 5> vendor) {
   errors_.begin(source, code, static_cast<std::uint16_t>(vendor[0] | vendor[1] << 8U));
   values_.set_number(objects::kErrorRegister, errors_.error_register());
-  send_emergency(code, vendor);
+  tell(code, vendor);
 }
 
-/// It is over: code 0000h tells so, with what is still wrong in the register (CiA 301, 7.2.7.1).
-void SimDrive::end_error(ErrorLog::Source source) {
+void DriveModel::end_error(ErrorLog::Source source) {
   if (!errors_.end(source)) return;
   values_.set_number(objects::kErrorRegister, errors_.error_register());
-  send_emergency(0, {});
+  tell(0, {});
 }
 
-/// A heartbeat that 1016h watches, or the question of life guarding, has not come: emergency, what 6007h
-/// says, and the NMT state that 1029h names.
-void SimDrive::on_master_lost(TimePoint now) {
-  react_to_lost_master(now);
-  enter_error_state();
-}
-
-/// CiA 301, 7.5.2.32: from Operational to Pre-operational, also of a drive without the object.
-void SimDrive::enter_error_state() {
-  enum : std::uint64_t { kPreOperational, kNoChange, kStopped };
-  const auto object = objects::kCommunicationErrorBehaviour;
-  const auto behaviour = values_.has(object) ? values_.number(object) : kPreOperational;
-  if (behaviour == kPreOperational && nmt_ == NmtState::operational) set_nmt(NmtState::pre_operational);
-  if (behaviour == kStopped) set_nmt(NmtState::stopped);
-}
-
-/// 6007h; a fault where there is none.
-void SimDrive::react_to_lost_master(TimePoint now) {
+void DriveModel::on_master_lost(std::uint16_t code, TimePoint now) {
+  now_ = now;
   enum : std::uint64_t { kNoAction, kFault, kDisable, kQuickStop };
   const bool has_option = values_.has(objects::kAbortConnectionOption);
   const auto option = has_option ? values_.number(objects::kAbortConnectionOption) : kFault;
-  if (option == kFault) return raise_fault(kLifeGuardError, {}, now);
-  begin_error(ErrorLog::Source::master, kLifeGuardError, {});
+  if (option == kFault) return raise_fault(code, {}, now);
+  begin_error(ErrorLog::Source::master, code);
   if (option == kDisable) power_.disable();
   if (option == kQuickStop) power_.on_controlword(kQuickStopWord, 0, false, now);
 }
 
 /// Some families take a wrong access for a fault of the drive.
-void SimDrive::raise_access_alarm(ObjectAddress object, std::uint32_t code) {
+void DriveModel::raise_access_alarm(ObjectAddress object, std::uint32_t code) {
   const auto& rules = profile_->rules.fault;
   std::string_view panel;
   if (code == abort::kLength || code == abort::kTooLong || code == abort::kTooShort)
@@ -89,7 +65,7 @@ void SimDrive::raise_access_alarm(ObjectAddress object, std::uint32_t code) {
 }
 
 /// Raises the fault the panel shows like this; false when the family's table has none.
-bool SimDrive::raise_alarm(std::string_view panel) {
+bool DriveModel::raise_alarm(std::string_view panel) {
   const auto& faults = profile_->faults;
   const auto found =
       std::find_if(faults.begin(), faults.end(), [&](const auto& f) { return f.panel == panel; });
@@ -98,13 +74,13 @@ bool SimDrive::raise_alarm(std::string_view panel) {
   return true;
 }
 
-bool SimDrive::may_reset() const {
+bool DriveModel::may_reset() const {
   const auto& gate = profile_->rules.fault.reset_enabled_by;
   if (gate && effective(gate->object) != gate->value) return false;
   return fault_ == nullptr || fault_->resettable.value_or(true);
 }
 
-void SimDrive::clear_fault() {
+void DriveModel::clear_fault() {
   fault_ = nullptr;
   errors_.end(ErrorLog::Source::fault);
   axis_.clear_error();
@@ -112,33 +88,19 @@ void SimDrive::clear_fault() {
   values_.set_number(objects::kErrorRegister, errors_.error_register());
   if (const auto alarm = drive::resolve(profile_, profile_->rules.fault.alarm); alarm)
     values_.set_number(alarm->address, 0);
-  send_emergency(0, {});
+  tell(0, {});
 }
 
-/// Under the COB-ID in 1014h, unless its bit 31 says that there is none; under that of the pre-defined
-/// connection set where there is no such object.
-void SimDrive::send_emergency(std::uint16_t code, std::array<std::uint8_t, 5> vendor) {
-  if (nmt_ == NmtState::stopped || nmt_ == NmtState::initialising) return;
-  const auto cob_id = static_cast<std::uint32_t>(values_.number(objects::kEmergencyCobId));
-  if ((cob_id & kNoEmergency) != 0) return;
-  canopen::Emergency emergency;
-  emergency.node = node_;
-  emergency.code = code;
-  emergency.error_register = static_cast<std::uint8_t>(values_.number(objects::kErrorRegister));
-  emergency.vendor = vendor;
-  emergency.size = profile_->rules.emergency.size;
-  auto frame = canopen::emergency_frame(emergency);
-  if (values_.has(objects::kEmergencyCobId)) frame.id = cob_id & kCanId;
-  emergencies_.push(frame);
-  collect_emergencies();
+void DriveModel::tell(std::uint16_t code, std::array<std::uint8_t, 5> vendor) {
+  const auto error_register = static_cast<std::uint8_t>(values_.number(objects::kErrorRegister));
+  emergencies_.push_back({code, error_register, vendor});
 }
 
-void SimDrive::collect_emergencies() {
-  while (const auto frame = emergencies_.take_frame(emergency_inhibit(), now_)) tx_.push_back(*frame);
-}
-
-Duration SimDrive::emergency_inhibit() const {
-  return values_.number(objects::kEmergencyInhibit) * std::chrono::microseconds(100);
+std::optional<Emergency> DriveModel::take_emergency() {
+  if (emergencies_.empty()) return std::nullopt;
+  const auto out = emergencies_.front();
+  emergencies_.pop_front();
+  return out;
 }
 
 }  // namespace servoctl::sim
