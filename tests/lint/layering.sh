@@ -37,6 +37,18 @@ done < <(grep -rnE '^#include "[a-z]+/' src commands --include='*.cpp' --include
 if grep -rnE '#include "can/(bus|socketcan|local|trace|descriptor)' src/canopen; then echo "canopen must know can/frame.hpp only"; bad=1; fi
 if grep -rnE 'steady_now|steady_clock::now|system_clock' src/canopen src/od src/drive; then echo "no clock in these layers"; bad=1; fi
 
+# A simulated drive is a model without a wire and ports around it: of canopen the model includes what knows no frame, of sim nothing
+# that does. What is new in sim is the model's until it is named here.
+wire='can_port|cell|communication_guard|device|emergency_producer|heartbeat_consumer|pdo_engine|pdo_guard|sim_bus|sim_drive'
+frameless='node_id|object_store|sdo_abort'
+model=$(find src/sim -name '*.?pp' | grep -vE "/($wire)\.[ch]pp$")
+grep -q 'drive_model\.hpp' <<<"$model" || { echo "src/sim/drive_model.hpp was not found: the check itself is broken"; bad=1; }
+# shellcheck disable=SC2086  # Names of files without spaces.
+if grep -nE "^#include \"(can/|canopen/|sim/($wire)\.hpp)" $model | grep -vE "\"canopen/($frameless)\.hpp\""; then echo "the model of a simulated drive must know no wire"; bad=1; fi
+for header in ${frameless//|/ }; do
+  if grep -nE '^#include "(can|canopen)/' "src/canopen/$header.hpp"; then echo "canopen/$header.hpp must know no frame"; bad=1; fi
+done
+
 # The three heavy headers each stand in one file.
 for header in 'CLI/CLI.hpp' 'nlohmann/json.hpp' 'toml++/toml.h'; do
   count=$(grep -rlF "<$header>" src commands | wc -l)
