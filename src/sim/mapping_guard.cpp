@@ -20,8 +20,8 @@ std::uint32_t MappingGuard::check_count(std::uint16_t index, std::uint64_t count
   const auto& rules = profile_->rules.pdo;
   if (count > std::min(rules.most_entries, values_->last_sub(index))) return abort::kPdoLength;
   std::uint32_t bits = 0;
-  for (std::uint8_t sub = 1; sub <= count; ++sub) {
-    const auto entry = static_cast<std::uint32_t>(values_->number({index, sub}));
+  for (std::uint64_t sub = 1; sub <= count; ++sub) {
+    const auto entry = static_cast<std::uint32_t>(values_->number({index, static_cast<std::uint8_t>(sub)}));
     if (entry == 0) return abort::kPdoLength;  // Nothing is mapped there.
     if (const auto code = check_entry(index, entry); code != 0) return code;
     bits += entry & 0xFFU;
