@@ -2,11 +2,9 @@
 
 #include <cstdint>
 
-namespace servoctl::canopen {
+#include "canopen/node_id.hpp"
 
-/// Node-IDs of CiA 301: 1..127; 0 means all nodes in an NMT command.
-inline constexpr std::uint8_t kFirstNode = 1;
-inline constexpr std::uint8_t kLastNode = 127;
+namespace servoctl::canopen {
 
 /// Bases of the pre-defined connection set (CiA 301, 7.3.5); the node-ID is added, except to kNmt and kSync.
 inline constexpr std::uint32_t kNmt = 0x000;

@@ -7,23 +7,10 @@
 #include "base/object_address.hpp"
 #include "base/time.hpp"
 #include "can/frame.hpp"
+#include "canopen/object_store.hpp"
 #include "canopen/sdo_block.hpp"
 
 namespace servoctl::canopen {
-
-/// What an SDO server serves: the entries of a device. All calls answer at once; a refusal is an SDO abort
-/// code.
-class ObjectStore {
- public:
-  virtual ~ObjectStore() = default;
-  /// Fills `out`; returns 0 or the abort code.
-  virtual std::uint32_t read(ObjectAddress object, Bytes& out) = 0;
-  /// Whether the entry takes any data at all: 0, or the abort code of an object that does not exist or is
-  /// read-only. Asked before the data of a longer transfer are (CiA 301, 7.2.4.2.3).
-  virtual std::uint32_t check_writable(ObjectAddress /*object*/) { return 0; }
-  /// Returns 0 or the abort code; nothing is changed when it refuses.
-  virtual std::uint32_t write(ObjectAddress object, ByteSpan data) = 0;
-};
 
 /// The server side of the default SDO channel (CiA 301, 7.2.4). Performs no I/O and reads no clock.
 class SdoServer {

@@ -7,7 +7,7 @@
 #include "base/duration.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
-#include "canopen/cob_id.hpp"
+#include "canopen/node_id.hpp"
 
 namespace servoctl::sim {
 namespace {
@@ -48,14 +48,14 @@ Result<const drive::Profile*> profile_of(Cell& cell, const std::string& family,
 }
 
 /// A fault by its code, or by what the panel shows: then its code and vendor bytes are looked up.
-std::optional<SimDrive::Alarm> alarm_of(const drive::Profile& profile, std::string_view text) {
+std::optional<Alarm> alarm_of(const drive::Profile& profile, std::string_view text) {
   if (const auto code = parse_integer(text))
     return code->negative || code->magnitude > 0xFFFF
                ? std::nullopt
-               : std::optional(SimDrive::Alarm{static_cast<std::uint16_t>(code->magnitude), {}});
+               : std::optional(Alarm{static_cast<std::uint16_t>(code->magnitude), {}});
   for (const auto& fault : profile.faults)
     if (equals_nocase(fault.panel, text) && fault.code)
-      return SimDrive::Alarm{*fault.code, drive::panel_bytes(profile.rules.emergency, fault.panel)};
+      return Alarm{*fault.code, drive::panel_bytes(profile.rules.emergency, fault.panel)};
   return std::nullopt;
 }
 
@@ -93,7 +93,7 @@ Result<void> apply_option(Cell& cell, std::string_view option, TimePoint now) {
   if (!time) return bad_spec(fmt::format("{}: {}; {}", key, time.error().message, time.error().hint));
   for (const auto& drive : cell.drives) {
     if (key == "silent") drive->fall_silent_at(now + *time);
-    if (key == "delay") drive->misbehaviour().answer_delay = *time;
+    if (key == "delay") drive->wire_faults().answer_delay = *time;
   }
   return {};
 }

@@ -8,8 +8,8 @@
 
 #include "base/time.hpp"
 #include "can/frame.hpp"
+#include "canopen/object_store.hpp"
 #include "canopen/pdo.hpp"
-#include "canopen/sdo_server.hpp"
 #include "drive/profile.hpp"
 #include "sim/object_values.hpp"
 

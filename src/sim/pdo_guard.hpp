@@ -4,13 +4,15 @@
 
 #include "base/bytes.hpp"
 #include "base/object_address.hpp"
+#include "base/pdo_index.hpp"
 #include "drive/profile.hpp"
 #include "sim/object_values.hpp"
 
 namespace servoctl::sim {
 
-/// What a drive allows to be written to its PDO parameters (CiA 301, 7.5.2.33 to 7.5.2.38, narrowed by the
-/// family's rules): which bits of the COB-ID, which transmission types, what may be mapped and when.
+/// What a drive on CAN allows to be written to its PDO parameters (CiA 301, 7.5.2.33 to 7.5.2.38, narrowed by
+/// the family's rules): which bits of the COB-ID, which transmission types, and when it may be mapped anew.
+/// What may be mapped is MappingGuard's.
 class PdoGuard {
  public:
   PdoGuard(const drive::Profile& profile, const ObjectValues& values)
@@ -21,10 +23,7 @@ class PdoGuard {
 
  private:
   std::uint32_t check_cob_id(ObjectAddress object, std::uint32_t cob_id) const;
-  bool knows_type(std::uint16_t index, std::uint8_t type) const;
-  std::uint32_t check_mapping(ObjectAddress object, std::uint64_t value) const;
-  std::uint32_t check_count(std::uint16_t index, std::uint64_t count) const;
-  std::uint32_t check_entry(std::uint16_t index, std::uint32_t mapping) const;
+  bool knows_type(const PdoPlace& place, std::uint8_t type) const;
   bool is_valid(std::uint16_t communication_index) const;
   bool allowed(drive::PdoRules::When when, std::uint16_t communication_index, bool operational) const;
 

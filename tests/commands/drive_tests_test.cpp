@@ -28,7 +28,7 @@ TEST_F(DriveTests, CommPassesOnAHealthyDrive) {
 
 TEST_F(DriveTests, CommCountsEveryLostAnswerAlthoughReadsAreRepeatedElsewhere) {
   build("gsd600@1", "gsd600");
-  drive().misbehaviour().drop_answers = 2;
+  drive().wire_faults().drop_answers = 2;
   EXPECT_EQ(criterion(run("test comm"), "lost_answers"), "failed 2");
   EXPECT_TRUE(failed());
   EXPECT_EQ(session->options().retries, 1U) << "the retries are back";
@@ -36,7 +36,7 @@ TEST_F(DriveTests, CommCountsEveryLostAnswerAlthoughReadsAreRepeatedElsewhere) {
 
 TEST_F(DriveTests, CommGivesADeadNodeUpSoon) {
   build("gsd600@1", "gsd600");
-  drive().misbehaviour().silent = true;
+  drive().wire_faults().silent = true;
   EXPECT_EQ(criterion(run("test comm", {{"--count", "100000"}}), "lost_answers"), "failed 3");
   EXPECT_LT(seconds(), 5);
 }

@@ -173,7 +173,7 @@ TEST_F(MotionTests, HomeStopsAtTheFirstThatFails) {
 
 TEST_F(MotionTests, AllMovesNothingAfterTheCommunicationHasFailed) {
   build("sv2@1", "sv2");
-  drive().misbehaviour().drop_answers = 1;
+  drive().wire_faults().drop_answers = 1;
   const auto result = run("test all", {{"speed", "60rpm"}});
   EXPECT_EQ(criterion(result, "lost_answers"), "failed 1");
   EXPECT_EQ(criterion(result, "completed"), "none");

@@ -79,7 +79,7 @@ TEST_F(Replay, ADriveThatFallsSilentMayStillBeEnergised) {
   build("gsd600@1", "gsd600");
   const auto begin = sim_bus.now();
   session->options().cancelled = [&, begin] {
-    drive().misbehaviour().silent = sim_bus.now() > begin + 500ms;
+    drive().wire_faults().silent = sim_bus.now() > begin + 500ms;
     return sim_bus.now() > begin + 1s;
   };
   ASSERT_FALSE(replay(std::string(kEnable) + "(9.000000) can0 080#\n"));
@@ -125,7 +125,7 @@ TEST_F(Replay, AnSdoThatIsRefusedOrNotAnsweredFails) {
   ASSERT_TRUE(failed());
   EXPECT_EQ(context.errors.front().object, (ObjectAddress{0x20FF, 0}));
   EXPECT_NE(context.errors.front().message.find("0x06020000"), std::string::npos);
-  drive().misbehaviour().silent = true;
+  drive().wire_faults().silent = true;
   ASSERT_TRUE(replay("(0.0) can0 601#4041600000000000\n"));
   EXPECT_TRUE(failed());
   EXPECT_NE(context.errors.front().message.find("not answered"), std::string::npos);
@@ -133,7 +133,7 @@ TEST_F(Replay, AnSdoThatIsRefusedOrNotAnsweredFails) {
 
 TEST_F(Replay, AnswersOfTheRecordingAreNoAnswersOfADrive) {
   build("gsd600@1", "gsd600");
-  drive().misbehaviour().silent = true;
+  drive().wire_faults().silent = true;
   ASSERT_TRUE(replay("(0.0) can0 601#4041600000000000\n(0.001) can0 581#4B41600033020000\n"));
   EXPECT_TRUE(context.errors.empty());
   EXPECT_TRUE(is_noticed("by the recording alone, by no drive: 1"));

@@ -118,7 +118,7 @@ TEST_F(Sampling, WhatCouldNotBePutBackIsAnError) {
   start_node();
   // Silent from the middle of the sampling on.
   const auto end = session->now() + 60ms;
-  bus->on_receive = [&](can::Frame&) { drive().misbehaviour().silent |= session->now() > end; };
+  bus->on_receive = [&](can::Frame&) { drive().wire_faults().silent |= session->now() > end; };
   (void)run("scope", {{"object", "0x6064"}, {"--map", "true"}, {"--for", "100ms"}});
   const bool told = std::any_of(context.errors.begin(), context.errors.end(), [](const Error& error) {
     return error.message.find("TPDO2 could not be put back") != std::string::npos &&
@@ -162,9 +162,9 @@ TEST_F(Sampling, EachValueHasTheTimeOfItsOwnFrame) {
 TEST_F(Sampling, ADriveThatIsGoneAtTheEndMakesTheExitCode) {
   build("gsd600@1", "gsd600");
   for (const auto* command : {"scope", "watch"}) {
-    drive().misbehaviour().silent = false;
+    drive().wire_faults().silent = false;
     const auto gone = session->now() + 50ms;
-    bus->on_receive = [&](can::Frame&) { drive().misbehaviour().silent |= session->now() > gone; };
+    bus->on_receive = [&](can::Frame&) { drive().wire_faults().silent |= session->now() > gone; };
     ASSERT_TRUE(run(command, {{"object", "0x6041"}, {"--for", "1s"}})) << command;
     ASSERT_FALSE(context.errors.empty()) << command;
     EXPECT_EQ(context.errors.front().code, Errc::timeout);
@@ -178,7 +178,7 @@ TEST_F(Sampling, AGapInTheMiddleIsNoError) {
   session->options().timeout = 20ms;
   bool dropped = false;
   bus->on_receive = [&, at = session->now() + 50ms](can::Frame&) {
-    if (session->now() > at && !std::exchange(dropped, true)) drive().misbehaviour().drop_answers = 3;
+    if (session->now() > at && !std::exchange(dropped, true)) drive().wire_faults().drop_answers = 3;
   };
   ASSERT_TRUE(run("watch", {{"object", "0x6041"}, {"--for", "1s"}, {"--every", "20ms"}}));
   EXPECT_TRUE(dropped);

@@ -67,9 +67,9 @@ class LyingDrive {
       case 1: wrong.stays_switched_on = true; return;
       case 2: wrong.feigned.insert(pick(2) == 0 ? 0x6040 : 0x6060); return;
       case 3: wrong.refused.insert(pick(2) == 0 ? 0x6040 : 0x60FF); return;
-      case 4: wrong.silent = true; return;
-      case 5: wrong.drop_answers = static_cast<std::uint32_t>(1 + pick(6)); return;
-      case 6: wrong.duplicate_answers = static_cast<std::uint32_t>(1 + pick(20)); return;
+      case 4: drive.wire_faults().silent = true; return;
+      case 5: drive.wire_faults().drop_answers = static_cast<std::uint32_t>(1 + pick(6)); return;
+      case 6: drive.wire_faults().duplicate_answers = static_cast<std::uint32_t>(1 + pick(20)); return;
       case 7: drive.set_torque_off(true); return;
       case 8:
         bench_.bus->outage.from = now + std::chrono::milliseconds(pick(300));

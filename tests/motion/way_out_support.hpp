@@ -37,7 +37,7 @@ class Several {
       EXPECT_TRUE(Power(*session, profile, nodes.back()).reach(drive::DriveState::operation_enabled));
       session->energised().insert(nodes.back());
     }
-    for (const auto& one : bus->cell.drives) one->misbehaviour().answer_delay = std::chrono::milliseconds(3);
+    for (const auto& one : bus->cell.drives) one->wire_faults().answer_delay = std::chrono::milliseconds(3);
     bus->frames.clear();
   }
 

@@ -42,7 +42,7 @@ TEST_P(WayOutOfFamily, EightDrivesTakeAsLongAsOneAndADeadOneDelaysNone) {
     (void)eight.take_down(aim);
     EXPECT_LE(eight.took, one.took * 13 / 10);
     Several hurt(family(), 8);
-    hurt.drive(4).misbehaviour().silent = true;
+    hurt.drive(4).wire_faults().silent = true;
     auto last = hurt.session->now();
     hurt.bus->on_sent = [&](const can::Frame& frame) {
       if (frame.id != 0x604 && frame.id != 0) last = hurt.bus->now();
@@ -57,7 +57,7 @@ TEST_P(WayOutOfFamily, EightDrivesTakeAsLongAsOneAndADeadOneDelaysNone) {
 
 TEST_P(WayOutOfFamily, WhatWasLeftEnergisedIsTakenDownTogetherAndTheDeadOneIsTold) {
   Several all(family(), 8);
-  all.drive(2).misbehaviour().silent = true;
+  all.drive(2).wire_faults().silent = true;
   const auto done = de_energise(*all.session);
   ASSERT_EQ(done.size(), 8U);
   for (const auto& [node, outcome] : done) EXPECT_EQ(outcome.has_value(), node != 2) << int{node};

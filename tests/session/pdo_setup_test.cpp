@@ -149,7 +149,7 @@ TEST_F(PdoSetup, OfANodeThatDoesNotAnswerIsAnErrorAndCostsTheOthersNothing) {
   const auto profile = profile_of("gsd600");
   attach(profile, 1);
   attach(profile, 2);
-  drive(1).misbehaviour().silent = true;
+  drive(1).wire_faults().silent = true;
   const std::uint8_t nodes[] = {1, 2, 3};
   for (const auto* known : {&profile, static_cast<const drive::Profile*>(nullptr)}) {
     const auto before = session().now();

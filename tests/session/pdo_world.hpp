@@ -45,7 +45,7 @@ class PdoBus final : public can::Bus {
     if (write || frame.id == 0) sent.push_back(can::to_string(frame));
     if (!write && !(to_drive && command == 0x40)) return pass(frame);
     const int number = requests++;
-    if (number == trouble_.silent) drive_->misbehaviour().silent = true;
+    if (number == trouble_.silent) drive_->wire_faults().silent = true;
     if (number != trouble_.refused && !(write && trouble_.refuses_empty_entries && is_empty_entry(frame)))
       return pass(frame);
     auto refusal = can::parse_frame("580#8000000000000406").value();
@@ -114,7 +114,7 @@ class PdoWorld {
 
   /// What the drive holds, asked on a quiet bus; entries in use only.
   Values read() {
-    drive_.misbehaviour() = {};
+    drive_.wire_faults() = {};
     auto quiet = session({});
     const auto node = drive_.node();
     return read_pdo_values(quiet, &profile_, std::span(&node, 1)).front().value();

@@ -86,7 +86,7 @@ class World {
 
   /// What the drive really holds, asked on a quiet bus.
   Values read() {
-    drive().misbehaviour() = {};
+    drive().wire_faults() = {};
     Session session(std::make_unique<TroubledBus>(bus_, drive(), Trouble{}, 1), "sim", {});
     (void)session.wait([] { return false; }, session.now() + 1s);
     Values out;

@@ -90,7 +90,7 @@ TEST_F(SessionTest, AsksDifferentNodesAtTheSameTime) {
 
 TEST_F(SessionTest, RepeatsAReadWithoutAnswer) {
   open("gsd600@1");
-  bench->cell.drives[0]->misbehaviour().drop_answers = 1;
+  bench->cell.drives[0]->wire_faults().drop_answers = 1;
   EXPECT_TRUE(session->upload(1, {0x6041, 0}));
   EXPECT_EQ(bench->sent, (std::vector<std::string>{"601#4041600000000000", "601#8041600000000405",
                                                    "601#4041600000000000"}));
@@ -107,7 +107,7 @@ TEST_F(SessionTest, CostsOneTimeoutAndItsRetriesForADeadNodeHoweverMuchIsAsked) 
 
 TEST_F(SessionTest, NeverSendsAWriteTwiceAndFindsThatItArrived) {
   open("gsd600@1");
-  bench->cell.drives[0]->misbehaviour().drop_answers = 1;
+  bench->cell.drives[0]->wire_faults().drop_answers = 1;
   const SdoRequest request{1, {0x6060, 0}, Bytes{3}};
   const auto written = write_all(*session, std::span(&request, 1), false);
   ASSERT_TRUE(written.front()) << written.front().error().message;
@@ -119,7 +119,7 @@ TEST_F(SessionTest, SaysThatItIsUnknownWhetherAWriteArrivedAtANodeThatFellSilent
   open("gsd600@1");
   const SdoRequest request{1, {0x6060, 0}, Bytes{3}};
   auto& drive = *bench->cell.drives[0];
-  drive.misbehaviour().silent = true;
+  drive.wire_faults().silent = true;
   session->options().timeout = 100ms;
   const auto answers = session->transfer(std::span(&request, 1));
   EXPECT_EQ(answers.front().error().code, Errc::timeout);
@@ -183,7 +183,7 @@ TEST_F(SessionTest, ReadsWhatItWroteAndComparesIt) {
 
 TEST_F(SessionTest, TakesTheAnswerOfTheNodeItAskedThoughFramesComeTwice) {
   open("gsd600@1");
-  bench->cell.drives[0]->misbehaviour().duplicate_answers = 3;
+  bench->cell.drives[0]->wire_faults().duplicate_answers = 3;
   const std::vector<SdoRequest> requests{{1, {0x6041, 0}, {}}, {1, {0x6061, 0}, {}}, {1, {0x1000, 0}, {}}};
   const auto answers = session->transfer(requests);
   EXPECT_EQ(*answers[0], (Bytes{0x70, 0x02}));

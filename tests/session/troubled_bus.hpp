@@ -61,7 +61,7 @@ class TroubledBus final : public can::Bus {
       throw Killed{};
     }
     sent_.push_back(can::to_string(frame));
-    if (number == trouble_.silent_at) drive_->misbehaviour().silent = true;
+    if (number == trouble_.silent_at) drive_->wire_faults().silent = true;
     if (number == trouble_.reset_at) (void)bus_->send(*can::parse_frame("000#8101"));
     if (number == trouble_.abort_at) {
       // Refused on its way: the drive never sees it.

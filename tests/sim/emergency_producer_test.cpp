@@ -70,6 +70,16 @@ TEST_F(DrivenTest, AFamilyWithout1014hSendsEmergenciesAsPredefined) {
   EXPECT_EQ(next().substr(0, 8), "081#1023");
 }
 
+TEST_F(DrivenTest, WhatTheModelTellsByItselfIsSentAtOnceButNotBeforeTheBootUp) {
+  boot("cia402");
+  drive().model().raise_fault(0x2310, {}, bus.now());
+  EXPECT_EQ(next(), "081#1023030000000000");
+  send("000#8101");
+  drive().model().raise_fault(0x3210, {}, bus.now());
+  EXPECT_EQ(next(1s), "701#00");
+  EXPECT_EQ(next(1s), "");
+}
+
 TEST(EmergencyProducerTest, KeepsTheOrderAndTheTime) {
   EmergencyProducer producer;
   constexpr TimePoint kStart{1s};

@@ -169,7 +169,7 @@ TEST_F(Gsd600, ChangesStandstillObjectsOnlyWhileDisabled) {
 }
 
 TEST_F(Gsd600, FallsSilentWhenItsCableIsOut) {
-  drive().misbehaviour().silent = true;
+  drive().wire_faults().silent = true;
   EXPECT_EQ(ask("601#4041600000000000"), "");
 }
 

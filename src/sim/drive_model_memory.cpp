@@ -1,9 +1,9 @@
-// What a simulated drive keeps when its power goes, and what it makes of that when it starts.
+// What a drive model keeps when its power goes, and what it makes of that when it starts.
 #include <algorithm>
 
 #include "canopen/sdo_abort.hpp"
 #include "drive/standard_objects.hpp"
-#include "sim/sim_drive.hpp"
+#include "sim/drive_model.hpp"
 
 namespace servoctl::sim {
 namespace abort = canopen::sdo_abort;
@@ -23,7 +23,7 @@ bool is_in(std::uint8_t group, std::uint16_t index) {
 
 }  // namespace
 
-void SimDrive::restore_if_asked() {
+void DriveModel::restore_if_asked() {
   auto& cells = memory_->cells(key_);
   const auto set = [&](const std::string& id) {
     const auto* p = parameter(id);
@@ -36,7 +36,7 @@ void SimDrive::restore_if_asked() {
   (void)memory_->save();
 }
 
-void SimDrive::load_mirrors() {
+void DriveModel::load_mirrors() {
   const auto& with_node = profile_->rules.mirror_add_node_id;
   for (const auto& p : profile_->parameters) {
     if (!p.mirror || !p.object || !values_.has(*p.mirror)) continue;
@@ -45,17 +45,17 @@ void SimDrive::load_mirrors() {
   }
 }
 
-std::uint64_t SimDrive::effective(ObjectAddress object) const {
+std::uint64_t DriveModel::effective(ObjectAddress object) const {
   const auto found = at_start_.find(object);
   return found == at_start_.end() ? values_.number(object) : found->second;
 }
 
-std::uint32_t SimDrive::restore_objects(std::uint8_t group) {
+std::uint32_t DriveModel::restore_objects(std::uint8_t group) {
   std::erase_if(memory_->cells(key_), [&](const auto& cell) { return is_in(group, cell.first.index); });
   return memory_->save() ? 0 : abort::kCannotStore;
 }
 
-std::uint32_t SimDrive::save_objects(std::uint8_t group) {
+std::uint32_t DriveModel::save_objects(std::uint8_t group) {
   auto& cells = memory_->cells(key_);
   for (const auto& object : profile_->dictionary.objects())
     for (const auto& entry : object.entries)

@@ -1,18 +1,17 @@
-// What a simulated drive answers to reads and writes.
+// What a drive model answers to reads and writes.
 #include <algorithm>
 
+#include "base/pdo_index.hpp"
 #include "canopen/sdo_abort.hpp"
 #include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
-#include "sim/communication_guard.hpp"
-#include "sim/pdo_guard.hpp"
-#include "sim/sim_drive.hpp"
+#include "sim/drive_model.hpp"
+#include "sim/mapping_guard.hpp"
 
 namespace servoctl::sim {
 namespace abort = canopen::sdo_abort;
-using canopen::NmtState;
 
-std::uint32_t SimDrive::read(ObjectAddress object, Bytes& out) {
+std::uint32_t DriveModel::read(ObjectAddress object, Bytes& out) {
   if (misbehaviour_.missing.contains(object.index)) return abort::kNoObject;
   if (misbehaviour_.unreadable.contains(object.index)) return abort::kWriteOnly;
   if (const auto code = values_.check_read(object); code != 0) return code;
@@ -37,7 +36,7 @@ std::uint32_t SimDrive::read(ObjectAddress object, Bytes& out) {
   return 0;
 }
 
-std::uint32_t SimDrive::check_state(ObjectAddress object, ByteSpan data) const {
+std::uint32_t DriveModel::check_state(ObjectAddress object, ByteSpan data) const {
   const auto target = drive::target_at(profile_, object);
   const auto effect = drive::meaning(target, node_).effect;
   if (effect == od::Effect::standstill && drive::is_energised(power_.state())) return abort::kDeviceState;
@@ -50,12 +49,12 @@ std::uint32_t SimDrive::check_state(ObjectAddress object, ByteSpan data) const {
     if (!value || drive::label_of(drive::meaning(target, node_), *value) == nullptr) return abort::kRange;
   }
   if (is_locked(object)) return abort::kLocalControl;
-  if (const auto code = CommunicationGuard(values_).check(object, data); code != 0) return code;
-  return PdoGuard(*profile_, values_).check(object, data, nmt_ == NmtState::operational);
+  if (const auto code = port_ == nullptr ? 0 : port_->check_write(object, data); code != 0) return code;
+  return MappingGuard(*profile_, values_).check(object, data);
 }
 
 /// Parameters behind a password; the password itself never is.
-bool SimDrive::is_locked(ObjectAddress object) const {
+bool DriveModel::is_locked(ObjectAddress object) const {
   const auto& store = profile_->rules.store;
   const auto* password = parameter(store.unlock);
   if (password == nullptr || !password->object || !store.unlock_open) return false;
@@ -67,14 +66,14 @@ bool SimDrive::is_locked(ObjectAddress object) const {
          static_cast<std::int64_t>(values_.number(*password->object)) != *store.unlock_open;
 }
 
-std::uint32_t SimDrive::check_writable(ObjectAddress object) {
+std::uint32_t DriveModel::check_writable(ObjectAddress object) {
   if (misbehaviour_.missing.contains(object.index)) return abort::kNoObject;
   const auto code = values_.check_writable(object);
   if (code != 0) raise_access_alarm(object, code);
   return code;
 }
 
-std::uint32_t SimDrive::write(ObjectAddress object, ByteSpan data) {
+std::uint32_t DriveModel::write(ObjectAddress object, ByteSpan data) {
   if (misbehaviour_.missing.contains(object.index)) return abort::kNoObject;
   if (misbehaviour_.refused.contains(object.index)) return abort::kDeviceState;
   if (misbehaviour_.feigned.contains(object.index)) return 0;
@@ -96,7 +95,7 @@ std::uint32_t SimDrive::write(ObjectAddress object, ByteSpan data) {
   return 0;
 }
 
-std::uint32_t SimDrive::write_command(ObjectAddress object, ByteSpan data, bool& handled) {
+std::uint32_t DriveModel::write_command(ObjectAddress object, ByteSpan data, bool& handled) {
   handled = true;
   if (object == objects::kErrorHistory) {
     errors_.clear_history();
@@ -111,7 +110,7 @@ std::uint32_t SimDrive::write_command(ObjectAddress object, ByteSpan data, bool&
 }
 
 /// Whether a write to this object goes to the memory that outlives power-off, at once.
-bool SimDrive::is_kept(ObjectAddress object) const {
+bool DriveModel::is_kept(ObjectAddress object) const {
   const auto* parameter = profile_->parameter(object);
   const auto& rules = profile_->rules.store;
   if (rules.flash_switch.empty())
@@ -126,7 +125,7 @@ bool SimDrive::is_kept(ObjectAddress object) const {
 }
 
 /// Whether a controlword is taken and not obeyed.
-bool SimDrive::feigns(std::uint16_t controlword) {
+bool DriveModel::feigns(std::uint16_t controlword) {
   const auto command = drive::decode_command(controlword, controlword);
   const bool down = command == drive::ControlCommand::disable_voltage ||
                     command == drive::ControlCommand::quick_stop ||
@@ -138,7 +137,15 @@ bool SimDrive::feigns(std::uint16_t controlword) {
   return true;
 }
 
-void SimDrive::after_write(ObjectAddress object, ByteSpan data) {
+void DriveModel::on_controlword(std::uint16_t controlword) {
+  if (feigns(controlword)) return;
+  const auto quick_stop = static_cast<std::int64_t>(values_.number(objects::kQuickStopOption));
+  power_.on_controlword(controlword, quick_stop, may_reset(), now_);
+  if (power_.was_reset()) clear_fault();
+  axis_.on_controlword(controlword, is_enabled(), now_);
+}
+
+void DriveModel::after_write(ObjectAddress object, ByteSpan data) {
   if (is_kept(object)) {
     memory_->cells(key_)[object] = Bytes(data.begin(), data.end());
     ++flash_writes_;
@@ -148,19 +155,9 @@ void SimDrive::after_write(ObjectAddress object, ByteSpan data) {
       load_le(data) == 0)
     if (const auto* mapping = profile_->dictionary.object(object.index))
       for (const auto& entry : mapping->entries) values_.set_number(entry.address, 0);
-  if (object == objects::kProducerHeartbeat || object == objects::kGuardTime ||
-      object == objects::kLifeTimeFactor)
-    set_up_error_control(now_);
-  if (object.index == objects::kConsumerHeartbeatIndex && object.sub > 0)
-    consumer_.set(object.sub, static_cast<std::uint32_t>(values_.number(object)));
+  if (port_ != nullptr) port_->on_written(object);
   if (object == objects::kModeOfOperation) values_.set(objects::kModeDisplay, data);
-  if (object == objects::kControlword && !feigns(static_cast<std::uint16_t>(load_le(data)))) {
-    power_.on_controlword(static_cast<std::uint16_t>(load_le(data)),
-                          static_cast<std::int64_t>(values_.number(objects::kQuickStopOption)), may_reset(),
-                          now_);
-    if (power_.was_reset()) clear_fault();
-    axis_.on_controlword(static_cast<std::uint16_t>(load_le(data)), is_enabled(), now_);
-  }
+  if (object == objects::kControlword) on_controlword(static_cast<std::uint16_t>(load_le(data)));
   for (const auto& setting : profile_->rules.fault.reset) {
     const auto target = drive::resolve(profile_, setting.name);
     if (!target || target->address != object || static_cast<std::int64_t>(load_le(data)) != setting.value)

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+
+#include "base/bytes.hpp"
+#include "base/object_address.hpp"
+
+namespace servoctl::canopen {
+
+/// The entries of a device, as an SDO server serves them, whatever wire it hangs on. All calls answer at
+/// once; a refusal is an SDO abort code.
+class ObjectStore {
+ public:
+  virtual ~ObjectStore() = default;
+  /// Fills `out`; returns 0 or the abort code.
+  virtual std::uint32_t read(ObjectAddress object, Bytes& out) = 0;
+  /// Whether the entry takes any data at all: 0, or the abort code of an object that does not exist or is
+  /// read-only. Asked before the data of a longer transfer are (CiA 301, 7.2.4.2.3).
+  virtual std::uint32_t check_writable(ObjectAddress /*object*/) { return 0; }
+  /// Returns 0 or the abort code; nothing is changed when it refuses.
+  virtual std::uint32_t write(ObjectAddress object, ByteSpan data) = 0;
+};
+
+}  // namespace servoctl::canopen

@@ -1,0 +1,122 @@
+// How a drive model starts and how time passes for it.
+#include "sim/drive_model.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "canopen/node_id.hpp"
+#include "drive/naming.hpp"
+#include "drive/standard_objects.hpp"
+
+namespace servoctl::sim {
+namespace {
+
+/// CiA 402-2, table of error codes.
+constexpr std::uint16_t kFollowingErrorFault = 0x8611;
+
+}  // namespace
+
+DriveModel::DriveModel(const drive::Profile& profile, std::uint8_t node, Memory& memory, std::string key)
+    : profile_(&profile),
+      memory_(&memory),
+      key_(std::move(key)),
+      node_(node),
+      values_(profile),
+      power_(profile.rules),
+      axis_(profile, values_) {
+  auto& cells = memory_->cells(key_);
+  const auto node_id = drive::place_of(profile, profile.rules.nmt.node_id);
+  const auto* entry = node_id ? profile.dictionary.find(*node_id) : nullptr;
+  if (entry == nullptr || cells.find(*node_id) != cells.end()) return;
+  if (!entry->default_value || od::to_double(entry->default_value->value) != node)
+    cells[*node_id] = store_le(node, od::size_of(entry->type).value_or(1));
+}
+
+void DriveModel::power_on(TimePoint now) {
+  now_ = now;
+  operational_ = false;
+  load_values(now);
+  begin_communication();
+}
+
+void DriveModel::reset_communication(TimePoint now) {
+  now_ = now;
+  load_communication_area();
+  begin_communication();
+}
+
+/// What went wrong with the communication is over.
+void DriveModel::begin_communication() {
+  for (const auto source :
+       {ErrorLog::Source::rpdo_short, ErrorLog::Source::rpdo_long, ErrorLog::Source::master})
+    errors_.end(source);
+  emergencies_.clear();
+  values_.set_number(objects::kErrorRegister, errors_.error_register());
+  load_mirrors();
+}
+
+/// What a drive has when its power comes.
+void DriveModel::load_values(TimePoint now) {
+  const auto load = [this] {
+    values_.load_defaults(node_);
+    for (const auto& cell : memory_->cells(key_)) values_.set(cell.first, cell.second);
+  };
+  restore_if_asked();
+  load();
+  if (const auto node_id = drive::place_of(*profile_, profile_->rules.nmt.node_id)) {
+    const auto set_to = values_.number(*node_id);
+    if (set_to >= canopen::kFirstNode && set_to <= canopen::kLastNode && set_to != node_) {
+      node_ = static_cast<std::uint8_t>(set_to);
+      load();
+    }
+  }
+  at_start_.clear();
+  for (const auto& p : profile_->parameters)
+    if (p.object && p.effect == od::Effect::restart) at_start_[*p.object] = values_.number(*p.object);
+  power_.reset();
+  axis_.reset(now);
+  errors_ = {};
+  errors_.set_capacity(values_.last_sub(objects::kErrorHistory.index));
+  fault_ = nullptr;
+}
+
+/// 1000h to 1FFFh as they are after power-on: what was stored, else the defaults (CiA 301, 7.3.2.2.1).
+void DriveModel::load_communication_area() {
+  values_.load_communication_defaults(node_);
+  for (const auto& cell : memory_->cells(key_))
+    if (in_communication_area(cell.first.index)) values_.set(cell.first, cell.second);
+}
+
+void DriveModel::set_operational(bool operational) {
+  const bool leaves = operational_ && !operational;
+  if (leaves && profile_->rules.nmt.disables_outside_operational) power_.disable();
+  operational_ = operational;
+}
+
+void DriveModel::on_time(TimePoint now) {
+  now_ = now;
+  power_.on_time(now);
+  move_axis();
+  if (!planned_fault_ || now < planned_fault_->time) return;
+  const auto alarm = std::exchange(planned_fault_, std::nullopt)->alarm;
+  raise_fault(alarm.code, alarm.vendor, now);
+}
+
+TimePoint DriveModel::deadline() const {
+  return planned_fault_ ? std::min(power_.deadline(), planned_fault_->time) : power_.deadline();
+}
+
+/// Lets the axis move up to now; it cannot follow for long without a fault.
+void DriveModel::move_axis() {
+  axis_.advance(is_enabled(), now_);
+  if (!is_enabled() || !axis_.has_following_error()) return;
+  if (!raise_alarm(profile_->rules.fault.following_alarm)) raise_fault(kFollowingErrorFault, {}, now_);
+}
+
+std::optional<std::uint64_t> DriveModel::setting(const std::string& id) const {
+  const auto* found = parameter(id);
+  if (found == nullptr || !found->object) return std::nullopt;
+  return effective(*found->object);
+}
+
+}  // namespace servoctl::sim
