@@ -7,6 +7,7 @@
 #include "commands/notice.hpp"
 #include "commands/verdict.hpp"
 #include "drive/standard_objects.hpp"
+#include "session/can_network.hpp"
 #include "session/open_bus.hpp"
 #include "session/option_scope.hpp"
 
@@ -170,7 +171,7 @@ class Communication {
 
   /// What was heard is counted, and told as it would be without the test.
   void take_notices() {
-    for (const auto report : session_->take_reports()) {
+    for (const auto report : session_->can()->take_reports()) {
       reports_ += report != can::ControllerReport::error_active;
       context_->notices.push_back(session_->url() + ": " + std::string(can::text(report)));
     }

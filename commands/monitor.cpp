@@ -7,13 +7,14 @@
 #include "commands/frame_log.hpp"
 #include "commands/listening.hpp"
 #include "commands/notice.hpp"
+#include "session/can_network.hpp"
 #include "session/open_bus.hpp"
 
 namespace servoctl::commands {
 namespace {
 
-using canopen::NodeEvent;
 using report::Value;
+using session::NodeEvent;
 
 /// So late frames may be shown: nobody sees the difference, and at full load it halves the work. The queue an
 /// ordinary user is given holds those of 25 ms at the least.
@@ -58,7 +59,10 @@ Result<void> ask_mappings(Context& context, PdoBook& book) {
 }
 
 /// Whether the node stopped telling that it lives.
-bool is_loss(const NodeEvent& event) { return std::holds_alternative<NodeEvent::HeartbeatLost>(event.what); }
+bool is_loss(const NodeEvent& event) {
+  const auto* gone = std::get_if<NodeEvent::Gone>(&event.what);
+  return gone != nullptr && gone->sign == NodeEvent::Gone::Sign::heartbeat;
+}
 
 class Monitor {
  public:
@@ -78,9 +82,9 @@ class Monitor {
       take_alarms();
       log_->flush();
     };
-    context_->session->bus().gather(kDelay);
+    context_->session->can()->bus().gather(kDelay);
     const auto ended = listen(*context_->session, length, listener);
-    context_->session->bus().gather(Duration::zero());
+    context_->session->can()->bus().gather(Duration::zero());
     return ended;
   }
 
@@ -107,7 +111,7 @@ class Monitor {
  private:
   /// Everything else the session notices is among the frames.
   void take_alarms() {
-    (void)context_->session->take_reports();
+    (void)context_->session->can()->take_reports();
     for (const auto& event : context_->session->take_events()) {
       if (!is_loss(event)) continue;
       ++lost_;

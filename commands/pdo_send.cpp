@@ -6,12 +6,12 @@
 #include "commands/command.hpp"
 #include "commands/pdo_use.hpp"
 #include "drive/standard_objects.hpp"
-#include "session/nmt_pause.hpp"
+#include "session/can_network.hpp"
+#include "session/state_pause.hpp"
 
 namespace servoctl::commands {
 namespace {
 
-using canopen::NmtState;
 using report::Value;
 
 constexpr std::uint8_t kLastSynchronous = 240;
@@ -79,7 +79,7 @@ Result<Message> make_message(Context& context, const PdoView& view, std::span<co
 }
 
 Result<void> check_operational(Context& context, const PdoView& view) {
-  const auto state = session::ask_nmt_state(*context.session, view.node, !context.dry_run);
+  const auto state = session::ask_state(*context.session, view.node, !context.dry_run);
   if (!state) return tl::unexpected<Error>(state.error());
   if (!*state) {
     context.notices.push_back(fmt::format(
@@ -87,9 +87,9 @@ Result<void> check_operational(Context& context, const PdoView& view) {
         view.node, context.dry_run ? ", and a dry run does not guard it" : ""));
     return {};
   }
-  if (**state == NmtState::operational) return {};
+  if (**state == session::NodeState::operational) return {};
   return fail(Errc::negative,
-              fmt::format("node {} is {}: it ignores PDOs", view.node, canopen::name(**state)),
+              fmt::format("node {} is {}: it ignores PDOs", view.node, session::name(**state)),
               fmt::format("`nmt start -n {}` makes it operational", view.node));
 }
 
@@ -127,7 +127,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   if (std::any_of(entries.begin(), entries.end(),
                   [](const auto& e) { return e.object == objects::kControlword; }))
     context.session->energised().insert(view.node);
-  if (const auto sent = context.session->send(message->frame); !sent)
+  if (const auto sent = context.session->can()->send(message->frame); !sent)
     return tl::unexpected<Error>(sent.error());
   if (view.pdo.type <= kLastSynchronous)
     context.notices.push_back(fmt::format("{} takes effect at the next SYNC: `sync once`", view.name));

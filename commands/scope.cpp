@@ -12,6 +12,7 @@
 #include "commands/sampler.hpp"
 #include "commands/scope_mapping.hpp"
 #include "report/svg.hpp"
+#include "session/hearing.hpp"
 #include "session/option_scope.hpp"
 
 namespace servoctl::commands {

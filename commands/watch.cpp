@@ -6,6 +6,7 @@
 #include "commands/records.hpp"
 #include "commands/sample_writer.hpp"
 #include "commands/sampler.hpp"
+#include "session/hearing.hpp"
 #include "session/option_scope.hpp"
 
 namespace servoctl::commands {

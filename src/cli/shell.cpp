@@ -281,9 +281,7 @@ std::vector<std::string> Shell::take_notices(const drive::Profile* profile, bool
   std::vector<std::string> out;
   auto* session = bus_.session();
   if (session == nullptr) return out;
-  for (const auto report : session->take_reports())
-    out.push_back(session->url() + ": " + std::string(can::text(report)));
-  for (auto& notice : session->bus().take_notices()) out.push_back(std::move(notice));
+  for (auto& notice : session->network().take_notices()) out.push_back(std::move(notice));
   for (const auto& event : session->take_events())
     out.push_back(commands::notice_text(event, profile, chinese));
   return out;

@@ -65,6 +65,7 @@ class Shell {
   /// Whether other lines follow, so that what a line begins may go on behind it; the answer is what held
   /// before.
   bool stay_open(bool stays) { return std::exchange(stays_open_, stays); }
+  bool produces_sync() const { return bus_.produces_sync(); }
   /// As BusHolder::stop_sync().
   void stop_sync() { bus_.stop_sync(); }
   /// Stops and disables the drives that were left energised, and says so: for a prompt that ends, and a file

@@ -5,16 +5,16 @@
 #include <optional>
 #include <span>
 
-#include "canopen/nmt.hpp"
+#include "session/node_state.hpp"
 #include "session/session.hpp"
 
 namespace servoctl::session {
 
 /// What a dialogue wants next: one of these.
 struct DialogueStep {
-  std::optional<SdoRequest> request = {};       ///< A transfer, whose result goes to on_answer().
-  std::optional<canopen::NmtCommand> nmt = {};  ///< A message that is not answered.
-  TimePoint pause = TimePoint::min();           ///< Else to be asked again then.
+  std::optional<SdoRequest> request = {};  ///< A transfer, whose result goes to on_answer().
+  std::optional<NodeState> state = {};     ///< The node is told to enter it, which is not answered.
+  TimePoint pause = TimePoint::min();      ///< Else to be asked again then.
   bool done = false;
 };
 

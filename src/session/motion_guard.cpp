@@ -31,10 +31,7 @@ MotionGuard::MotionGuard(Session& session, const MotionUnits& units, std::uint8_
       node_(node),
       power_(session, units.profile(), node),
       hold_(session.protect(Care::guarded)),
-      hearing_(session, [this, before = session.options().heard](const can::Frame& frame, TimePoint time) {
-        if (before) before(frame, time);
-        hear(frame);
-      }) {}
+      hearing_(session, [this](const can::Frame& frame, TimePoint) { hear(frame); }) {}
 
 /// Where even the way out runs out of memory, the drive is still told to stop: nothing of that needs any.
 MotionGuard::~MotionGuard() {
@@ -52,7 +49,7 @@ void MotionGuard::say(std::uint8_t controlword) noexcept {
   frame.size = 8;
   frame.data = {0x2B, 0x40, 0x60, 0, controlword, 0, 0, 0};
   try {
-    (void)session_->send(frame);
+    if (auto* can = session_->can()) (void)can->send(frame);
   } catch (...) {
     return;
   }
@@ -129,7 +126,7 @@ Result<void> MotionGuard::arm(const WatchdogPlan& plan) {
         !done)
       return done;
     if (rehearsal_ == nullptr) {
-      session_->produce_heartbeat(plan.producer, plan.time / kLife);
+      session_->can()->produce_heartbeat(plan.producer, plan.time / kLife);
     } else {
       const auto frame = canopen::heartbeat_frame(plan.producer, canopen::NmtState::operational);
       rehearsal_->add(
@@ -141,7 +138,7 @@ Result<void> MotionGuard::arm(const WatchdogPlan& plan) {
          {std::tuple{objects::kGuardTime, ms / kLife, 2U}, std::tuple{objects::kLifeTimeFactor, kLife, 1U}})
       if (const auto done = change(object, store_le(value, size)); !done) return done;
     if (rehearsal_ == nullptr) {
-      session_->guard(node_, {plan.time / kLife, kLife});
+      session_->can()->guard(node_, {plan.time / kLife, kLife});
     } else {
       can::Frame frame;
       frame.id = static_cast<std::uint32_t>(canopen::kErrorControl) + node_;
@@ -166,16 +163,14 @@ Result<void> MotionGuard::spare_flash() {
 
 Result<void> MotionGuard::start_node() {
   nmt_before_ = session_->watch().state(node_);
-  if (!units_->profile().rules.nmt.disables_outside_operational ||
-      nmt_before_ == canopen::NmtState::operational)
+  if (!units_->profile().rules.nmt.disables_outside_operational || nmt_before_ == NodeState::operational)
     return {};
   started_ = true;
-  const auto frame = canopen::nmt_frame(canopen::NmtCommand::start, node_);
   if (rehearsal_ != nullptr) {
-    rehearsal_->add(planned_frame(node_, frame));
+    rehearsal_->add(planned_frame(node_, canopen::nmt_frame(canopen::NmtCommand::start, node_)));
     return {};
   }
-  if (const auto sent = session_->send(frame); !sent) return sent;
+  if (auto sent = session_->network().request_state(node_, NodeState::operational); !sent) return sent;
   return pause(*session_, kNmtPause);
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "session/hearing.hpp"
 #include "session/motion_units.hpp"
 #include "session/option_scope.hpp"
 #include "session/power.hpp"
@@ -95,7 +96,7 @@ class MotionGuard {
   std::vector<Changed> changed_;
   std::optional<WatchdogPlan> watchdog_;
   bool started_ = false;  ///< It was sent NMT "start".
-  std::optional<canopen::NmtState> nmt_before_;
+  std::optional<NodeState> nmt_before_;
   bool energised_ = false;  ///< It was commanded up, so it may be.
   bool lost_ = false;       ///< The drive or the bus does not answer any more.
   bool powered_ = false;    ///< Its power could not be taken away.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "drive/standard_objects.hpp"
+#include "session/can_network.hpp"
 #include "session/link_wait.hpp"
 #include "session/motion_guard.hpp"
 #include "session/operation_mode.hpp"
@@ -31,7 +32,7 @@ void MotionGuard::put_node_back() {
         "the node was started (NMT) and stays operational: its state before is not known");
     return;
   }
-  const auto sent = session_->send(canopen::nmt_frame(canopen::NmtCommand::enter_pre_operational, node_));
+  const auto sent = session_->network().request_state(node_, NodeState::pre_operational);
   if (!sent) note("the node could not be put back to pre-operational", sent.error());
 }
 
@@ -144,8 +145,10 @@ void MotionGuard::tell_foreign_writes() {
 
 void MotionGuard::disarm() {
   if (!watchdog_) return;
-  session_->stop_heartbeat();
-  if (watchdog_->kind == WatchdogPlan::Kind::guarding) session_->stop_guarding();
+  if (auto* can = session_->can()) {
+    can->stop_heartbeat();
+    if (watchdog_->kind == WatchdogPlan::Kind::guarding) can->stop_guarding();
+  }
   watchdog_.reset();
 }
 

@@ -8,14 +8,12 @@
 #include "drive/standard_objects.hpp"
 #include "session/identify.hpp"
 #include "session/option_scope.hpp"
-#include "session/pdo_setup.hpp"
 #include "session/power.hpp"
+#include "session/process_values.hpp"
 #include "session/producer_claim.hpp"
 
 namespace servoctl::session {
 namespace {
-
-using canopen::NodeEvent;
 
 constexpr std::array kEvery{Channel::position, Channel::velocity, Channel::torque, Channel::following_error};
 
@@ -51,11 +49,9 @@ MotionMonitor::MotionMonitor(Session& session, const MotionUnits& units, std::ui
 
 void MotionMonitor::find_tpdos() {
   if (tpdos_) return;
-  const auto pdos = read_pdos(*session_, &units_->profile(), node_);
   std::vector<ObjectAddress> objects{objects::kStatusword};
   for (const auto channel : channels_) objects.push_back(object_of(channel));
-  tpdos_ = std::make_unique<TpdoValues>(*session_, pdos ? std::span(*pdos) : std::span<const canopen::Pdo>(),
-                                        objects);
+  tpdos_ = process_values(*session_, &units_->profile(), node_, objects);
   // The session learns from it under which CAN-ID emergencies come.
   if (units_->has(objects::kEmergencyCobId)) (void)session_->upload(node_, objects::kEmergencyCobId);
 }
@@ -140,8 +136,7 @@ Result<void> MotionMonitor::check_events() {
     }
     if (std::holds_alternative<NodeEvent::BootUp>(event.what))
       out = stopped_by(node_, "restarted while it moved", "is its supply steady?");
-    if (std::holds_alternative<NodeEvent::HeartbeatLost>(event.what) ||
-        std::holds_alternative<NodeEvent::GuardingLost>(event.what))
+    if (std::holds_alternative<NodeEvent::Gone>(event.what))
       out = fail(drive_error(Errc::timeout, node_, "its heartbeat was lost while it moved",
                              "check cable, termination and supply"));
   }

@@ -9,7 +9,7 @@
 
 #include "base/series.hpp"
 #include "session/motion_units.hpp"
-#include "session/tpdo_values.hpp"
+#include "session/session.hpp"
 
 namespace servoctl::session {
 
@@ -68,7 +68,7 @@ class MotionMonitor {
 
   const std::vector<MotionSample>& samples() const { return samples_; }
   /// What the node told meanwhile.
-  const std::vector<canopen::NodeEvent>& events() const { return events_; }
+  const std::vector<NodeEvent>& events() const { return events_; }
   /// One quantity each, of those the drive tells; time from the first sample on.
   std::vector<Series> series() const;
 
@@ -84,11 +84,11 @@ class MotionMonitor {
   std::uint8_t node_;
   MotionLimits limits_;
   std::vector<Channel> channels_;  ///< Those the drive has.
-  std::unique_ptr<TpdoValues> tpdos_;
+  std::unique_ptr<ProcessValues> tpdos_;
   TimePoint told_at_{};
   std::size_t by_pdo_ = 0;
   std::vector<MotionSample> samples_;
-  std::vector<canopen::NodeEvent> events_;
+  std::vector<NodeEvent> events_;
   std::optional<double> begin_;  ///< Position of the first sample, seen from the present zero.
   std::optional<double> rate_;   ///< Where the zero may change.
 };

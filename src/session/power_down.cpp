@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "base/text.hpp"
+#include "canopen/nmt.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/link_wait.hpp"
 #include "session/option_scope.hpp"
@@ -99,11 +100,11 @@ DialogueStep PowerDown::next(TimePoint now) {
     case State::cut: return {.request = command(kDisableVoltageWord)};
     case State::silence_by_nmt:
       state_ = State::wake_again;
-      return {.nmt = NmtCommand::stop, .pause = now + kNmtPause};
+      return {.state = NodeState::stopped, .pause = now + kNmtPause};
     case State::wake:
     case State::wake_again:
       enter(back_to_, now);
-      return {.nmt = NmtCommand::enter_pre_operational, .pause = now + kNmtPause};
+      return {.state = NodeState::pre_operational, .pause = now + kNmtPause};
     case State::done: break;
   }
   return {.done = true};

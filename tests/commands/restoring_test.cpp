@@ -10,6 +10,7 @@
 #include "../session/troubled_bus.hpp"
 #include "commands/restore_journal.hpp"
 #include "drive/quantity.hpp"
+#include "session/can_network.hpp"
 #include "tests/source_dir.hpp"
 
 namespace servoctl::commands {
@@ -91,7 +92,7 @@ class World {
   }
   void power_cycle() {
     session::Session session(std::make_unique<TroubledBus>(bus_, drive_, Trouble{}, 1), "sim", {});
-    EXPECT_TRUE(session.send(*can::parse_frame("000#8101")));
+    EXPECT_TRUE(session.can()->send(*can::parse_frame("000#8101")));
     (void)session.wait([] { return false; }, session.now() + 1s);
   }
   void expect_values_of_backup() {
