@@ -61,6 +61,12 @@ std::optional<NmtCommand> nmt_command(NodeState state) {
   return std::nullopt;
 }
 
+can::Frame frame_of(const LifeSign& sign, std::uint8_t node) {
+  return sign.kind == LifeSign::Kind::heartbeat
+             ? canopen::heartbeat_frame(sign.producer, NmtState::operational)
+             : canopen::guarding_request(node);
+}
+
 CanNetwork::CanNetwork(std::unique_ptr<can::Bus> bus, std::string url)
     : bus_(std::move(bus)), url_(std::move(url)) {}
 
@@ -187,6 +193,39 @@ Result<void> CanNetwork::request_state(std::uint8_t node, NodeState state) {
 }
 
 Result<void> CanNetwork::ask_state(std::uint8_t node) { return send(canopen::guarding_request(node)); }
+
+Result<void> CanNetwork::arm_watchdog(std::uint8_t node, const LifeSign& sign) {
+  if (sign.kind == LifeSign::Kind::heartbeat)
+    produce_heartbeat(sign.producer, sign.period);
+  else
+    guard(node, {sign.period, sign.life_factor});
+  return {};
+}
+
+void CanNetwork::disarm_watchdog(std::uint8_t node) {
+  stop_heartbeat();
+  if (guard_.guards(node)) stop_guarding();
+}
+
+void CanNetwork::send_last_word(std::uint8_t node, ObjectAddress object, std::uint16_t value) noexcept {
+  // Expedited, two bytes (CiA 301, 7.2.4.3.3).
+  can::Frame frame;
+  frame.id = static_cast<std::uint32_t>(canopen::kSdoRequest) + node;
+  frame.size = 8;
+  frame.data = {0x2B,
+                static_cast<std::uint8_t>(object.index & 0xFFU),
+                static_cast<std::uint8_t>(object.index >> 8U),
+                object.sub,
+                static_cast<std::uint8_t>(value & 0xFFU),
+                static_cast<std::uint8_t>(value >> 8U),
+                0,
+                0};
+  try {
+    (void)send(frame);
+  } catch (...) {
+    return;
+  }
+}
 
 std::unique_ptr<ProcessValues> CanNetwork::process_values(std::uint8_t node,
                                                           std::span<const ObjectAddress> objects) {

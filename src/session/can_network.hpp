@@ -28,6 +28,8 @@ class CanObjectChannel;
 /// The state as NodeState has it, and the command that leads there; empty where CANopen has none.
 NodeState node_state(canopen::NmtState state);
 std::optional<canopen::NmtCommand> nmt_command(NodeState state);
+/// What is sent once a period.
+can::Frame frame_of(const LifeSign& sign, std::uint8_t node);
 
 /// A CAN bus with CANopen nodes: all that knows frames, COB-IDs and NMT. What is public here beside Network
 /// is for what only CAN has, and is reached by Session::can().
@@ -55,6 +57,9 @@ class CanNetwork final : public Network {
   /// By node guarding: a node that guards its master's life begins to do so.
   Result<void> ask_state(std::uint8_t node) override;
   void doubt_state(std::uint8_t node) override { watch_.on_command(node); }
+  Result<void> arm_watchdog(std::uint8_t node, const LifeSign& sign) override;
+  void disarm_watchdog(std::uint8_t node) override;
+  void send_last_word(std::uint8_t node, ObjectAddress object, std::uint16_t value) noexcept override;
   /// By TPDOs, of those told by learn_pdos().
   std::unique_ptr<ProcessValues> process_values(std::uint8_t node,
                                                 std::span<const ObjectAddress> objects) override;

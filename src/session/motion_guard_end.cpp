@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "drive/standard_objects.hpp"
-#include "session/can_network.hpp"
 #include "session/link_wait.hpp"
 #include "session/motion_guard.hpp"
 #include "session/operation_mode.hpp"
@@ -27,7 +26,7 @@ bool is_lost(const Error& error) { return error.code == Errc::timeout || error.c
 /// Where it is not known in which state it was, it is not taken out of another master's hands.
 void MotionGuard::put_node_back() {
   if (!std::exchange(started_, false)) return;
-  if (!nmt_before_) {
+  if (!state_before_) {
     result_.notes.emplace_back(
         "the node was started (NMT) and stays operational: its state before is not known");
     return;
@@ -145,10 +144,7 @@ void MotionGuard::tell_foreign_writes() {
 
 void MotionGuard::disarm() {
   if (!watchdog_) return;
-  if (auto* can = session_->can()) {
-    can->stop_heartbeat();
-    if (watchdog_->kind == WatchdogPlan::Kind::guarding) can->stop_guarding();
-  }
+  session_->network().disarm_watchdog(node_);
   watchdog_.reset();
 }
 

@@ -37,9 +37,7 @@ void MotionGuard::rehearse_end() {
   rehearsal_->begin_step("put back");
   for (auto changed = changed_.rbegin(); changed != changed_.rend(); ++changed)
     if (!stays_new(*changed)) rehearsal_->add(planned_write({node_, changed->object, changed->before}));
-  if (started_ && nmt_before_)
-    rehearsal_->add(
-        planned_frame(node_, canopen::nmt_frame(canopen::NmtCommand::enter_pre_operational, node_)));
+  if (started_ && state_before_) rehearsal_->add(planned_state(node_, NodeState::pre_operational));
 }
 
 }  // namespace servoctl::session

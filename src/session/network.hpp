@@ -14,6 +14,7 @@
 #include "base/time.hpp"
 #include "canopen/emergency.hpp"
 #include "canopen/transfer.hpp"
+#include "session/life_sign.hpp"
 #include "session/node_event.hpp"
 #include "session/node_state.hpp"
 
@@ -126,6 +127,16 @@ class Network {
   /// The node is told to change its state: what was heard of it is no longer known to be so, unless it goes
   /// on telling it by itself.
   virtual void doubt_state(std::uint8_t node) = 0;
+
+  /// From now on tells the node in every step that servoctl lives; the first time at once. What it does
+  /// without that is written to its objects, by the caller. Errc::usage for a sign that this network does not
+  /// have.
+  virtual Result<void> arm_watchdog(std::uint8_t node, const LifeSign& sign) = 0;
+  /// The node is told no more.
+  virtual void disarm_watchdog(std::uint8_t node) = 0;
+  /// Sends the write of an object of two bytes and looks no further: for a way out on which nothing else
+  /// works any more. Needs no memory.
+  virtual void send_last_word(std::uint8_t node, ObjectAddress object, std::uint16_t value) noexcept = 0;
 
   /// What the node tells of these objects by itself, as far as its mapping is known; see process_values().
   virtual std::unique_ptr<ProcessValues> process_values(std::uint8_t node,

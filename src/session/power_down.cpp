@@ -6,7 +6,6 @@
 #include <memory>
 
 #include "base/text.hpp"
-#include "canopen/nmt.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/link_wait.hpp"
 #include "session/option_scope.hpp"
@@ -15,7 +14,6 @@
 namespace servoctl::session {
 namespace {
 
-using canopen::NmtCommand;
 using drive::DriveState;
 
 constexpr Duration kPause = std::chrono::milliseconds(5);
@@ -198,7 +196,7 @@ std::vector<PlannedMessage> planned_power_down(std::uint8_t node, PowerAim aim) 
     say(kDisableVoltageWord);
   }
   out.push_back(
-      planned_frame(node, canopen::nmt_frame(NmtCommand::enter_pre_operational, node),
+      planned_state(node, NodeState::pre_operational,
                     aim == PowerAim::stop ? "if it does not answer" : "if it does not obey or answer"));
   return out;
 }

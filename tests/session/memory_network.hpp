@@ -103,6 +103,17 @@ class MemoryNetwork final : public Network, private NodeRecords {
     return {};
   }
   void doubt_state(std::uint8_t node) override { told_[node].state.reset(); }
+  Result<void> arm_watchdog(std::uint8_t node, const LifeSign& sign) override {
+    watched_[node] = sign;
+    return {};
+  }
+  void disarm_watchdog(std::uint8_t node) override { watched_.erase(node); }
+  /// The signs of life that each node gets now.
+  const std::map<std::uint8_t, LifeSign>& watched() const { return watched_; }
+  void send_last_word(std::uint8_t id, ObjectAddress object, std::uint16_t value) noexcept override {
+    const std::uint8_t bytes[] = {static_cast<std::uint8_t>(value), static_cast<std::uint8_t>(value >> 8U)};
+    if (auto* node = node_at(id)) (void)node->objects->write(object, bytes);
+  }
   std::unique_ptr<ProcessValues> process_values(std::uint8_t node,
                                                 std::span<const ObjectAddress> objects) override;
 
@@ -142,6 +153,7 @@ class MemoryNetwork final : public Network, private NodeRecords {
   TimePoint now_{std::chrono::seconds(1)};
   std::map<std::uint8_t, MemoryNode> nodes_;
   std::map<std::uint8_t, Told> told_;
+  std::map<std::uint8_t, LifeSign> watched_;
   std::vector<Due> due_;
   std::deque<NodeEvent> events_;
 };

@@ -216,6 +216,15 @@ TEST_F(NetworkTest, BringsProcessValuesOfNodesThatExchangeThemEachOnce) {
   EXPECT_TRUE(values->take(objects::kPositionActual, since + 5ms));
 }
 
+TEST_F(NetworkTest, IsToldThatServoctlLivesAndTakesALastWord) {
+  ASSERT_TRUE(session->network().arm_watchdog(1, {LifeSign::Kind::heartbeat, 127, 100ms}));
+  EXPECT_EQ(network->watched().count(1), 1U);
+  session->network().disarm_watchdog(1);
+  EXPECT_TRUE(network->watched().empty());
+  session->network().send_last_word(1, objects::kControlword, 0x0002);
+  EXPECT_EQ(objects.values[objects::kControlword], (Bytes{2, 0}));
+}
+
 TEST_F(NetworkTest, TakesADriveDown) {
   std::vector<PowerDownPlan> plans(1);
   plans[0].node = 1;
