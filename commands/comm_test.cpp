@@ -171,7 +171,9 @@ class Communication {
 
   /// What was heard is counted, and told as it would be without the test.
   void take_notices() {
-    for (const auto report : session_->can()->take_reports()) {
+    auto* network = session_->can();
+    for (const auto report :
+         network == nullptr ? std::vector<can::ControllerReport>() : network->take_reports()) {
       reports_ += report != can::ControllerReport::error_active;
       context_->notices.push_back(session_->url() + ": " + std::string(can::text(report)));
     }

@@ -20,10 +20,11 @@ Result<void> listen(session::Session& session, std::optional<Duration> length, c
     const auto stepped = session.step(std::min({end, due, shown + kSlice}));
     if (!stepped && stepped.error().code == Errc::interrupted) break;
     if (!stepped) return tl::unexpected<Error>(stepped.error());
-    const auto& frame = session.can()->frame();
+    const auto* network = session.can();
+    const auto frame = network == nullptr ? std::optional<can::Frame>() : network->frame();
     const auto now = session.received_at();
     if (frame && now < end && listener.on_frame) listener.on_frame(*frame, now);
-    if (!frame || now >= shown + kSlice) {
+    if (!*stepped || now >= shown + kSlice) {
       if (listener.on_pause) listener.on_pause();
       shown = now;
     }
