@@ -51,7 +51,7 @@ Value one(const session::Identity& node, std::span<const drive::Family> families
       {"error_register", optional_number(more[0]), report::Show::everywhere, "error register"},
       {"heartbeat_ms", optional_number(more[1]), report::Show::everywhere, "heartbeat (ms)"},
       {"modes", modes_text(more[2])},
-      {"nmt", node.nmt ? Value(canopen::name(*node.nmt)) : Value()}};
+      {"nmt", node.state ? Value(session::name(*node.state)) : Value()}};
   if (profile != nullptr) {
     const auto& rules = profile->rules;
     const auto& name = chinese && !rules.name_zh.empty() ? rules.name_zh : rules.name;

@@ -5,6 +5,7 @@
 #include "command/command.hpp"
 #include "command/duration_option.hpp"
 #include "command/frame_filter.hpp"
+#include "session/can_network.hpp"
 #include "session/open_bus.hpp"
 #include "show/notice.hpp"
 #include "traffic/bus_load.hpp"
@@ -14,9 +15,8 @@ namespace servoctl::commands {
 namespace {
 
 using namespace command;
-
-using canopen::NodeEvent;
 using report::Value;
+using session::NodeEvent;
 
 /// So late frames may be shown: nobody sees the difference, and at full load it halves the work. The queue an
 /// ordinary user is given holds those of 25 ms at the least.
@@ -61,7 +61,10 @@ Result<void> ask_mappings(Context& context, show::PdoBook& book) {
 }
 
 /// Whether the node stopped telling that it lives.
-bool is_loss(const NodeEvent& event) { return std::holds_alternative<NodeEvent::HeartbeatLost>(event.what); }
+bool is_loss(const NodeEvent& event) {
+  const auto* gone = std::get_if<NodeEvent::Gone>(&event.what);
+  return gone != nullptr && gone->sign == NodeEvent::Gone::Sign::heartbeat;
+}
 
 class Monitor {
  public:
@@ -81,9 +84,9 @@ class Monitor {
       take_alarms();
       log_->flush();
     };
-    context_->session->bus().gather(kDelay);
+    context_->session->can()->bus().gather(kDelay);
     const auto ended = traffic::listen(*context_->session, length, listener);
-    context_->session->bus().gather(Duration::zero());
+    context_->session->can()->bus().gather(Duration::zero());
     return ended;
   }
 
@@ -110,7 +113,7 @@ class Monitor {
  private:
   /// Everything else the session notices is among the frames.
   void take_alarms() {
-    (void)context_->session->take_reports();
+    (void)context_->session->can()->take_reports();
     for (const auto& event : context_->session->take_events()) {
       if (!is_loss(event)) continue;
       ++lost_;
@@ -165,7 +168,7 @@ const Command kMonitor{
         "frames there were, and the load of the bus where the interface or --bitrate tells the bitrate. "
         "`-o jsonl` gives one document a frame.",
     .parameters = kParameters,
-    .needs = Needs::bus,
+    .needs = Needs::can,
     .effect = Effect::reads,
     .run = run,
 };

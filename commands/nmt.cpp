@@ -5,6 +5,7 @@
 
 #include "command/command.hpp"
 #include "drive/standard_objects.hpp"
+#include "session/can_network.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -35,9 +36,9 @@ struct Before {
 };
 
 bool confirmed(session::Session& session, const Before& before, NmtCommand command) {
-  if (is_reset(command)) return session.watch().boots(before.node) > before.boots;
-  return session.watch().heartbeats(before.node) > before.heartbeats &&
-         session.watch().state(before.node) == canopen::state_after(command);
+  if (is_reset(command)) return session.can()->watch().boots(before.node) > before.boots;
+  return session.can()->watch().heartbeats(before.node) > before.heartbeats &&
+         session.can()->watch().state(before.node) == canopen::state_after(command);
 }
 
 /// How the nodes' heartbeats come, read before the command.
@@ -55,7 +56,7 @@ Heartbeats heartbeats_of(Context& context) {
   Heartbeats out;
   for (std::size_t i = 0; i < answers.size(); ++i) {
     const auto node = context.nodes[i];
-    out.longest = std::max(out.longest, context.session->watch().period(node));
+    out.longest = std::max(out.longest, context.session->can()->watch().period(node));
     if (!answers[i] || answers[i]->size() > 8) continue;
     const auto period = std::chrono::milliseconds(load_le(*answers[i]) & 0xFFFFU);
     out.longest = std::max<Duration>(out.longest, period);
@@ -90,7 +91,7 @@ report::Table result_table(Context& context, std::span<const Before> before, Nmt
   report::Table table;
   table.columns = {{"node"}, {"command"}, {"confirmed"}, {"state"}};
   for (const auto& entry : before) {
-    const auto state = context.session->watch().state(entry.node);
+    const auto state = context.session->can()->watch().state(entry.node);
     table.rows.push_back({entry.node == 0 ? Value("all") : Value(entry.node), canopen::name(command),
                           waited ? Value(confirmed(*context.session, entry, command)) : Value(),
                           waited && state ? Value(canopen::name(*state)) : Value()});
@@ -128,10 +129,11 @@ Result<report::Value> run(Context& context, const Arguments& arguments, NmtComma
   const auto heartbeats = wait && !is_reset(command) ? heartbeats_of(context) : Heartbeats();
   std::vector<Before> before;
   for (const auto node : context.nodes) {
-    before.push_back({node, context.session->watch().boots(node), context.session->watch().heartbeats(node)});
-    if (const auto sent = context.session->send(canopen::nmt_frame(command, node)); !sent)
+    before.push_back({node, context.session->can()->watch().boots(node),
+                      context.session->can()->watch().heartbeats(node)});
+    if (const auto sent = context.session->can()->send(canopen::nmt_frame(command, node)); !sent)
       return tl::unexpected<Error>(sent.error());
-    context.session->watch().on_command(node);
+    context.session->can()->watch().on_command(node);
   }
   if (command == NmtCommand::reset_communication) context.notices.emplace_back(kCommunicationLost);
   if (!wait) return report::Value(result_table(context, before, command, false));
@@ -146,7 +148,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments, NmtComma
   if (!waited) return tl::unexpected<Error>(waited.error());
   for (const auto& entry : before)
     if (!confirmed(*context.session, entry, command))
-      context.errors.push_back(unconfirmed(entry, command, heartbeats, context.session->watch()));
+      context.errors.push_back(unconfirmed(entry, command, heartbeats, context.session->can()->watch()));
   return report::Value(result_table(context, before, command, true));
 }
 
@@ -178,10 +180,11 @@ const Command kNmtStart{
     .summary = "Put nodes into operational: PDOs flow",
     .details = kDetails,
     .parameters = kParameters,
-    .needs = Needs::node,
+    .needs = Needs::node | Needs::can,
     .effect = Effect::writes,
     .family = FamilyCheck::never,
     .run = run_command<NmtCommand::start>,
+    .to_all = true,
 };
 
 extern const Command kNmtStop;
@@ -190,10 +193,11 @@ const Command kNmtStop{
     .summary = "Put nodes into stopped: neither PDO nor SDO",
     .details = kDetails,
     .parameters = kParameters,
-    .needs = Needs::node,
+    .needs = Needs::node | Needs::can,
     .effect = Effect::writes,
     .family = FamilyCheck::never,
     .run = run_command<NmtCommand::stop>,
+    .to_all = true,
 };
 
 extern const Command kNmtPreop;
@@ -202,11 +206,12 @@ const Command kNmtPreop{
     .summary = "Put nodes into pre-operational: SDO, no PDO",
     .details = kDetails,
     .parameters = kParameters,
-    .needs = Needs::node,
+    .needs = Needs::node | Needs::can,
     .effect = Effect::writes,
     .family = FamilyCheck::never,
     .run = run_command<NmtCommand::enter_pre_operational>,
     .settings = [](const Arguments&) { return Result<std::vector<settings::NamedValue>>{}; },  // It prepares.
+    .to_all = true,
 };
 
 extern const Command kNmtReset;
@@ -215,10 +220,11 @@ const Command kNmtReset{
     .summary = "Restart nodes (reset node); asks first",
     .details = kResetDetails,
     .parameters = kParameters,
-    .needs = Needs::node,
+    .needs = Needs::node | Needs::can,
     .effect = Effect::resets,
     .family = FamilyCheck::never,
     .run = run_command<NmtCommand::reset_node>,
+    .to_all = true,
 };
 
 extern const Command kNmtResetComm;
@@ -227,10 +233,11 @@ const Command kNmtResetComm{
     .summary = "Restart the communication of nodes; asks first",
     .details = kResetCommDetails,
     .parameters = kParameters,
-    .needs = Needs::node,
+    .needs = Needs::node | Needs::can,
     .effect = Effect::resets,
     .family = FamilyCheck::never,
     .run = run_command<NmtCommand::reset_communication>,
+    .to_all = true,
 };
 
 }  // namespace servoctl::commands

@@ -7,6 +7,7 @@
 #include "command/command.hpp"
 #include "command/duration_option.hpp"
 #include "drive/standard_objects.hpp"
+#include "session/can_network.hpp"
 #include "session/scan.hpp"
 #include "show/notice.hpp"
 #include "traffic/listening.hpp"
@@ -15,10 +16,9 @@ namespace servoctl::commands {
 namespace {
 
 using namespace command;
-
-using canopen::NodeEvent;
 using report::Show;
 using report::Value;
+using session::NodeEvent;
 
 constexpr Duration kSlice = std::chrono::milliseconds(100);
 
@@ -85,8 +85,10 @@ std::vector<Result<Bytes>> ask_for_heartbeats(session::Session& session,
 }
 
 std::string_view event_name(const NodeEvent& event) {
-  constexpr std::string_view kNames[] = {"boot-up",       "state",         "heartbeat-lost", "emergency",
-                                         "guarding-lost", "guarding-back", "doubled"};
+  const auto* gone = std::get_if<NodeEvent::Gone>(&event.what);
+  if (gone != nullptr && gone->sign != NodeEvent::Gone::Sign::heartbeat) return "guarding-lost";
+  constexpr std::string_view kNames[] = {"boot-up",       "state",   "heartbeat-lost", "emergency",
+                                         "guarding-back", "doubled", "state-error"};
   static_assert(std::size(kNames) == std::variant_size_v<decltype(event.what)>);
   return kNames[event.what.index()];
 }
@@ -96,7 +98,7 @@ class Log {
  public:
   Log(Context& context, std::span<const std::uint8_t> nodes)
       : context_(&context), begin_(context.session->now()) {
-    const auto& watch = context.session->watch();
+    const auto& watch = context.session->can()->watch();
     for (const auto node : nodes)
       rows_.push_back(
           {.node = node, .boots = watch.boots(node), .heartbeats = watch.heartbeats(node), .told = {}});
@@ -112,8 +114,7 @@ class Log {
       const auto row =
           std::find_if(rows_.begin(), rows_.end(), [&](const Row& r) { return r.node == event.node; });
       if (row == rows_.end()) continue;
-      const bool lost = std::holds_alternative<NodeEvent::HeartbeatLost>(event.what) ||
-                        std::holds_alternative<NodeEvent::GuardingLost>(event.what);
+      const bool lost = std::holds_alternative<NodeEvent::Gone>(event.what);
       row->lost += lost;
       row->gone = lost;
       row->emergencies += std::holds_alternative<canopen::Emergency>(event.what) ? event.times : 0;
@@ -136,7 +137,7 @@ class Log {
                      {"boots"},
                      {"lost"},
                      {"emergencies", "EMCY"}};
-    const auto& watch = context_->session->watch();
+    const auto& watch = context_->session->can()->watch();
     for (const auto& row : rows_) {
       const auto state = watch.state(row.node);
       const auto period =
@@ -162,13 +163,13 @@ class Log {
 
   /// Heartbeats, or answers to node guarding.
   bool regular(const Row& row) const {
-    return context_->session->watch().heartbeats(row.node) > row.heartbeats;
+    return context_->session->can()->watch().heartbeats(row.node) > row.heartbeats;
   }
   bool answered(const Row& row) const {
     return row.told && (*row.told || row.told->error().code == Errc::sdo_abort);
   }
   bool heard(const Row& row) const {
-    return context_->session->watch().boots(row.node) > row.boots || row.emergencies > 0;
+    return context_->session->can()->watch().boots(row.node) > row.boots || row.emergencies > 0;
   }
   /// Of a node that was there once and tells nothing regularly, nobody knows.
   Value alive(const Row& row) const {
@@ -182,7 +183,7 @@ class Log {
     error.code = Errc::negative;
     error.node = row.node;
     error.hint = "ask it by --guard 1s";
-    if (row.lost > 0 && context_->session->watch().state(row.node)) {
+    if (row.lost > 0 && context_->session->can()->watch().state(row.node)) {
       error.message = fmt::format("was lost {} time{}", row.lost, row.lost == 1 ? "" : "s");
       error.hint.clear();
     } else if (regular(row)) {
@@ -235,7 +236,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   if (plan->guard_time && context.dry_run) return Value(guarding_frames(*nodes));
   Log log(context, *nodes);
   if (plan->guard_time)
-    for (const auto node : *nodes) session.guard(node, {*plan->guard_time, plan->life_factor});
+    for (const auto node : *nodes) session.can()->guard(node, {*plan->guard_time, plan->life_factor});
   else
     log.told(ask_for_heartbeats(session, *nodes));
   const auto end = plan->length ? session.now() + *plan->length : kNever;
@@ -244,7 +245,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
     waited = session.wait([] { return false; }, std::min(end, session.now() + kSlice));
     log.take_events();
   }
-  session.stop_guarding();
+  session.can()->stop_guarding();
   if (!waited && waited.error().code != Errc::interrupted) return tl::unexpected<Error>(waited.error());
   return log.summary();
 }
@@ -271,11 +272,12 @@ const Command kNmtWatch{
         "heard, or "
         "sends no heartbeat. Do not guard nodes that send heartbeats: CiA 301 allows one of the two.",
     .parameters = kParameters,
-    .needs = Needs::node,
+    .needs = Needs::node | Needs::can,
     .effect = Effect::writes,
     .family = FamilyCheck::never,
     .reads_without = "--guard",
     .run = run,
+    .to_all = true,
 };
 
 }  // namespace servoctl::commands

@@ -5,15 +5,14 @@
 #include "command/command.hpp"
 #include "drive/standard_objects.hpp"
 #include "pdo/pdo_use.hpp"
-#include "session/nmt_pause.hpp"
+#include "session/can_network.hpp"
+#include "session/state_pause.hpp"
 #include "settings/change.hpp"
 
 namespace servoctl::commands {
 namespace {
 
 using namespace command;
-
-using canopen::NmtState;
 using report::Value;
 
 constexpr std::uint8_t kLastSynchronous = 240;
@@ -82,7 +81,7 @@ Result<Message> make_message(Context& context, const show::PdoView& view,
 }
 
 Result<void> check_operational(Context& context, const show::PdoView& view) {
-  const auto state = session::ask_nmt_state(*context.session, view.node, !context.dry_run);
+  const auto state = session::ask_state(*context.session, view.node, !context.dry_run);
   if (!state) return tl::unexpected<Error>(state.error());
   if (!*state) {
     context.notices.push_back(fmt::format(
@@ -90,9 +89,9 @@ Result<void> check_operational(Context& context, const show::PdoView& view) {
         view.node, context.dry_run ? ", and a dry run does not guard it" : ""));
     return {};
   }
-  if (**state == NmtState::operational) return {};
+  if (**state == session::NodeState::operational) return {};
   return fail(Errc::negative,
-              fmt::format("node {} is {}: it ignores PDOs", view.node, canopen::name(**state)),
+              fmt::format("node {} is {}: it ignores PDOs", view.node, session::name(**state)),
               fmt::format("`nmt start -n {}` makes it operational", view.node));
 }
 
@@ -130,7 +129,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   if (std::any_of(entries.begin(), entries.end(),
                   [](const auto& e) { return e.object == objects::kControlword; }))
     context.session->energised().insert(view.node);
-  if (const auto sent = context.session->send(message->frame); !sent)
+  if (const auto sent = context.session->can()->send(message->frame); !sent)
     return tl::unexpected<Error>(sent.error());
   if (view.pdo.type <= kLastSynchronous)
     context.notices.push_back(fmt::format("{} takes effect at the next SYNC: `sync once`", view.name));
@@ -151,7 +150,7 @@ const Command kPdoSend{
         "use or "
         "the node is not operational. PDOs are not answered: `status` or `pdo watch` tell what became of it.",
     .parameters = kParameters,
-    .needs = Needs::node,
+    .needs = Needs::node | Needs::can,
     .effect = Effect::moves,
     .run = run,
 };

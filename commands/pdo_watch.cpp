@@ -141,7 +141,7 @@ const Command kPdoWatch{
         "shortest, "
         "longest, standard deviation. RPDOs are shown when a master sends them.",
     .parameters = kParameters,
-    .needs = Needs::node,
+    .needs = Needs::node | Needs::can,
     .effect = Effect::reads,
     .run = run,
 };

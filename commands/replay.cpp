@@ -225,7 +225,7 @@ const Command kReplay{
         "Exit code 1 when a drive refused an SDO request or did not answer it. To have commands answered by "
         "a recording instead, use --bus replay:FILE.",
     .parameters = kParameters,
-    .needs = Needs::bus,
+    .needs = Needs::can,
     .effect = Effect::moves,
     .run = run,
 };

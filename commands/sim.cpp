@@ -44,7 +44,7 @@ const Command kSim{
         "raises a fault, silent=5s makes them fall silent, delay=20ms answers late; counts=8388608 is what a "
         "turn of the motor has where no object tells it.",
     .parameters = kParameters,
-    .needs = Needs::bus,
+    .needs = Needs::can,
     .effect = Effect::none,
     .run = run,
 };

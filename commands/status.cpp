@@ -101,12 +101,12 @@ Record one(Context& context, std::uint8_t node, std::span<const Result<Bytes>> a
   const bool has_no_heartbeat = !answers[4] && answers[4].error().code == Errc::sdo_abort;
   out.push_back(
       {"nmt",
-       nmt ? std::string(canopen::name(*nmt))
+       nmt ? std::string(session::name(*nmt))
            : std::string(has_no_heartbeat ? "not stopped (no heartbeat tells more: it has no 0x1017)"
                          : heartbeat.value_or(0) == 0 ? "not stopped (no heartbeat tells more: 0x1017 is 0)"
                                                       : "not heard"),
        Show::text, "NMT state"});
-  out.push_back({"nmt", nmt ? Value(canopen::name(*nmt)) : Value(), Show::json});
+  out.push_back({"nmt", nmt ? Value(session::name(*nmt)) : Value(), Show::json});
   add_drive_state(out, context, session::number_in(answers[0]), session::number_in(answers[1]));
   add_mode_and_fault(out, context, answers);
   return out;

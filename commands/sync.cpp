@@ -6,6 +6,8 @@
 #include "base/number.hpp"
 #include "command/command.hpp"
 #include "command/duration_option.hpp"
+#include "session/can_network.hpp"
+#include "session/hearing.hpp"
 #include "session/option_scope.hpp"
 #include "traffic/listening.hpp"
 #include "traffic/sync_end.hpp"
@@ -40,7 +42,7 @@ Value planned_frame(std::optional<std::uint8_t> counter) {
 
 /// One more in between would break the rhythm.
 Result<void> check_none(const Context& context) {
-  const auto* production = context.session->sync();
+  const auto* production = context.session->can()->sync();
   if (production == nullptr) return {};
   return fail(Errc::refused,
               fmt::format("SYNC is produced already, every {}", to_string(production->options.period)),
@@ -65,7 +67,7 @@ Result<Value> run_once(Context& context, const Arguments&) {
   if (context.dry_run) return planned_frame({});
   if (const auto sure = context.confirm(fmt::format("Send a SYNC? {}", kWarning)); !sure)
     return tl::unexpected<Error>(sure.error());
-  if (const auto sent = context.session->send(canopen::sync_frame()); !sent)
+  if (const auto sent = context.session->can()->send(canopen::sync_frame()); !sent)
     return tl::unexpected<Error>(sent.error());
   return Value(report::Record{{"sent", 1}});
 }
@@ -103,11 +105,11 @@ Result<Value> run_start(Context& context, const Arguments& arguments) {
     return tl::unexpected<Error>(sure.error());
   auto& session = *context.session;
   if (const auto quiet = check_quiet(session); !quiet) return tl::unexpected<Error>(quiet.error());
-  session.produce_sync(*options);
+  session.can()->produce_sync(*options);
   if (context.stays_open && !length->has_value()) {
     // The first one goes out now, not when the next line is waited for.
     if (const auto heard = session.listen(); !heard) {
-      session.stop_sync();
+      session.can()->stop_sync();
       return tl::unexpected<Error>(heard.error());
     }
     const std::chrono::duration<double, std::milli> period = options->period;
@@ -124,7 +126,7 @@ Result<Value> run_start(Context& context, const Arguments& arguments) {
 }
 
 Result<Value> run_stop(Context& context, const Arguments&) {
-  if (context.session->sync() == nullptr)
+  if (context.session->can()->sync() == nullptr)
     return fail(
         Errc::usage, "no SYNC is produced here",
         "`sync start` in the same prompt or batch file begins one; another process is ended by Ctrl-C");
@@ -145,7 +147,7 @@ const Command kSyncOnce{
         "drive "
         "may move.",
     .parameters = {},
-    .needs = Needs::bus,
+    .needs = Needs::can,
     .effect = Effect::moves,
     .family = FamilyCheck::never,
     .run = run_once,
@@ -161,7 +163,7 @@ const Command kSyncStart{
         "mean, shortest, longest, standard deviation, and how many SYNCs were missed because the computer "
         "was late. There must be no other producer of SYNC on the bus.",
     .parameters = kStartParameters,
-    .needs = Needs::bus,
+    .needs = Needs::can,
     .effect = Effect::moves,
     .family = FamilyCheck::never,
     .run = run_start,
@@ -175,7 +177,7 @@ const Command kSyncStop{
         "Tells the periods that were measured. Drives that were left energised in a mode that follows SYNC "
         "(ip, csp, csv, cst) are named: disable them first.",
     .parameters = {},
-    .needs = Needs::bus,
+    .needs = Needs::can,
     .effect = Effect::none,
     .family = FamilyCheck::never,
     .run = run_stop,

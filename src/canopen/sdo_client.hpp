@@ -10,17 +10,9 @@
 #include "base/time.hpp"
 #include "can/frame.hpp"
 #include "canopen/sdo_block.hpp"
+#include "canopen/transfer.hpp"
 
 namespace servoctl::canopen {
-
-/// How an SDO transfer is made (CiA 301, 7.2.4.1).
-enum class Transfer : std::uint8_t {
-  automatic,  ///< Writes by their size; reads as the server answers them.
-  domain,     ///< As automatic, and a read is expected to be long: block transfer is asked for first.
-  expedited,  ///< Up to 4 bytes in one frame; anything longer is refused.
-  segmented,  ///< 7 bytes a frame, each acknowledged.
-  block,      ///< Up to 127 segments for one acknowledge; never anything else.
-};
 
 /// A write of more bytes than these is tried as a block transfer first.
 inline constexpr std::size_t kBlockWorthwhile = 64;
@@ -46,6 +38,9 @@ class SdoClient {
   /// none. With Transfer::expedited, 1 to 4 bytes only.
   void start_download(ObjectAddress object, Bytes data, TimePoint now,
                       Transfer transfer = Transfer::automatic);
+
+  /// The longest silence from now on. Must not be called while a transfer is under way.
+  void set_timeout(Duration timeout) { timeout_ = timeout; }
 
   void on_frame(const can::Frame& frame, TimePoint now);
   void on_time(TimePoint now);

@@ -12,6 +12,7 @@
 #include "can/socketcan.hpp"
 #include "motion/left_energised.hpp"
 #include "motion/power.hpp"
+#include "session/can_network.hpp"
 #include "session/link_wait.hpp"
 #include "traffic/sync_end.hpp"
 
@@ -73,7 +74,7 @@ void BusHolder::on_trace_failed(const Error& error) {
 
 std::optional<Error> BusHolder::take_trace_failure() {
   flushing_ = true;
-  if (session_) session_->bus().flush_trace();
+  if (session_) session_->network().flush_trace();
   flushing_ = false;
   return std::exchange(trace_failure_, std::nullopt);
 }
@@ -91,7 +92,7 @@ void BusHolder::drop() {
 void BusHolder::lose() {
   if (!session_) return;
   for (const auto node : session_->energised().nodes()) warn(node, session_->url() + " was lost");
-  if (session_->sync() != nullptr)
+  if (produces_sync())
     console_->err(fmt::format("notice: SYNC is no longer produced: {} was lost\n", session_->url()));
   drop();
 }
@@ -130,16 +131,20 @@ Result<void> BusHolder::connect_again(const std::string& url, const std::set<std
   }
 }
 
+bool BusHolder::produces_sync() const {
+  return session_ && session_->can() != nullptr && session_->can()->sync() != nullptr;
+}
+
 void BusHolder::stop_sync() {
-  if (!session_ || session_->sync() == nullptr) return;
-  const auto count = session_->sync()->rhythm.count();
+  if (!produces_sync()) return;
+  const auto count = session_->can()->sync()->rhythm.count();
   for (const auto& warning : traffic::end_sync(*session_).warnings)
     console_->err("warning: " + warning + "\n");
   console_->err(fmt::format("notice: SYNC is no longer produced on {}, after {}\n", session_->url(), count));
 }
 
 Duration BusHolder::serve() {
-  if (!session_ || session_->sync() == nullptr) return Duration::max();
+  if (!produces_sync()) return Duration::max();
   // What goes wrong is told to the next line.
   (void)session_->listen();
   return std::max(Duration::zero(), session_->next_event() - session_->now());

@@ -39,6 +39,7 @@ class BusHolder {
   /// Closes the bus.
   void close() { drop(); }
 
+  bool produces_sync() const;
   /// Ends the SYNC that is produced, and says so.
   void stop_sync();
 

@@ -51,6 +51,12 @@ Result<void> check_allowed(const command::Command& command, const command::Argum
   return {};
 }
 
+Result<void> check_network(const command::Command& command, session::Session& session) {
+  if (!includes(command.needs, Needs::can) || session.can() != nullptr) return {};
+  return fail(Errc::usage, fmt::format("'{}' is for CAN, which {} is not", command.path, session.url()),
+              "objects, states and motions are the same there: `read`, `status`, `backup`, `jog`");
+}
+
 Error no_node(const command::Command& command) {
   return fail(Errc::usage, fmt::format("'{}' needs a node", command.path),
               "add -n 1 (or a list, or all); `scan` shows who is there")
@@ -149,6 +155,7 @@ Result<void> Shell::prepare(Run& run, const command::Arguments& arguments) {
   const auto opened = open(run.settings);
   if (!opened) return tl::unexpected<Error>(opened.error());
   run.context.session = *opened;
+  if (const auto possible = check_network(command, **opened); !possible) return possible;
   if (const auto named = prepare_nodes(run); !named) return named;
   return run.line.hold_family(run.context.nodes, run.context.profile, weight_of(command, arguments));
 }
@@ -204,7 +211,7 @@ Result<void> Shell::prepare_nodes(Run& run) {
   if (run.settings.nodes.empty()) return {};
   auto nodes = parse_nodes(run.settings.nodes);
   if (!nodes) return tl::unexpected<Error>(nodes.error());
-  const bool takes_all = run.command->path.starts_with("nmt ") || !includes(run.command->needs, Needs::node);
+  const bool takes_all = run.command->to_all || !includes(run.command->needs, Needs::node);
   if (nodes->front() == 0 && !takes_all) {
     std::vector<std::uint8_t> every(canopen::kLastNode);
     std::iota(every.begin(), every.end(), canopen::kFirstNode);
@@ -234,9 +241,7 @@ std::vector<std::string> Shell::take_notices(const drive::Profile* profile, bool
   std::vector<std::string> out;
   auto* session = bus_.session();
   if (session == nullptr) return out;
-  for (const auto report : session->take_reports())
-    out.push_back(session->url() + ": " + std::string(can::text(report)));
-  for (auto& notice : session->bus().take_notices()) out.push_back(std::move(notice));
+  for (auto& notice : session->network().take_notices()) out.push_back(std::move(notice));
   for (const auto& event : session->take_events()) out.push_back(show::notice_text(event, profile, chinese));
   return out;
 }

@@ -25,6 +25,8 @@ namespace servoctl::cli {
 /// Whether the command may run at all: --read-only refuses what changes a drive, and a line is no batch file.
 Result<void> check_allowed(const command::Command& command, const command::Arguments& arguments,
                            const Settings& settings);
+/// Whether the command can be run on this network: one that speaks in frames needs CAN. Errc::usage.
+Result<void> check_network(const command::Command& command, session::Session& session);
 /// The command was given no node.
 Error no_node(const command::Command& command);
 
@@ -67,6 +69,7 @@ class Shell {
   /// Whether other lines follow, so that what a line begins may go on behind it; the answer is what held
   /// before.
   bool stay_open(bool stays) { return std::exchange(stays_open_, stays); }
+  bool produces_sync() const { return bus_.produces_sync(); }
   /// As BusHolder::stop_sync().
   void stop_sync() { bus_.stop_sync(); }
   /// Stops and disables the drives that were left energised, and says so: for a prompt that ends, and a file

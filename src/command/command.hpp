@@ -45,7 +45,8 @@ struct Parameter {
 };
 
 /// What must be there before the command runs; the front end sees to it, not the command. Combined with `|`.
-enum class Needs : std::uint8_t { nothing = 0, dictionary = 1, bus = 2, node = 6 };  // A node needs a bus.
+/// A node and CAN need a bus; `can`: frames, COB-IDs, NMT or SYNC, which not every network has.
+enum class Needs : std::uint8_t { nothing = 0, dictionary = 1, bus = 2, node = 6, can = 10 };
 constexpr Needs operator|(Needs a, Needs b) {
   return static_cast<Needs>(static_cast<std::uint8_t>(a) | static_cast<std::uint8_t>(b));
 }
@@ -80,6 +81,7 @@ struct Command {
   Result<void> (*check)(Context&, const Arguments&) = nullptr;
   /// The values it writes, for a batch file that is read as settings; null: it writes none.
   Result<std::vector<settings::NamedValue>> (*settings)(const Arguments&) = nullptr;
+  bool to_all = false;        ///< Node 0 stays one message to all, and is not taken for those that answer.
   bool of_front_end = false;  ///< It runs other command lines: the front end does it, `run` is null.
 
   /// What it does with these arguments.

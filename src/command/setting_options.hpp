@@ -18,9 +18,7 @@ inline constexpr Parameter kSkipInvalidOption{.name = "--skip-invalid",
 
 /// The option `--only`, for the commands that have it.
 inline constexpr Parameter kOnlyOption{
-    .name = "--only",
-    .help = "communication, pdo, params, or a group of parameters",
-    .kind = Kind::text};
+    .name = "--only", .help = "communication, pdo, params, or a group of parameters", .kind = Kind::text};
 
 /// `--resume`, for the commands that restore.
 inline constexpr Parameter kResumeOption{

@@ -1,23 +1,22 @@
 #include "motion/dialogue.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 #include <vector>
 
 #include "canopen/cob_id.hpp"
-
 namespace servoctl::motion {
 namespace {
 
-/// What receive() may tell beside frames, such as a trace that cannot be written, is told once each.
+/// What a step may tell beside arrivals, such as a trace that cannot be written, is told once each.
 constexpr int kMostRemarks = 100;
 
 class DialogueRun {
  public:
   DialogueRun(session::Session& session, std::span<Dialogue* const> dialogues) : session_(&session) {
     for (auto* dialogue : dialogues)
-      channels_.push_back({dialogue, canopen::SdoClient(dialogue->node(), session.options().timeout),
-                           TimePoint::min(), false});
+      channels_.push_back({dialogue, new_channel(dialogue->node()), TimePoint::min(), false});
   }
 
   void run(const std::function<bool(const Error&)>& bus_back) {
@@ -36,12 +35,16 @@ class DialogueRun {
  private:
   struct Channel {
     Dialogue* dialogue;
-    canopen::SdoClient client;
+    std::unique_ptr<session::ObjectChannel> objects;
     TimePoint pause;
     bool done;
   };
 
-  /// Sends what is to be sent, and receives one frame.
+  std::unique_ptr<session::ObjectChannel> new_channel(std::uint8_t node) {
+    return session_->network().object_channel(node, session_->options().timeout);
+  }
+
+  /// Sends what is to be sent, and takes in one arrival.
   Result<void> round() {
     auto next = kNever;
     open_ = 0;
@@ -50,42 +53,28 @@ class DialogueRun {
       if (const auto went = advance(channel); !went) return went;
       if (channel.done) continue;
       ++open_;
-      next = std::min(next, channel.client.busy() ? channel.client.deadline() : channel.pause);
+      next = std::min(next, channel.objects->busy() ? channel.objects->deadline() : channel.pause);
     }
     if (open_ == 0) return {};
-    const auto frame = session_->receive(next);
-    if (!frame) return tl::unexpected<Error>(frame.error());
-    const auto now = session_->received_at();
-    for (auto& channel : channels_) {
-      if (*frame && is_for(**frame, channel)) channel.client.on_frame(**frame, now);
-      if (channel.client.deadline() <= now) channel.client.on_time(now);
-    }
+    if (const auto stepped = session_->step(next); !stepped) return tl::unexpected<Error>(stepped.error());
     return {};
-  }
-
-  static bool is_for(const can::Frame& frame, const Channel& channel) {
-    return frame.id >= canopen::kSdoAnswer && frame.id <= canopen::kErrorControl + canopen::kLastNode &&
-           (frame.id & 0x7FU) == channel.dialogue->node();
   }
 
   /// Until it waits for an answer or the time.
   Result<void> advance(Channel& channel) {
     for (;;) {
-      if (const auto frame = channel.client.take_frame()) {
-        if (auto sent = session_->send(*frame); !sent) return sent;
-        continue;
-      }
-      if (auto result = channel.client.take_result()) {
+      if (auto sent = channel.objects->on_time(session_->received_at()); !sent) return sent;
+      if (auto result = channel.objects->take_result()) {
         if (*result) lost_in_a_row_ = 0;
         channel.dialogue->on_answer(std::move(*result), session_->now());
         continue;
       }
-      if (channel.client.busy() || session_->now() < channel.pause) return {};
+      if (channel.objects->busy() || session_->now() < channel.pause) return {};
       auto step = channel.dialogue->next(session_->now());
       channel.done = step.done;
       if (step.done) return {};
-      if (step.nmt)
-        if (auto sent = session_->send(canopen::nmt_frame(*step.nmt, channel.dialogue->node())); !sent)
+      if (step.state)
+        if (auto sent = session_->network().request_state(channel.dialogue->node(), *step.state); !sent)
           return sent;
       if (step.request) start(channel, std::move(*step.request));
       channel.pause = step.pause;
@@ -94,16 +83,17 @@ class DialogueRun {
 
   void start(Channel& channel, session::SdoRequest request) {
     if (request.data)
-      channel.client.start_download(request.object, std::move(*request.data), session_->now());
+      channel.objects->start_download(request.object, std::move(*request.data), session_->now(),
+                                      request.transfer);
     else
-      channel.client.start_upload(request.object, session_->now());
+      channel.objects->start_upload(request.object, session_->now(), request.transfer, request.size);
   }
 
   void restart() {
     if (std::exchange(lost_in_a_row_, lost_in_a_row_ + 1) > 0) say_last_words();
     for (auto& channel : channels_) {
       if (channel.done) continue;
-      channel.client = canopen::SdoClient(channel.dialogue->node(), session_->options().timeout);
+      channel.objects = new_channel(channel.dialogue->node());
       channel.pause = TimePoint::min();
       channel.dialogue->on_bus_back();
     }
@@ -114,9 +104,9 @@ class DialogueRun {
     for (const auto& channel : channels_) {
       auto word = channel.done ? std::nullopt : channel.dialogue->last_word();
       if (!word) continue;
-      canopen::SdoClient client(channel.dialogue->node(), session_->options().timeout);
-      client.start_download(word->object, std::move(*word->data), session_->now());
-      if (const auto frame = client.take_frame()) (void)session_->send(*frame);
+      const auto objects = new_channel(channel.dialogue->node());
+      objects->start_download(word->object, std::move(*word->data), session_->now(), word->transfer);
+      (void)objects->on_time(session_->received_at());
     }
   }
 

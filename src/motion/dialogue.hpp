@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "canopen/nmt.hpp"
+#include "session/node_state.hpp"
 #include "session/session.hpp"
 
 namespace servoctl::motion {
@@ -13,7 +13,7 @@ namespace servoctl::motion {
 /// What a dialogue wants next: one of these.
 struct DialogueStep {
   std::optional<session::SdoRequest> request = {};  ///< A transfer, whose result goes to on_answer().
-  std::optional<canopen::NmtCommand> nmt = {};      ///< A message that is not answered.
+  std::optional<session::NodeState> state = {};     ///< The node is told to enter it, which is not answered.
   TimePoint pause = TimePoint::min();               ///< Else to be asked again then.
   bool done = false;
 };

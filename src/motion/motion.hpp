@@ -37,7 +37,7 @@ struct MotionReport {
   WatchdogPlan watchdog;
   std::vector<MotionSample> samples;
   std::vector<Series> series;
-  std::vector<canopen::NodeEvent> events;
+  std::vector<session::NodeEvent> events;
   std::size_t by_pdo = 0;                ///< How many values of the samples TPDOs have brought.
   std::vector<std::string> differences;  ///< Where what was measured is not what was asked for.
   std::vector<std::string> unchecked;    ///< What could not be measured.

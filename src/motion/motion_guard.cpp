@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <algorithm>
 
-#include "base/duration.hpp"
-#include "canopen/cob_id.hpp"
 #include "drive/standard_objects.hpp"
 #include "motion/operation_mode.hpp"
 
@@ -20,7 +18,7 @@ constexpr std::uint32_t kLife = 5;  ///< Guard times in the life time.
 
 constexpr std::uint32_t kNoSuchObject = 0x0602'0000;  ///< CiA 301, table of SDO abort codes.
 
-/// An NMT command is not answered; CiA 301 names no time.
+/// A request of a state is not answered; CiA 301 names no time.
 constexpr Duration kNmtPause = std::chrono::milliseconds(20);
 
 }  // namespace
@@ -31,10 +29,7 @@ MotionGuard::MotionGuard(session::Session& session, const MotionUnits& units, st
       node_(node),
       power_(session, units.profile(), node),
       hold_(session.protect(session::Care::guarded)),
-      hearing_(session, [this, before = session.options().heard](const can::Frame& frame, TimePoint time) {
-        if (before) before(frame, time);
-        hear(frame);
-      }) {}
+      foreign_writes_(session, node, [this](ObjectAddress object) { hear_write(object); }) {}
 
 /// Where even the way out runs out of memory, the drive is still told to stop: nothing of that needs any.
 MotionGuard::~MotionGuard() {
@@ -46,26 +41,11 @@ MotionGuard::~MotionGuard() {
 }
 
 void MotionGuard::say(std::uint8_t controlword) noexcept {
-  // Expedited, two bytes (CiA 301, 7.2.4.3.3).
-  can::Frame frame;
-  frame.id = static_cast<std::uint32_t>(canopen::kSdoRequest) + node_;
-  frame.size = 8;
-  frame.data = {0x2B, 0x40, 0x60, 0, controlword, 0, 0, 0};
-  try {
-    (void)session_->send(frame);
-  } catch (...) {
-    return;
-  }
+  session_->network().send_last_word(node_, objects::kControlword, controlword);
 }
 
-/// The first frame of a write by somebody else (CiA 301, 7.2.4.3: command specifier 1, or 6 for a block).
-void MotionGuard::hear(const can::Frame& frame) {
-  if (end_ || frame.extended || frame.remote || frame.error || frame.size != 8 ||
-      frame.id != static_cast<std::uint32_t>(canopen::kSdoRequest) + node_)
-    return;
-  const auto command = frame.data[0] >> 5U;
-  if (command != 1 && !(command == 6 && (frame.data[0] & 1U) == 0)) return;
-  const ObjectAddress object{static_cast<std::uint16_t>(frame.data[1] | frame.data[2] << 8U), frame.data[3]};
+void MotionGuard::hear_write(ObjectAddress object) {
+  if (end_) return;
   const bool ours =
       object == objects::kControlword ||
       std::any_of(changed_.begin(), changed_.end(), [&](const Changed& c) { return c.object == object; });
@@ -128,31 +108,25 @@ Result<void> MotionGuard::arm(const WatchdogPlan& plan) {
                                  store_le(std::uint32_t{plan.producer} << 16U | ms, 4));
         !done)
       return done;
-    if (rehearsal_ == nullptr) {
-      session_->produce_heartbeat(plan.producer, plan.time / kLife);
-    } else {
-      const auto frame = canopen::heartbeat_frame(plan.producer, canopen::NmtState::operational);
-      rehearsal_->add(session::planned_frame(
-          node_, frame, fmt::format("every {}", servoctl::to_string(plan.time / kLife))));
-    }
+    const session::LifeSign sign{session::LifeSign::Kind::heartbeat, plan.producer, plan.time / kLife};
+    if (auto sent = send_life_sign(sign); !sent) return sent;
   }
   if (plan.kind == WatchdogPlan::Kind::guarding) {
     for (const auto& [object, value, size] :
          {std::tuple{objects::kGuardTime, ms / kLife, 2U}, std::tuple{objects::kLifeTimeFactor, kLife, 1U}})
       if (const auto done = change(object, store_le(value, size)); !done) return done;
-    if (rehearsal_ == nullptr) {
-      session_->guard(node_, {plan.time / kLife, kLife});
-    } else {
-      can::Frame frame;
-      frame.id = static_cast<std::uint32_t>(canopen::kErrorControl) + node_;
-      frame.remote = true;
-      rehearsal_->add(session::planned_frame(
-          node_, frame, fmt::format("every {}", servoctl::to_string(plan.time / kLife))));
-    }
+    const session::LifeSign sign{session::LifeSign::Kind::guarding, 0, plan.time / kLife, kLife};
+    if (auto sent = send_life_sign(sign); !sent) return sent;
   }
   if (rehearsal_ != nullptr) return {};
   // The drive watches from the first message on.
   return pause(*session_, Duration::zero());
+}
+
+Result<void> MotionGuard::send_life_sign(const session::LifeSign& sign) {
+  if (rehearsal_ == nullptr) return session_->network().arm_watchdog(node_, sign);
+  rehearsal_->add(session::planned_life_sign(node_, sign));
+  return {};
 }
 
 Result<void> MotionGuard::spare_flash() {
@@ -165,17 +139,17 @@ Result<void> MotionGuard::spare_flash() {
 }
 
 Result<void> MotionGuard::start_node() {
-  nmt_before_ = session_->watch().state(node_);
+  state_before_ = session_->watch().state(node_);
   if (!units_->profile().rules.nmt.disables_outside_operational ||
-      nmt_before_ == canopen::NmtState::operational)
+      state_before_ == session::NodeState::operational)
     return {};
   started_ = true;
-  const auto frame = canopen::nmt_frame(canopen::NmtCommand::start, node_);
   if (rehearsal_ != nullptr) {
-    rehearsal_->add(session::planned_frame(node_, frame));
+    rehearsal_->add(session::planned_state(node_, session::NodeState::operational));
     return {};
   }
-  if (const auto sent = session_->send(frame); !sent) return sent;
+  if (auto sent = session_->network().request_state(node_, session::NodeState::operational); !sent)
+    return sent;
   return pause(*session_, kNmtPause);
 }
 

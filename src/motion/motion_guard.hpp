@@ -8,6 +8,7 @@
 #include "motion/motion_units.hpp"
 #include "motion/power.hpp"
 #include "motion/watchdog.hpp"
+#include "session/foreign_writes.hpp"
 #include "session/option_scope.hpp"
 #include "session/rehearsal.hpp"
 
@@ -78,7 +79,8 @@ class MotionGuard {
   void bring_down();
   void put_back();
   void put_back(const Changed& changed);
-  void hear(const can::Frame& frame);
+  void hear_write(ObjectAddress object);
+  Result<void> send_life_sign(const session::LifeSign& sign);
   /// Sends a controlword without waiting for anything and without memory.
   void say(std::uint8_t controlword) noexcept;
   void tell_foreign_writes();
@@ -94,8 +96,8 @@ class MotionGuard {
   session::Protection::Hold hold_;
   std::vector<Changed> changed_;
   std::optional<WatchdogPlan> watchdog_;
-  bool started_ = false;  ///< It was sent NMT "start".
-  std::optional<canopen::NmtState> nmt_before_;
+  bool started_ = false;  ///< It was told to become operational.
+  std::optional<session::NodeState> state_before_;
   bool energised_ = false;  ///< It was commanded up, so it may be.
   bool lost_ = false;       ///< The drive or the bus does not answer any more.
   bool powered_ = false;    ///< Its power could not be taken away.
@@ -103,7 +105,7 @@ class MotionGuard {
   std::optional<MotionEnd> end_;
   MotionEnd result_;
   std::set<ObjectAddress> foreign_;  ///< Of those that it changes, what another master wrote since.
-  session::Hearing hearing_;
+  session::ForeignWrites foreign_writes_;
   session::Rehearsal* rehearsal_ = nullptr;
 };
 

@@ -26,12 +26,12 @@ bool is_lost(const Error& error) { return error.code == Errc::timeout || error.c
 /// Where it is not known in which state it was, it is not taken out of another master's hands.
 void MotionGuard::put_node_back() {
   if (!std::exchange(started_, false)) return;
-  if (!nmt_before_) {
+  if (!state_before_) {
     result_.notes.emplace_back(
         "the node was started (NMT) and stays operational: its state before is not known");
     return;
   }
-  const auto sent = session_->send(canopen::nmt_frame(canopen::NmtCommand::enter_pre_operational, node_));
+  const auto sent = session_->network().request_state(node_, session::NodeState::pre_operational);
   if (!sent) note("the node could not be put back to pre-operational", sent.error());
 }
 
@@ -145,8 +145,7 @@ void MotionGuard::tell_foreign_writes() {
 
 void MotionGuard::disarm() {
   if (!watchdog_) return;
-  session_->stop_heartbeat();
-  if (watchdog_->kind == WatchdogPlan::Kind::guarding) session_->stop_guarding();
+  session_->network().disarm_watchdog(node_);
   watchdog_.reset();
 }
 

@@ -39,9 +39,8 @@ void MotionGuard::rehearse_end() {
   for (auto changed = changed_.rbegin(); changed != changed_.rend(); ++changed)
     if (!stays_new(*changed))
       rehearsal_->add(session::planned_write({node_, changed->object, changed->before}));
-  if (started_ && nmt_before_)
-    rehearsal_->add(
-        session::planned_frame(node_, canopen::nmt_frame(canopen::NmtCommand::enter_pre_operational, node_)));
+  if (started_ && state_before_)
+    rehearsal_->add(session::planned_state(node_, session::NodeState::pre_operational));
 }
 
 }  // namespace servoctl::motion

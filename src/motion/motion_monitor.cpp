@@ -11,11 +11,10 @@
 #include "session/identify.hpp"
 #include "session/option_scope.hpp"
 #include "session/pdo_setup.hpp"
+#include "session/process_values.hpp"
 
 namespace servoctl::motion {
 namespace {
-
-using canopen::NodeEvent;
 
 constexpr std::array kEvery{Channel::position, Channel::velocity, Channel::torque, Channel::following_error};
 
@@ -51,11 +50,9 @@ MotionMonitor::MotionMonitor(session::Session& session, const MotionUnits& units
 
 void MotionMonitor::find_tpdos() {
   if (tpdos_) return;
-  const auto pdos = session::read_pdos(*session_, &units_->profile(), node_);
   std::vector<ObjectAddress> objects{objects::kStatusword};
   for (const auto channel : channels_) objects.push_back(object_of(channel));
-  tpdos_ = std::make_unique<session::TpdoValues>(
-      *session_, pdos ? std::span(*pdos) : std::span<const canopen::Pdo>(), objects);
+  tpdos_ = session::process_values(*session_, &units_->profile(), node_, objects);
   // The session learns from it under which CAN-ID emergencies come.
   if (units_->has(objects::kEmergencyCobId)) (void)session_->upload(node_, objects::kEmergencyCobId);
 }
@@ -138,10 +135,9 @@ Result<void> MotionMonitor::check_events() {
         out = stopped_by(node_, fmt::format("sent an emergency, 0x{:04X}, while it moved", told->code),
                          "`fault show` tells what it means");
     }
-    if (std::holds_alternative<NodeEvent::BootUp>(event.what))
+    if (std::holds_alternative<session::NodeEvent::BootUp>(event.what))
       out = stopped_by(node_, "restarted while it moved", "is its supply steady?");
-    if (std::holds_alternative<NodeEvent::HeartbeatLost>(event.what) ||
-        std::holds_alternative<NodeEvent::GuardingLost>(event.what))
+    if (std::holds_alternative<session::NodeEvent::Gone>(event.what))
       out = fail(session::drive_error(Errc::timeout, node_, "its heartbeat was lost while it moved",
                                       "check cable, termination and supply"));
   }

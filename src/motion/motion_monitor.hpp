@@ -9,6 +9,7 @@
 
 #include "base/series.hpp"
 #include "motion/motion_units.hpp"
+#include "session/session.hpp"
 #include "session/tpdo_values.hpp"
 
 namespace servoctl::motion {
@@ -68,7 +69,7 @@ class MotionMonitor {
 
   const std::vector<MotionSample>& samples() const { return samples_; }
   /// What the node told meanwhile.
-  const std::vector<canopen::NodeEvent>& events() const { return events_; }
+  const std::vector<session::NodeEvent>& events() const { return events_; }
   /// One quantity each, of those the drive tells; time from the first sample on.
   std::vector<Series> series() const;
 
@@ -84,11 +85,11 @@ class MotionMonitor {
   std::uint8_t node_;
   MotionLimits limits_;
   std::vector<Channel> channels_;  ///< Those the drive has.
-  std::unique_ptr<session::TpdoValues> tpdos_;
+  std::unique_ptr<session::ProcessValues> tpdos_;
   TimePoint told_at_{};
   std::size_t by_pdo_ = 0;
   std::vector<MotionSample> samples_;
-  std::vector<canopen::NodeEvent> events_;
+  std::vector<session::NodeEvent> events_;
   std::optional<double> begin_;  ///< Position of the first sample, seen from the present zero.
   std::optional<double> rate_;   ///< Where the zero may change.
 };

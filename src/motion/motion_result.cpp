@@ -19,8 +19,7 @@ using report::Record;
 using report::Show;
 using report::Value;
 
-constexpr std::array kEvery{Channel::position, Channel::velocity, Channel::torque,
-                            Channel::following_error};
+constexpr std::array kEvery{Channel::position, Channel::velocity, Channel::torque, Channel::following_error};
 
 double seconds_since(const MotionSample& sample, TimePoint begin) {
   return std::chrono::duration<double>(sample.time - begin).count();

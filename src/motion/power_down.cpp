@@ -14,7 +14,6 @@
 namespace servoctl::motion {
 namespace {
 
-using canopen::NmtCommand;
 using drive::DriveState;
 
 constexpr Duration kPause = std::chrono::milliseconds(5);
@@ -101,11 +100,11 @@ DialogueStep PowerDown::next(TimePoint now) {
     case State::cut: return {.request = command(kDisableVoltageWord)};
     case State::silence_by_nmt:
       state_ = State::wake_again;
-      return {.nmt = NmtCommand::stop, .pause = now + kNmtPause};
+      return {.state = session::NodeState::stopped, .pause = now + kNmtPause};
     case State::wake:
     case State::wake_again:
       enter(back_to_, now);
-      return {.nmt = NmtCommand::enter_pre_operational, .pause = now + kNmtPause};
+      return {.state = session::NodeState::pre_operational, .pause = now + kNmtPause};
     case State::done: break;
   }
   return {.done = true};
@@ -198,8 +197,8 @@ std::vector<session::PlannedMessage> planned_power_down(std::uint8_t node, Power
     say(kSwitchOffWord);
     say(kDisableVoltageWord);
   }
-  out.push_back(session::planned_frame(
-      node, canopen::nmt_frame(NmtCommand::enter_pre_operational, node),
+  out.push_back(session::planned_state(
+      node, session::NodeState::pre_operational,
       aim == PowerAim::stop ? "if it does not answer" : "if it does not obey or answer"));
   return out;
 }

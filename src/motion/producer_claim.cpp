@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "canopen/nmt.hpp"
+#include "session/can_network.hpp"
 
 namespace servoctl::motion {
 namespace {
@@ -26,15 +26,14 @@ Error contested(std::uint8_t id) {
 }
 
 /// Whether nobody else was heard under the number until the end of the claim.
-Result<bool> claim(session::Session& session, std::uint8_t id, Duration back_off) {
+Result<bool> claim(session::Session& session, session::CanNetwork& can, std::uint8_t id, Duration back_off) {
   const auto begin = session.now();
   const auto heard = [&] { return session.watch().state(id).has_value(); };
   const auto before = session.wait(heard, begin + back_off);
   if (!before || *before) return before.map([](bool found) { return !found; });
   if (const auto all = session.listen(); !all) return tl::unexpected<Error>(all.error());
   if (heard()) return false;
-  if (const auto sent = session.send(canopen::heartbeat_frame(id, canopen::NmtState::operational)); !sent)
-    return tl::unexpected<Error>(sent.error());
+  if (const auto sent = can.send_heartbeat(id); !sent) return tl::unexpected<Error>(sent.error());
   return session.wait(heard, begin + kClaiming).map([](bool found) { return !found; });
 }
 
@@ -42,10 +41,11 @@ Result<bool> claim(session::Session& session, std::uint8_t id, Duration back_off
 
 Result<void> claim_producer(session::Session& session, std::uint8_t node, std::optional<std::uint8_t> named,
                             WatchdogPlan& plan) {
-  if (plan.kind != WatchdogPlan::Kind::heartbeat) return {};
+  auto* can = session.can();
+  if (can == nullptr || plan.kind != WatchdogPlan::Kind::heartbeat) return {};
   for (unsigned round = 0; round < kMostRounds; ++round) {
     const auto slot = (session.options().claim_seed >> (kSlotBits * round)) % kSlots;
-    const auto own = claim(session, plan.producer, kSlot * slot);
+    const auto own = claim(session, *can, plan.producer, kSlot * slot);
     if (!own) return tl::unexpected<Error>(own.error());
     if (*own) return {};
     if (named) break;
@@ -58,7 +58,8 @@ Result<void> claim_producer(session::Session& session, std::uint8_t node, std::o
 }
 
 Result<void> check_producer(session::Session& session) {
-  const auto own = session.heartbeat_node();
+  auto* can = session.can();
+  const auto own = can == nullptr ? std::nullopt : can->heartbeat_node();
   if (own && session.watch().state(*own)) return fail(contested(*own));
   return {};
 }

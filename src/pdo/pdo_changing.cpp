@@ -167,17 +167,17 @@ class Changing {
       if (is_idle(job)) continue;
       const auto node = job.present.node;
       const bool pause = session::needs_pre_operational(desk_->profile, job.plan);
-      const auto nmt = [&](canopen::NmtCommand command, std::string when) {
-        out.add(session::planned_frame(node, canopen::nmt_frame(command, node), std::move(when)));
+      const auto state = [&](session::NodeState wanted, std::string when) {
+        out.add(session::planned_state(node, wanted, std::move(when)));
       };
       session::StorageScope storage(*desk_->session, desk_->profile, node);
       storage.rehearse(out);
-      if (pause) nmt(canopen::NmtCommand::enter_pre_operational, "if it is operational");
+      if (pause) state(session::NodeState::pre_operational, "if it is operational");
       if (const auto opened = storage.open(how_.keep, how_.unlock, true); !opened)
         return tl::unexpected<Error>(opened.error());
       for (const auto& step : job.plan) out.add(session::planned_write({node, step.object, step.data}));
       (void)storage.close(true, job.plan.size());
-      if (pause) nmt(canopen::NmtCommand::start, "if it was operational");
+      if (pause) state(session::NodeState::operational, "if it was operational");
     }
     return show::planned_messages(*desk_, out.messages());
   }

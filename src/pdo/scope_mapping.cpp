@@ -6,10 +6,10 @@
 
 #include "base/text.hpp"
 #include "pdo/pdo_changing.hpp"
-#include "session/nmt_pause.hpp"
 #include "session/option_scope.hpp"
 #include "session/pdo_change.hpp"
 #include "session/pdo_setup.hpp"
+#include "session/state_pause.hpp"
 #include "show/pdo_check.hpp"
 
 namespace servoctl::pdo {
@@ -65,9 +65,9 @@ Result<void> ScopeMapping::check_still(const std::vector<session::PlannedWrite>&
 }
 
 Result<void> ScopeMapping::check_state(const std::vector<session::PlannedWrite>& plan) const {
-  const auto state = session::ask_nmt_state(*desk_->session, node_);
+  const auto state = session::ask_state(*desk_->session, node_);
   if (!state) return tl::unexpected<Error>(state.error());
-  if (*state != canopen::NmtState::operational)
+  if (*state != session::NodeState::operational)
     return fail(Errc::negative, "it is not known to be operational, and sends TPDOs only then",
                 fmt::format("`nmt start -n {}`", node_));
   return check_still(plan);

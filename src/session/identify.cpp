@@ -5,6 +5,7 @@
 
 #include "drive/standard_objects.hpp"
 #include "session/answer.hpp"
+#include "session/can_network.hpp"
 #include "session/family_check.hpp"
 
 namespace servoctl::session {
@@ -118,7 +119,9 @@ void look_for_families(Session& session, std::span<Identity> identities,
 }
 
 Result<void> settle_duplicates(Session& session, std::span<const std::uint8_t> nodes, Duration least) {
-  auto& duplicates = session.duplicates();
+  auto* can = session.can();
+  if (can == nullptr) return {};
+  auto& duplicates = can->duplicates();
   const auto patience = std::clamp<Duration>(2 * duplicates.slowest_answer(), least, kThoroughly);
   if (const auto heard = listen_for(session, patience); !heard) return heard;
   std::vector<SdoRequest> requests;
@@ -133,7 +136,9 @@ Result<void> settle_duplicates(Session& session, std::span<const std::uint8_t> n
 }
 
 Result<void> refuse_duplicate(Session& session, std::uint8_t node) {
-  const auto& by = session.duplicates().noticed(node);
+  auto* can = session.can();
+  if (can == nullptr) return {};
+  const auto& by = can->duplicates().noticed(node);
   if (by.empty()) return {};
   Error error;
   error.code = Errc::refused;

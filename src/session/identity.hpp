@@ -6,7 +6,7 @@
 #include <string>
 
 #include "base/object_address.hpp"
-#include "canopen/nmt.hpp"
+#include "session/node_state.hpp"
 
 namespace servoctl::session {
 
@@ -21,7 +21,7 @@ struct Identity {
   std::string device_name;                    ///< 1008h
   std::string hardware_version;               ///< 1009h
   std::string software_version;               ///< 100Ah
-  std::optional<canopen::NmtState> nmt;       ///< Heard from heartbeat or boot-up, if any.
+  std::optional<NodeState> state;             ///< Heard from heartbeat or boot-up, if any.
   std::map<ObjectAddress, bool>
       looked;  ///< Objects of families that were looked for: whether they are there.
 };

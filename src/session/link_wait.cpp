@@ -33,7 +33,7 @@ bool LinkWait::comes_back(const Error& lost) {
   const auto end = since + kPatience;
   for (;;) {
     const auto asked = session_->now();
-    const auto back = session_->bus().recover(std::min(asked + kTelling, end));
+    const auto back = session_->network().recover(std::min(asked + kTelling, end));
     const auto time = session_->now();
     if (back) {
       only_failing_ = only_failing_ && time - since < kFlicker;

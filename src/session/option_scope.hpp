@@ -34,13 +34,6 @@ class Deaf : public OptionScope<std::function<bool()>> {
   explicit Deaf(Session& session) : OptionScope(session, &Options::cancelled, {}) {}
 };
 
-/// While it lives `on_frame` is told every frame the session receives, in every wait: transfers as well.
-class Hearing : public OptionScope<std::function<void(const can::Frame& frame, TimePoint time)>> {
- public:
-  using OnFrame = std::function<void(const can::Frame& frame, TimePoint time)>;
-  Hearing(Session& session, OnFrame on_frame) : OptionScope(session, &Options::heard, std::move(on_frame)) {}
-};
-
 /// While it lives the session waits no longer than this for one answer, and asks no more often.
 class Hurry {
  public:

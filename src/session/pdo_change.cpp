@@ -5,7 +5,7 @@
 
 #include "drive/cia402.hpp"
 #include "drive/standard_objects.hpp"
-#include "session/nmt_pause.hpp"
+#include "session/state_pause.hpp"
 #include "session/option_scope.hpp"
 
 namespace servoctl::session {
@@ -56,7 +56,7 @@ class Change {
 
  private:
   RestoreOutcome attempt(const Way& way) {
-    NmtPause pause(*session_, node_);
+    StatePause pause(*session_, node_);
     if (way.pre_operational)
       if (const auto entered = pause.enter(); !entered) {
         RestoreOutcome out;

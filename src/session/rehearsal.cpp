@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/duration.hpp"
+
 namespace servoctl::session {
 
 PlannedMessage planned_write(SdoRequest request, std::string when) {
@@ -9,8 +11,12 @@ PlannedMessage planned_write(SdoRequest request, std::string when) {
   return {.node = node, .write = std::move(request), .when = std::move(when)};
 }
 
-PlannedMessage planned_frame(std::uint8_t node, const can::Frame& frame, std::string when) {
-  return {.node = node, .frame = frame, .when = std::move(when)};
+PlannedMessage planned_state(std::uint8_t node, NodeState state, std::string when) {
+  return {.node = node, .state = state, .when = std::move(when)};
+}
+
+PlannedMessage planned_life_sign(std::uint8_t node, const LifeSign& sign) {
+  return {.node = node, .life_sign = sign, .when = "every " + servoctl::to_string(sign.period)};
 }
 
 void Rehearsal::add(PlannedMessage message) {

@@ -6,22 +6,26 @@
 #include <utility>
 #include <vector>
 
-#include "can/frame.hpp"
+#include "session/life_sign.hpp"
+#include "session/node_state.hpp"
 #include "session/session.hpp"
 
 namespace servoctl::session {
 
-/// One message that would be sent: a write by SDO, else the frame as it stands.
+/// One message that would be sent: a write, the request of a state, or a sign of life.
 struct PlannedMessage {
   std::uint8_t node = 0;
   std::optional<SdoRequest> write = {};
-  std::optional<can::Frame> frame = {};
+  std::optional<NodeState> state = {};
+  std::optional<LifeSign> life_sign = {};
   std::string when = {};  ///< Sent only then, or so often; empty: once, in any case.
   std::string step = {};  ///< What it is part of: `mode`, `enable`; may be empty.
 };
 
 PlannedMessage planned_write(SdoRequest request, std::string when = {});
-PlannedMessage planned_frame(std::uint8_t node, const can::Frame& frame, std::string when = {});
+PlannedMessage planned_state(std::uint8_t node, NodeState state, std::string when = {});
+/// Sent once a period.
+PlannedMessage planned_life_sign(std::uint8_t node, const LifeSign& sign);
 
 /// What a sequence of steps would send, gone through without sending it.
 class Rehearsal {

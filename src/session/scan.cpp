@@ -5,6 +5,7 @@
 
 #include "drive/standard_objects.hpp"
 #include "session/answer.hpp"
+#include "session/can_network.hpp"
 #include "session/family_check.hpp"
 #include "session/identify.hpp"
 #include "session/option_scope.hpp"
@@ -41,8 +42,9 @@ Result<std::vector<Identity>> find_nodes(Session& session, std::span<const std::
 
 Result<std::vector<Identity>> scan(Session& session, std::span<const std::uint8_t> nodes) {
   // Whoever looks again may have put it right.
-  for (const auto node : nodes)
-    if (!session.duplicates().noticed(node).empty()) session.duplicates().forget(node);
+  if (auto* can = session.can())
+    for (const auto node : nodes)
+      if (!can->duplicates().noticed(node).empty()) can->duplicates().forget(node);
   auto found = find_nodes(session, nodes);
   if (!found) return found;
   std::vector<SdoRequest> requests;
@@ -60,7 +62,7 @@ Result<std::vector<Identity>> scan(Session& session, std::span<const std::uint8_
     identity.device_name = text_in(*at++);
     identity.hardware_version = text_in(*at++);
     identity.software_version = text_in(*at++);
-    identity.nmt = session.watch().state(identity.node);
+    identity.state = session.watch().state(identity.node);
     session.identities().keep(identity, session.watch().boots(identity.node));
   }
   // Where one did not answer, a second node had the whole timeout already.

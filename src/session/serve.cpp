@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "session/can_network.hpp"
+
 namespace servoctl::session {
 namespace {
 
@@ -24,7 +26,9 @@ Result<void> flush(can::Bus& bus, sim::Cell& cell) {
 }  // namespace
 
 Result<void> serve(Session& session, sim::Cell& cell) {
-  auto& bus = session.bus();
+  if (session.can() == nullptr)
+    return fail(Errc::usage, "these drives live on a CAN bus only", "name one: --bus can0 or local:NAME");
+  auto& bus = session.can()->bus();
   const auto& cancelled = session.options().cancelled;
   for (;;) {
     TimePoint next = bus.now() + std::chrono::hours(1);

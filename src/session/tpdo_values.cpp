@@ -5,9 +5,9 @@
 
 namespace servoctl::session {
 
-TpdoValues::TpdoValues(Session& session, std::span<const canopen::Pdo> pdos,
+TpdoValues::TpdoValues(CanNetwork& network, std::span<const canopen::Pdo> pdos,
                        std::span<const ObjectAddress> objects)
-    : hearing_(session, [this](const can::Frame& frame, TimePoint time) { on_frame(frame, time); }) {
+    : hearing_(&network, [this](const can::Frame& frame, TimePoint time) { on_frame(frame, time); }) {
   for (const auto object : objects) values_[object];
   for (const auto& pdo : pdos) {
     const bool carries = std::any_of(pdo.entries.begin(), pdo.entries.end(), [&](const auto& entry) {

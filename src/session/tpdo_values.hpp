@@ -6,19 +6,18 @@
 #include <vector>
 
 #include "canopen/pdo.hpp"
-#include "session/option_scope.hpp"
+#include "session/hearing.hpp"
 
 namespace servoctl::session {
 
-/// The values that the TPDOs of one drive bring of some objects, while it lives: it hears every frame the
-/// session receives.
-class TpdoValues {
+/// The values that the TPDOs of one drive on a CAN bus bring of some objects, while it lives: it hears every
+/// frame.
+class TpdoValues final : public ProcessValues {
  public:
   /// A PDO that carries none of the objects, is not valid, or carries only a part of an object is left out.
-  TpdoValues(Session& session, std::span<const canopen::Pdo> pdos, std::span<const ObjectAddress> objects);
+  TpdoValues(CanNetwork& network, std::span<const canopen::Pdo> pdos, std::span<const ObjectAddress> objects);
 
-  /// The value that came since `since`, each one once; empty when none has.
-  std::optional<Bytes> take(ObjectAddress object, TimePoint since);
+  std::optional<Bytes> take(ObjectAddress object, TimePoint since) override;
 
  private:
   struct Value {

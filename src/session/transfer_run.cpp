@@ -3,9 +3,6 @@
 #include <fmt/format.h>
 #include <algorithm>
 
-#include "canopen/cob_id.hpp"
-#include "drive/standard_objects.hpp"
-
 namespace servoctl::session {
 namespace {
 
@@ -16,8 +13,8 @@ constexpr std::size_t kLongTransfer = 1000;
 constexpr std::size_t kLongList = 128;
 
 /// A heartbeat says that a node is stopped; of one that sends none nobody knows.
-std::string silence_hint(const canopen::NodeWatch& watch, std::uint8_t node) {
-  if (watch.state(node) == canopen::NmtState::stopped)
+std::string silence_hint(const NodeRecords& watch, std::uint8_t node) {
+  if (watch.state(node) == NodeState::stopped)
     return fmt::format("node {} is stopped (its heartbeat says so) and answers no SDO: `nmt preop -n {}`",
                        node, node);
   return fmt::format(
@@ -38,7 +35,7 @@ TransferRun::TransferRun(Session& session, std::span<const SdoRequest> requests)
     const auto node = requests[i].node & 0x7FU;
     if (channel_of_node_[node] == kNone) {
       channel_of_node_[node] = static_cast<int>(channels_.size());
-      channels_.push_back({canopen::SdoClient(requests[i].node, session.options().timeout), {}, 0, 0});
+      channels_.push_back({requests[i].node, session.lend_channel(requests[i].node), {}, 0, 0, false, 0});
     }
     channels_[static_cast<std::size_t>(channel_of_node_[node])].waiting.push_back(i);
   }
@@ -51,43 +48,45 @@ std::vector<Result<Bytes>> TransferRun::run() {
     for (auto& channel : channels_) {
       while (advance(channel)) {
       }
-      next = std::min(next, channel.client.deadline());
+      next = std::min(next, channel.objects->deadline());
     }
-    if (open_ == 0) return std::move(results_);
-    const auto frame = session_->receive(next);
-    if (!frame) {
-      fail_all(frame.error());
-      return std::move(results_);
+    if (open_ == 0) return give_back();
+    const auto stepped = session_->step(next);
+    if (!stepped) {
+      fail_all(stepped.error());
+      return give_back();
     }
-    if (*frame) dispatch(**frame);
-    const auto now = session_->received_at_;
-    for (auto& channel : channels_)
-      if (channel.client.deadline() <= now) channel.client.on_time(now);
+    if (*stepped && session_->options().progress) tell_progress();
   }
 }
 
-/// To the channel of the node that the frame belongs to by the pre-defined connection set: answers, what
-/// other masters ask, boot-up.
-void TransferRun::dispatch(const can::Frame& frame) {
-  if (frame.id < canopen::kSdoAnswer || frame.id > canopen::kErrorControl + canopen::kLastNode) return;
-  const int channel = channel_of_node_[frame.id & 0x7FU];
-  if (channel == kNone) return;
-  auto& client = channels_[static_cast<std::size_t>(channel)].client;
-  client.on_frame(frame, session_->received_at_);
-  if (session_->options().progress && client.total().value_or(client.transferred()) > kLongTransfer)
-    session_->options().progress(client.transferred(), client.total(), session_->received_at_);
+/// The channels are ready for the next run.
+std::vector<Result<Bytes>> TransferRun::give_back() {
+  for (auto& channel : channels_) session_->give_back(channel.node, std::move(channel.objects));
+  return std::move(results_);
+}
+
+void TransferRun::tell_progress() {
+  for (auto& channel : channels_) {
+    const auto done = channel.objects->transferred();
+    const auto total = channel.objects->total();
+    // What is about to begin has no more to send either.
+    if (done == channel.told || (channel.objects->busy() && done == total)) continue;
+    channel.told = done;
+    if (total.value_or(done) > kLongTransfer)
+      session_->options().progress(done, total, session_->received_at());
+  }
 }
 
 bool TransferRun::advance(Channel& channel) {
-  if (const auto frame = channel.client.take_frame()) {
-    if (const auto sent = session_->send(*frame); !sent) fail_all(sent.error());
-    return true;
+  if (const auto sent = channel.objects->on_time(session_->received_at()); !sent) {
+    fail_all(sent.error());
+    return false;
   }
-  if (auto result = channel.client.take_result()) {
-    finish(channel, std::move(*result));
-    return true;
-  }
-  return false;
+  auto result = channel.objects->take_result();
+  if (!result) return false;
+  finish(channel, std::move(*result));
+  return true;
 }
 
 void TransferRun::start(Channel& channel) {
@@ -95,39 +94,38 @@ void TransferRun::start(Channel& channel) {
   channel.current = channel.waiting.front();
   channel.waiting.pop_front();
   channel.tries = 0;
+  ask(channel, requests_[channel.current].transfer);
+}
+
+void TransferRun::ask(Channel& channel, canopen::Transfer transfer) {
   const auto& request = requests_[channel.current];
+  channel.told = 0;
+  channel.asked = true;
   if (request.data)
-    channel.client.start_download(request.object, *request.data, session_->now(), request.transfer);
+    channel.objects->start_download(request.object, *request.data, session_->now(), transfer);
   else
-    channel.client.start_upload(request.object, session_->now(), request.transfer, request.size);
+    channel.objects->start_upload(request.object, session_->now(), transfer, request.size);
 }
 
 void TransferRun::finish(Channel& channel, Result<Bytes> result) {
+  channel.asked = false;
   const auto& request = requests_[channel.current];
   const bool silent = !result && result.error().code == Errc::timeout;
   if (silent && !request.data && channel.tries < session_->options().retries) {
     ++channel.tries;
     // A server that knows no block transfer may meet its request with silence.
-    const auto transfer =
-        request.transfer == canopen::Transfer::domain ? canopen::Transfer::automatic : request.transfer;
-    channel.client.start_upload(request.object, session_->now(), transfer, request.size);
-    return;
+    return ask(channel, request.transfer == canopen::Transfer::domain ? canopen::Transfer::automatic
+                                                                      : request.transfer);
   }
   if (silent && result.error().hint.empty())
     result.error().hint = silence_hint(session_->watch(), request.node);
-  if (result && request.object == objects::kEmergencyCobId)
-    learn_emergency_id(request.node, request.data ? *request.data : *result);
   results_[channel.current] = result;
   --open_;
   const auto& options = session_->options();
   if (options.list_progress && requests_.size() >= kLongList)
-    options.list_progress(requests_.size() - open_, requests_.size(), session_->received_at_);
+    options.list_progress(requests_.size() - open_, requests_.size(), session_->received_at());
   if (!result && (silent || request.data)) skip_rest(channel, result.error(), silent);
   start(channel);
-}
-
-void TransferRun::learn_emergency_id(std::uint8_t node, ByteSpan data) {
-  if (data.size() == 4) session_->watch().learn_emergency_id(node, static_cast<std::uint32_t>(load_le(data)));
 }
 
 void TransferRun::skip_rest(Channel& channel, const Error& reason, bool reads_too) {
@@ -147,11 +145,15 @@ void TransferRun::skip_rest(Channel& channel, const Error& reason, bool reads_to
   channel.waiting = std::move(kept);
 }
 
+/// What was asked and what came of it is not known any more, though the transfer itself may have ended: its
+/// abort may be what was not sent. The channels begin anew.
 void TransferRun::fail_all(const Error& error) {
   for (auto& channel : channels_) {
-    if (channel.client.busy()) results_[channel.current] = tl::unexpected<Error>(error);
+    if (channel.asked) results_[channel.current] = tl::unexpected<Error>(error);
     for (const auto index : channel.waiting) results_[index] = tl::unexpected<Error>(error);
-    channel = {canopen::SdoClient(channel.client.node(), session_->options().timeout), {}, 0, 0};
+    channel.asked = false;
+    channel.waiting.clear();
+    channel.objects = session_->network().object_channel(channel.node, session_->options().timeout);
   }
   open_ = 0;
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -17,20 +18,23 @@ class TransferRun {
 
  private:
   struct Channel {
-    canopen::SdoClient client;
+    std::uint8_t node = 0;
+    std::unique_ptr<ObjectChannel> objects;
     std::deque<std::size_t> waiting;  ///< Requests not started yet.
     std::size_t current = 0;
     std::uint32_t tries = 0;
+    bool asked = false;    ///< The present request has no result yet.
+    std::size_t told = 0;  ///< Bytes of the present transfer that were told as progress.
   };
 
   bool advance(Channel& channel);
+  void ask(Channel& channel, canopen::Transfer transfer);
   void start(Channel& channel);
   void finish(Channel& channel, Result<Bytes> result);
   void skip_rest(Channel& channel, const Error& reason, bool reads_too);
   void fail_all(const Error& error);
-  /// 1014h was read or written.
-  void learn_emergency_id(std::uint8_t node, ByteSpan data);
-  void dispatch(const can::Frame& frame);
+  void tell_progress();
+  std::vector<Result<Bytes>> give_back();
 
   Session* session_;
   std::span<const SdoRequest> requests_;

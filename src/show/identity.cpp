@@ -68,7 +68,7 @@ report::Table identity_table(std::span<const session::Identity> nodes,
         {node.node, hex(node.device_type), hex(node.vendor_id), hex(node.product_code), hex(node.revision),
          hex(node.serial), report::text_or_null(node.device_name),
          report::text_or_null(node.hardware_version), report::text_or_null(node.software_version),
-         node.nmt ? Value(canopen::name(*node.nmt)) : Value(),
+         node.state ? Value(session::name(*node.state)) : Value(),
          report::text_or_null(guess_text(without_generic(guesses))), guess_records(guesses)});
   }
   return table;

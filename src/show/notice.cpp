@@ -10,30 +10,32 @@ namespace servoctl::show {
 namespace {
 
 struct Words {
-  const canopen::NodeEvent& event;
+  const session::NodeEvent& event;
   const drive::Profile* profile;
   bool chinese;
 
-  std::string operator()(const canopen::NodeEvent::BootUp&) const { return "boot-up"; }
-  std::string operator()(const canopen::NodeEvent::StateChange& change) const {
-    return fmt::format("NMT state is now {}", canopen::name(change.state));
+  std::string operator()(const session::NodeEvent::BootUp&) const { return "boot-up"; }
+  std::string operator()(const session::NodeEvent::StateChange& change) const {
+    return fmt::format("NMT state is now {}", session::name(change.state));
   }
-  std::string operator()(const canopen::NodeEvent::HeartbeatLost& lost) const {
-    const auto silence = std::chrono::duration_cast<std::chrono::milliseconds>(lost.silence);
-    return fmt::format("heartbeat lost: silent for {} ms", silence.count());
+  std::string operator()(const session::NodeEvent::Gone& gone) const {
+    using Sign = session::NodeEvent::Gone::Sign;
+    const auto silence = std::chrono::duration_cast<std::chrono::milliseconds>(gone.silence).count();
+    switch (gone.sign) {
+      case Sign::heartbeat: return fmt::format("heartbeat lost: silent for {} ms", silence);
+      case Sign::guarding: return fmt::format("node guarding lost: no answer for {} ms", silence);
+      case Sign::toggle: break;
+    }
+    return fmt::format("node guarding lost: its answers do not change their toggle bit, for {} ms", silence);
   }
-  std::string operator()(const canopen::NodeEvent::GuardingLost& lost) const {
-    const auto silence = std::chrono::duration_cast<std::chrono::milliseconds>(lost.silence).count();
-    return lost.wrong_toggle
-               ? fmt::format("node guarding lost: its answers do not change their toggle bit, for {} ms",
-                             silence)
-               : fmt::format("node guarding lost: no answer for {} ms", silence);
+  std::string operator()(const session::NodeEvent::Back& back) const {
+    return fmt::format("answers node guarding again, {}", session::name(back.state));
   }
-  std::string operator()(const canopen::NodeEvent::GuardingBack& back) const {
-    return fmt::format("answers node guarding again, {}", canopen::name(back.state));
-  }
-  std::string operator()(const canopen::NodeEvent::Doubled& doubled) const {
+  std::string operator()(const session::NodeEvent::Doubled& doubled) const {
     return (chinese ? "两个节点使用同一个节点号: " : "two nodes answer under this number: ") + doubled.by;
+  }
+  std::string operator()(const session::NodeEvent::StateError& error) const {
+    return fmt::format("{} 0x{:04X}: {}", chinese ? "状态错误" : "state error", error.code, error.text);
   }
   std::string operator()(const canopen::Emergency& e) const {
     if (e.is_reset()) return "EMCY 0x0000: error reset or no error";
@@ -46,7 +48,7 @@ struct Words {
 
 }  // namespace
 
-std::string notice_text(const canopen::NodeEvent& event, const drive::Profile* profile, bool chinese) {
+std::string notice_text(const session::NodeEvent& event, const drive::Profile* profile, bool chinese) {
   auto out = fmt::format("node {}: {}", event.node, std::visit(Words{event, profile, chinese}, event.what));
   if (event.times > 1) out += fmt::format("; {} times in succession", event.times);
   return out;

@@ -1,28 +1,34 @@
 #include "show/planned_messages.hpp"
 
-#include "canopen/cob_id.hpp"
 #include "canopen/nmt.hpp"
 #include "canopen/sdo_client.hpp"
 #include "drive/naming.hpp"
+#include "session/can_network.hpp"
 
 namespace servoctl::show {
 namespace {
 
 std::string object_text(const session::PlannedMessage& message) {
   if (message.write) return to_string(message.write->object);
-  return message.frame->id == canopen::kNmt ? "NMT" : "error control";
+  return message.state ? "NMT" : "error control";
 }
 
 std::string name_text(const Desk& desk, const session::PlannedMessage& message) {
   if (message.write) return drive::target_at(desk.profile, message.write->object).label();
-  if (message.frame->id != canopen::kNmt) return message.frame->remote ? "node guarding" : "heartbeat";
-  return std::string(canopen::name(static_cast<canopen::NmtCommand>(message.frame->data[0])));
+  if (message.life_sign)
+    return message.life_sign->kind == session::LifeSign::Kind::guarding ? "node guarding" : "heartbeat";
+  const auto command = session::nmt_command(*message.state);
+  return command ? std::string(canopen::name(*command)) : std::string();
 }
 
 }  // namespace
 
 std::string frame_text(const session::PlannedMessage& message) {
-  if (!message.write) return can::to_string(*message.frame);
+  if (message.life_sign) return can::to_string(session::frame_of(*message.life_sign, message.node));
+  if (message.state) {
+    const auto command = session::nmt_command(*message.state);
+    return command ? can::to_string(canopen::nmt_frame(*command, message.node)) : std::string();
+  }
   canopen::SdoClient client(message.node, std::chrono::seconds(1));
   client.start_download(message.write->object, *message.write->data, TimePoint{}, message.write->transfer);
   const auto frame = client.take_frame();

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "session/can_network.hpp"
+
 namespace servoctl::traffic {
 namespace {
 
@@ -15,12 +17,14 @@ Result<void> listen(session::Session& session, std::optional<Duration> length, c
   auto shown = session.now();
   for (;;) {
     const auto due = listener.next ? listener.next() : kNever;
-    auto frame = session.receive(std::min({end, due, shown + kSlice}));
-    if (!frame && frame.error().code == Errc::interrupted) break;
-    if (!frame) return tl::unexpected<Error>(frame.error());
+    const auto stepped = session.step(std::min({end, due, shown + kSlice}));
+    if (!stepped && stepped.error().code == Errc::interrupted) break;
+    if (!stepped) return tl::unexpected<Error>(stepped.error());
+    const auto* network = session.can();
+    const auto frame = network == nullptr ? std::optional<can::Frame>() : network->frame();
     const auto now = session.received_at();
-    if (*frame && now < end && listener.on_frame) listener.on_frame(**frame, now);
-    if (!*frame || now >= shown + kSlice) {
+    if (frame && now < end && listener.on_frame) listener.on_frame(*frame, now);
+    if (!*stepped || now >= shown + kSlice) {
       if (listener.on_pause) listener.on_pause();
       shown = now;
     }

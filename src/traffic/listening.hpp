@@ -10,6 +10,7 @@ namespace servoctl::traffic {
 
 /// What is done while listening; any of them may be empty.
 struct Listener {
+  /// Told each frame of a CAN bus; on another network there are none.
   std::function<void(const can::Frame& frame, TimePoint time)> on_frame = {};
   /// Called whenever nothing more is waiting, and every 50 ms.
   std::function<void()> on_pause = {};

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "canopen/cob_id.hpp"
+#include "session/hearing.hpp"
 #include "session/option_scope.hpp"
 
 namespace servoctl::traffic {
@@ -48,7 +49,7 @@ Result<void> ReplayRun::send_all(std::span<const can::LogFrame> frames, double s
   while (sent_ < frames.size()) {
     const auto waited = session_->wait([] { return false; }, due);
     if (!waited) return tl::unexpected<Error>(waited.error());
-    if (const auto done = session_->send(frames[sent_].frame); !done) return done;
+    if (const auto done = session_->can()->send(frames[sent_].frame); !done) return done;
     on_sent(frames[sent_].frame);
     ++sent_;
     if (sent_ == frames.size()) break;

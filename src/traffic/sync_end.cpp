@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "drive/standard_objects.hpp"
+#include "session/can_network.hpp"
 #include "session/option_scope.hpp"
 #include "traffic/rhythm_table.hpp"
 
@@ -32,7 +33,7 @@ SyncEnd end_sync(session::Session& session) {
   // While SYNC still goes on: reading takes a moment.
   for (const auto node : session.energised().nodes())
     if (auto text = warning(session, node); !text.empty()) out.warnings.push_back(std::move(text));
-  const auto& production = *session.sync();
+  const auto& production = *session.can()->sync();
   if (production.foreign > 0)
     out.warnings.push_back(fmt::format(
         "somebody else sent {} SYNCs meanwhile: drives took both, in no steady period", production.foreign));
@@ -41,7 +42,7 @@ SyncEnd end_sync(session::Session& session) {
   auto row = rhythm_cells(production.rhythm);
   row.emplace_back(production.producer.missed());
   out.table.rows.push_back(std::move(row));
-  session.stop_sync();
+  session.can()->stop_sync();
   return out;
 }
 

@@ -5,6 +5,7 @@
 
 #include "base/duration.hpp"
 #include "drive/standard_objects.hpp"
+#include "session/can_network.hpp"
 #include "session/open_bus.hpp"
 #include "session/option_scope.hpp"
 #include "show/notice.hpp"
@@ -170,7 +171,9 @@ class Communication {
 
   /// What was heard is counted, and told as it would be without the test.
   void take_notices() {
-    for (const auto report : session_->take_reports()) {
+    auto* network = session_->can();
+    for (const auto report :
+         network == nullptr ? std::vector<can::ControllerReport>() : network->take_reports()) {
       reports_ += report != can::ControllerReport::error_active;
       desk_->notices.push_back(session_->url() + ": " + std::string(can::text(report)));
     }

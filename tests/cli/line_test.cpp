@@ -10,6 +10,7 @@
 #include "cli/terminal/completer.hpp"
 #include "cli/words.hpp"
 #include "recording_console.hpp"
+#include "session/can_network.hpp"
 #include "tests/source_dir.hpp"
 
 namespace servoctl::cli {
@@ -187,7 +188,7 @@ TEST_F(ShellTest, EndsWithExitSevenWhenTheTraceFailsAtTheVeryEnd) {
     shell.defaults().trace = "/dev/full";
     const auto session = shell.open(shell.defaults());
     ASSERT_TRUE(session);
-    ASSERT_TRUE((*session)->send(*can::parse_frame("000#0101")));
+    ASSERT_TRUE((*session)->can()->send(*can::parse_frame("000#0101")));
     EXPECT_EQ(shell.close(code), in_the_end);
     EXPECT_NE(console.err_text.find("cannot write the trace /dev/full"), std::string::npos);
   }

@@ -5,6 +5,7 @@
 
 #include "canopen/sync.hpp"
 #include "drive/standard_objects.hpp"
+#include "session/can_network.hpp"
 #include "tested_drive.hpp"
 
 namespace servoctl::commands {
@@ -86,7 +87,7 @@ TEST_F(SyncBesideOthers, IsNotProduced) {
   const auto result = run("sync start", {{"--for", "1s"}});
   ASSERT_FALSE(result);
   EXPECT_EQ(result.error().code, Errc::refused);
-  EXPECT_EQ(session->sync(), nullptr);
+  EXPECT_EQ(session->can()->sync(), nullptr);
 }
 
 TEST_F(SyncBesideOthers, IsToldWhereTheOtherComesLater) {

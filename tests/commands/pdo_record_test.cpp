@@ -11,6 +11,7 @@
 
 #include "../session/troubled_bus.hpp"
 #include "drive/drive_settings.hpp"
+#include "session/can_network.hpp"
 #include "session/pdo_setup.hpp"
 #include "tests/show/audiences.hpp"
 #include "tests/source_dir.hpp"
@@ -43,7 +44,7 @@ class World {
     bus_.attach(drive_);
     session::Session quiet(std::make_unique<TroubledBus>(bus_, drive_, Trouble{}, 1), "can0", {});
     (void)quiet.wait([] { return false; }, quiet.now() + 1s);
-    EXPECT_TRUE(quiet.send(*can::parse_frame("000#0101")));
+    EXPECT_TRUE(quiet.can()->send(*can::parse_frame("000#0101")));
     before = read();
     means_before = means();
   }
@@ -119,7 +120,7 @@ class World {
   }
   void power_cycle() {
     session::Session quiet(std::make_unique<TroubledBus>(bus_, drive_, Trouble{}, 1), "can0", {});
-    EXPECT_TRUE(quiet.send(*can::parse_frame("000#8101")));
+    EXPECT_TRUE(quiet.can()->send(*can::parse_frame("000#8101")));
     (void)quiet.wait([] { return false; }, quiet.now() + 1s);
   }
 

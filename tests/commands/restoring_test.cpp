@@ -9,6 +9,7 @@
 
 #include "../session/troubled_bus.hpp"
 #include "drive/quantity.hpp"
+#include "session/can_network.hpp"
 #include "settings/restore_journal.hpp"
 #include "tests/show/audiences.hpp"
 #include "tests/source_dir.hpp"
@@ -93,7 +94,7 @@ class World {
   }
   void power_cycle() {
     session::Session session(std::make_unique<TroubledBus>(bus_, drive_, Trouble{}, 1), "sim", {});
-    EXPECT_TRUE(session.send(*can::parse_frame("000#8101")));
+    EXPECT_TRUE(session.can()->send(*can::parse_frame("000#8101")));
     (void)session.wait([] { return false; }, session.now() + 1s);
   }
   void expect_values_of_backup() {

@@ -7,6 +7,7 @@
 
 #include "canopen/nmt.hpp"
 #include "canopen/pdo.hpp"
+#include "session/can_network.hpp"
 #include "session/pdo_setup.hpp"
 #include "tested_drive.hpp"
 #include "tests/show/audiences.hpp"
@@ -32,7 +33,7 @@ class Sampling : public TestedDrive {
         ASSERT_TRUE(session->download(1, {pdo.communication_index(), 1},
                                       store_le(pdo.cob_id | canopen::kPdoInvalid, 4)));
       }
-    ASSERT_TRUE(session->send(canopen::nmt_frame(canopen::NmtCommand::start, 1)));
+    ASSERT_TRUE(session->can()->send(canopen::nmt_frame(canopen::NmtCommand::start, 1)));
     ASSERT_TRUE(session->wait([] { return false; }, session->now() + 50ms));
   }
   /// Objects a TPDO may carry, in the order of the dictionary.
@@ -133,7 +134,7 @@ TEST_F(Sampling, EachValueHasTheTimeOfItsOwnFrame) {
   start_node();
   // Their TPDOs come once a second, 300 ms apart.
   ASSERT_TRUE(session->wait([] { return false; }, session->now() + 250ms));
-  ASSERT_TRUE(session->send(canopen::nmt_frame(canopen::NmtCommand::start, 2)));
+  ASSERT_TRUE(session->can()->send(canopen::nmt_frame(canopen::NmtCommand::start, 2)));
   std::vector<double> seen;
   bus->on_receive = [&](can::Frame& frame) {
     if (frame.id == 0x181 || frame.id == 0x182)

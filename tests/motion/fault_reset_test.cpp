@@ -1,5 +1,6 @@
 // A fault reset that goes wrong leaves the drive without power and listening.
 #include "motion/fault_reset.hpp"
+#include "session/can_network.hpp"
 
 #include <gtest/gtest.h>
 
@@ -20,7 +21,7 @@ class FaultyDrive {
     session::Session session(quiet(), "sim", {});
     (void)session.wait([] { return false; }, session.now() + 1s);
     EXPECT_TRUE(session.download(1, {0x2000, 0x21}, {1, 0}));  // Pn0032, in force after a restart.
-    EXPECT_TRUE(session.send(*can::parse_frame("000#8101")));
+    EXPECT_TRUE(session.can()->send(*can::parse_frame("000#8101")));
     (void)session.wait([] { return false; }, session.now() + 1s);
     drive_.raise_fault(0x3210, {}, bus_.now());
     (void)session.wait([] { return false; }, session.now() + 1s);

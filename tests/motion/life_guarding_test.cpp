@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "motion_support.hpp"
+#include "session/can_network.hpp"
 
 namespace servoctl::motion {
 namespace {
@@ -100,7 +101,7 @@ TEST_P(MaskedGuarding, IsNone) {
 
 TEST_P(MaskedGuarding, StopsTheDriveOnceTheAlarmIsThere) {
   ASSERT_TRUE(bench.session->download(1, kAlarm, {1, 0}));
-  ASSERT_TRUE(bench.session->send(canopen::nmt_frame(canopen::NmtCommand::reset_node, 1)));
+  ASSERT_TRUE(bench.session->can()->send(canopen::nmt_frame(canopen::NmtCommand::reset_node, 1)));
   bench.wait(500ms);
   bench.started = [&] { bench.bus->lost_after = bench.bus->sent + 250; };
   const auto done = bench.jog(jog_for("60rpm", 10s));

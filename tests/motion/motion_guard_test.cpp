@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "motion_support.hpp"
+#include "session/can_network.hpp"
 
 namespace servoctl::motion {
 namespace {
@@ -110,7 +111,7 @@ void map_tpdo(MotionBench& bench) {
   write({0x1800, 3}, 0, 2);
   write({0x1800, 5}, 5, 2);
   write({0x1800, 1}, 0x4000'0181, 4);
-  ASSERT_TRUE(bench.session->send(canopen::nmt_frame(canopen::NmtCommand::start, 1)));
+  ASSERT_TRUE(bench.session->can()->send(canopen::nmt_frame(canopen::NmtCommand::start, 1)));
 }
 
 TEST_F(MotionTrouble, WhatATpdoBringsIsNotReadBySdo) {

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "motion_support.hpp"
+#include "session/can_network.hpp"
 
 namespace servoctl::motion {
 namespace {
@@ -109,7 +110,8 @@ TEST_F(MotionTrouble, AMethodThatMeansNoHomingIsRefused) {
 TEST_F(MotionTrouble, ANodeThatRestartsWhileItMovesIsNotCommandedOn) {
   int samples = 0;
   bench.options.on_sample = [&](const MotionSample&) {
-    if (++samples == 20) (void)bench.session->send(canopen::nmt_frame(canopen::NmtCommand::reset_node, 1));
+    if (++samples == 20)
+      (void)bench.session->can()->send(canopen::nmt_frame(canopen::NmtCommand::reset_node, 1));
   };
   const auto done = bench.jog(kJog);
   ASSERT_FALSE(done.outcome);

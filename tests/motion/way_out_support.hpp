@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "motion_support.hpp"
+#include "session/can_network.hpp"
 
 namespace servoctl::motion {
 
@@ -32,7 +33,7 @@ class Several {
       nodes.push_back(static_cast<std::uint8_t>(node));
       const auto& profile = *bus->cell.profiles.front();
       if (profile.rules.nmt.disables_outside_operational) {
-        EXPECT_TRUE(session->send(canopen::nmt_frame(canopen::NmtCommand::start, nodes.back())));
+        EXPECT_TRUE(session->can()->send(canopen::nmt_frame(canopen::NmtCommand::start, nodes.back())));
       }
       EXPECT_TRUE(Power(*session, profile, nodes.back()).reach(drive::DriveState::operation_enabled));
       session->energised().insert(nodes.back());

@@ -1,5 +1,6 @@
 // Which family a drive's identity speaks for, against, or says nothing of.
 #include "session/family_check.hpp"
+#include "session/hearing.hpp"
 
 #include <gtest/gtest.h>
 
@@ -172,7 +173,7 @@ class OwnFile : public testing::Test {
                      .device_name = "0",
                      .hardware_version = {},
                      .software_version = {},
-                     .nmt = {},
+                     .state = {},
                      .looked = {}};
 };
 
@@ -206,16 +207,15 @@ TEST(Identify, ReadsOnceUntilTheNodeRestarts) {
   Session session(std::move(bus), "sim", Options{});
   (void)session.listen();
   std::vector<std::string> heard;
-  session.options().heard = [&](const can::Frame& frame, TimePoint) {
-    heard.push_back(can::to_string(frame));
-  };
+  const Hearing hearing(session,
+                        [&](const can::Frame& frame, TimePoint) { heard.push_back(can::to_string(frame)); });
   const std::uint8_t node[] = {1};
   const auto rules = profile("da200").rules;
   EXPECT_EQ(identify(session, node, rules).at(0).value().vendor_id, 4U);
   EXPECT_EQ(heard.size(), 4U) << "1000h, 1018h:01, 1018h:02, 1008h";
   EXPECT_EQ(identify(session, node, rules).at(0).value().device_type, 0x04020200U);
   EXPECT_EQ(heard.size(), 4U);
-  ASSERT_TRUE(session.send(canopen::nmt_frame(canopen::NmtCommand::reset_node, 1)));
+  ASSERT_TRUE(session.can()->send(canopen::nmt_frame(canopen::NmtCommand::reset_node, 1)));
   ASSERT_TRUE(
       session.wait([&] { return session.watch().boots(1) > 1; }, session.now() + std::chrono::seconds(5)));
   heard.clear();
@@ -257,7 +257,7 @@ TEST_F(TwoNodes, AreNoticedByAScanHoweverFastTheyAnswer) {
     for (const std::string delay : {"0ms", "1ms", "5ms", "15ms"}) {
       open({family + "@1", family + "@1?delay=" + delay});
       ASSERT_TRUE(scan(*session_, node_));
-      EXPECT_FALSE(session_->duplicates().noticed(1).empty()) << family << " " << delay;
+      EXPECT_FALSE(session_->can()->duplicates().noticed(1).empty()) << family << " " << delay;
       EXPECT_EQ(refuse_duplicate(*session_, 1).error().code, Errc::refused);
     }
 }
@@ -267,17 +267,17 @@ TEST_F(TwoNodes, AreNoticedBeforeAWrite) {
     for (const std::string other : kFamilies) {
       open({family + "@1", other + "@1?delay=3ms"});
       ASSERT_TRUE(identify(*session_, node_, profile(family).rules).at(0));
-      EXPECT_FALSE(session_->duplicates().noticed(1).empty()) << family << " " << other;
+      EXPECT_FALSE(session_->can()->duplicates().noticed(1).empty()) << family << " " << other;
     }
 }
 
 TEST_F(TwoNodes, AreForgottenByAScanThatFindsOne) {
   open({"gsd600@1", "dm@1?silent=3s"});
   ASSERT_TRUE(scan(*session_, node_));
-  EXPECT_NE(session_->duplicates().noticed(1), "");
+  EXPECT_NE(session_->can()->duplicates().noticed(1), "");
   (void)session_->wait([] { return false; }, session_->now() + std::chrono::seconds(4));
   ASSERT_TRUE(scan(*session_, node_));
-  EXPECT_EQ(session_->duplicates().noticed(1), "");
+  EXPECT_EQ(session_->can()->duplicates().noticed(1), "");
 }
 
 TEST_F(TwoNodes, AreNotSeenInOneThatIsSlowOrRestarts) {
@@ -285,9 +285,9 @@ TEST_F(TwoNodes, AreNotSeenInOneThatIsSlowOrRestarts) {
     open({family + "@1?delay=700ms"});
     session_->options().timeout = std::chrono::milliseconds(300);
     for (int i = 0; i < 3; ++i) (void)scan(*session_, node_);
-    ASSERT_TRUE(session_->send(canopen::nmt_frame(canopen::NmtCommand::reset_node, 1)));
+    ASSERT_TRUE(session_->can()->send(canopen::nmt_frame(canopen::NmtCommand::reset_node, 1)));
     (void)session_->wait([] { return false; }, session_->now() + std::chrono::seconds(3));
-    EXPECT_EQ(session_->duplicates().noticed(1), "") << family;
+    EXPECT_EQ(session_->can()->duplicates().noticed(1), "") << family;
   }
 }
 

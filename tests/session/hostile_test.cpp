@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "scripted_bus.hpp"
+#include "session/can_network.hpp"
 #include "session/session.hpp"
 #include "session/write.hpp"
 
@@ -137,11 +138,11 @@ TEST_F(HostileBus, TellsWhatTheControllerReportsOnceUntilItChanges) {
   bus->arrive("20000004#0010000000000000", 3ms);
   bus->arrive("20000004#0040000000000000", 4ms);
   (void)session->wait([] { return false; }, session->now() + 10ms);
-  EXPECT_EQ(session->take_reports(),
+  EXPECT_EQ(session->can()->take_reports(),
             (std::vector<can::ControllerReport>{can::ControllerReport::overflow,
                                                 can::ControllerReport::error_passive,
                                                 can::ControllerReport::error_active}));
-  EXPECT_TRUE(session->take_reports().empty());
+  EXPECT_TRUE(session->can()->take_reports().empty());
 }
 
 TEST_F(HostileBus, ReadsAgainSoonWhenTheNodeBootsInMidTransfer) {

@@ -177,7 +177,7 @@ TEST(PdoChange, KnowsTheStateByHeartbeatToo) {
 TEST(PdoChange, DoesNotStartADriveThatWasNotOperational) {
   PdoWorld world(changed_outside_operational(), 1);
   auto quiet = world.session({});
-  ASSERT_TRUE(quiet.send(canopen::nmt_frame(canopen::NmtCommand::enter_pre_operational, 1)));
+  ASSERT_TRUE(quiet.can()->send(canopen::nmt_frame(canopen::NmtCommand::enter_pre_operational, 1)));
   auto pdo = world.pdo("TPDO2");
   pdo.entries = {entry(0x60640020)};
   EXPECT_FALSE(world.change({pdo}).failure);

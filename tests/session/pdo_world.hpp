@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "canopen/sdo_abort.hpp"
+#include "session/can_network.hpp"
 #include "session/pdo_change.hpp"
 #include "session/pdo_setup.hpp"
 #include "sim/sim_bus.hpp"
@@ -99,7 +100,7 @@ class PdoWorld {
     bus_.attach(drive_);
     auto quiet = session({});
     (void)quiet.wait([] { return false; }, quiet.now() + std::chrono::seconds(1));
-    (void)quiet.send(canopen::nmt_frame(canopen::NmtCommand::start, node));
+    (void)quiet.can()->send(canopen::nmt_frame(canopen::NmtCommand::start, node));
   }
 
   static drive::Profile profile_of(std::string_view family) {

@@ -1,9 +1,11 @@
 #include "session/session.hpp"
+#include "session/can_network.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 
 #include "session/scan.hpp"
 #include "session/write.hpp"
@@ -26,7 +28,7 @@ class Bench final : public can::Bus {
   TimePoint now() const override { return bus.now(); }
   Result<void> send(const can::Frame& frame) override {
     sent.push_back(can::to_string(frame));
-    if (broken) return fail(Errc::bus, "can0 went down");
+    if (broken || sent.size() > breaks_after) return fail(Errc::bus, "can0 went down");
     return bus.send(frame);
   }
   Result<std::optional<can::Frame>> receive(TimePoint deadline) override { return bus.receive(deadline); }
@@ -34,6 +36,7 @@ class Bench final : public can::Bus {
 
   std::vector<std::string> sent;
   bool broken = false;
+  std::size_t breaks_after = std::numeric_limits<std::size_t>::max();  ///< So many frames.
   sim::SimBus bus{sim::SimBus::Clock::virtual_time};
   sim::Cell cell;
 };
@@ -77,6 +80,17 @@ TEST_F(SessionTest, TellsAScanOfALostBusFromAnEmptyOne) {
   const auto found = scan(*session, all_nodes());
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().code, Errc::bus);
+}
+
+TEST_F(SessionTest, DoesNotTakeAWriteForDoneWhoseAbortCannotBeSent) {
+  open("gsd600@1");
+  bench->cell.drives[0]->wire_faults().silent = true;
+  bench->breaks_after = 1;
+  const auto done = session->download(1, {0x6060, 0}, Bytes{3});
+  ASSERT_FALSE(done) << "it was not answered, and then the bus was lost";
+  EXPECT_EQ(done.error().code, Errc::bus);
+  EXPECT_EQ(bench->sent.size(), 2U);
+  EXPECT_EQ(bench->sent.back(), "601#8060600000000405");
 }
 
 TEST_F(SessionTest, AsksDifferentNodesAtTheSameTime) {
@@ -228,24 +242,24 @@ TEST_F(SessionTest, GuessesTheFamilyAndSaysThatItIsAGuess) {
 TEST_F(SessionTest, ProducesSyncInEveryWaitWithItsCounterAndItsPeriod) {
   open("gsd600@1");
   const auto begin = session->now();
-  session->produce_sync({.period = 2ms, .last_counter = 3});
+  session->can()->produce_sync({.period = 2ms, .last_counter = 3});
   EXPECT_EQ(session->next_event(), begin);
   // The waits are of any kind: for time, for an answer, for a key.
   ASSERT_TRUE(session->wait([] { return false; }, begin + 5ms));
   ASSERT_TRUE(session->upload(1, {0x1000, 0}));
   while (session->now() < begin + 9ms)
-    ASSERT_TRUE(session->receive(std::min(session->next_event(), begin + 9ms)));
+    ASSERT_TRUE(session->step(std::min(session->next_event(), begin + 9ms)));
   std::vector<std::string> syncs;
   for (const auto& frame : bench->sent)
     if (frame.starts_with("080#")) syncs.push_back(frame);
   EXPECT_EQ(syncs, (std::vector<std::string>{"080#01", "080#02", "080#03", "080#01", "080#02"}));
-  const auto& rhythm = session->sync()->rhythm;
+  const auto& rhythm = session->can()->sync()->rhythm;
   EXPECT_EQ(rhythm.count(), 5U);
   EXPECT_NEAR(rhythm.intervals().mean(), 2, 0.07);
-  EXPECT_EQ(session->sync()->producer.missed(), 0U);
-  session->stop_sync();
+  EXPECT_EQ(session->can()->sync()->producer.missed(), 0U);
+  session->can()->stop_sync();
   ASSERT_TRUE(session->wait([] { return false; }, session->now() + 50ms));
-  EXPECT_EQ(session->sync(), nullptr);
+  EXPECT_EQ(session->can()->sync(), nullptr);
   EXPECT_EQ(std::count(bench->sent.begin(), bench->sent.end(), "080#03"), 1);
 }
 

@@ -164,7 +164,7 @@ class BatchRun {
 }  // namespace
 
 int run_steps(Shell& shell, std::span<const Step> steps, const std::string& file) {
-  const bool produced = shell.session() != nullptr && shell.session()->sync() != nullptr;
+  const bool produced = shell.produces_sync();
   const bool stayed = shell.stay_open(true);
   BatchRun run(shell, steps, file);
   for (const auto& step : steps)

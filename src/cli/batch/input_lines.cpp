@@ -28,7 +28,7 @@ bool wait_for_input(Shell& shell) {
   while (!interrupted()) {
     auto* session = shell.session();
     pollfd fds[2] = {{STDIN_FILENO, POLLIN, 0},
-                     {session == nullptr ? -1 : session->bus().poll_fd(), POLLIN, 0}};
+                     {session == nullptr ? -1 : session->network().poll_fd(), POLLIN, 0}};
     std::optional<Duration> left;
     if (session != nullptr && session->next_event() != kNever)
       left = std::clamp<Duration>(session->next_event() - session->now(), Duration::zero(),

@@ -130,7 +130,7 @@ int Prompt::run() {
 bool Prompt::wait_for_key() {
   auto* session = shell_->session();
   pollfd fds[2] = {{STDIN_FILENO, POLLIN, 0},
-                   {session == nullptr ? -1 : session->bus().poll_fd(), POLLIN, 0}};
+                   {session == nullptr ? -1 : session->network().poll_fd(), POLLIN, 0}};
   if (held_) fds[0] = {STDOUT_FILENO, POLLOUT, 0};
   std::optional<Duration> left;
   if (session != nullptr && session->next_event() != kNever)

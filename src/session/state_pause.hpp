@@ -5,24 +5,22 @@
 #include <string>
 #include <vector>
 
-#include "canopen/nmt.hpp"
 #include "session/session.hpp"
 
 namespace servoctl::session {
 
-/// The NMT state of a node, by its next heartbeat, or by node guarding where asking once sets nothing off (no
-/// life time is set) unless `by_guarding` forbids that remote frame; empty when neither tells it. Errors of
-/// the bus, and Errc::interrupted.
-Result<std::optional<canopen::NmtState>> ask_nmt_state(Session& session, std::uint8_t node,
-                                                       bool by_guarding = true);
+/// The state of a node, by what it tells next by itself (CANopen: its heartbeat), or by the question for it
+/// where asking once sets nothing off (no life time of node guarding is set) unless `by_question` forbids
+/// that; empty when neither tells it. Errors of the network, and Errc::interrupted.
+Result<std::optional<NodeState>> ask_state(Session& session, std::uint8_t node, bool by_question = true);
 
 /// Takes one node out of Operational and puts it back.
-class NmtPause {
+class StatePause {
  public:
-  NmtPause(Session& session, std::uint8_t node) : session_(&session), node_(node) {}
-  NmtPause(const NmtPause&) = delete;
-  NmtPause& operator=(const NmtPause&) = delete;
-  ~NmtPause() { (void)leave(true); }
+  StatePause(Session& session, std::uint8_t node) : session_(&session), node_(node) {}
+  StatePause(const StatePause&) = delete;
+  StatePause& operator=(const StatePause&) = delete;
+  ~StatePause() { (void)leave(true); }
 
   /// Tells the node to enter Pre-operational, unless it is there.
   Result<void> enter();
@@ -37,7 +35,7 @@ class NmtPause {
   Session* session_;
   std::uint8_t node_;
   bool entered_ = false;
-  std::optional<canopen::NmtState> before_;
+  std::optional<NodeState> before_;
   std::vector<std::string> notices_;
 };
 

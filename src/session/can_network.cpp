@@ -1,0 +1,255 @@
+#include "session/can_network.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "canopen/cob_id.hpp"
+#include "canopen/nmt.hpp"
+#include "session/can_object_channel.hpp"
+#include "session/tpdo_values.hpp"
+
+namespace servoctl::session {
+namespace {
+
+using canopen::NmtCommand;
+using canopen::NmtState;
+
+/// The words of every network for what a CANopen machine noticed.
+struct InCommon {
+  NodeEvent::What operator()(canopen::NodeEvent::BootUp) const { return NodeEvent::BootUp{}; }
+  NodeEvent::What operator()(canopen::NodeEvent::StateChange change) const {
+    return NodeEvent::StateChange{node_state(change.state)};
+  }
+  NodeEvent::What operator()(canopen::NodeEvent::HeartbeatLost lost) const {
+    return NodeEvent::Gone{lost.silence, NodeEvent::Gone::Sign::heartbeat};
+  }
+  NodeEvent::What operator()(const canopen::Emergency& emergency) const { return emergency; }
+  NodeEvent::What operator()(canopen::NodeEvent::GuardingLost lost) const {
+    return NodeEvent::Gone{
+        lost.silence, lost.wrong_toggle ? NodeEvent::Gone::Sign::toggle : NodeEvent::Gone::Sign::guarding};
+  }
+  NodeEvent::What operator()(canopen::NodeEvent::GuardingBack back) const {
+    return NodeEvent::Back{node_state(back.state)};
+  }
+  NodeEvent::What operator()(const canopen::NodeEvent::Doubled& doubled) const {
+    return NodeEvent::Doubled{doubled.by};
+  }
+};
+
+}  // namespace
+
+NodeState node_state(NmtState state) {
+  switch (state) {
+    case NmtState::initialising: return NodeState::initialising;
+    case NmtState::stopped: return NodeState::stopped;
+    case NmtState::operational: return NodeState::operational;
+    case NmtState::pre_operational: return NodeState::pre_operational;
+  }
+  return NodeState::unknown;
+}
+
+std::optional<NmtCommand> nmt_command(NodeState state) {
+  switch (state) {
+    case NodeState::stopped: return NmtCommand::stop;
+    case NodeState::pre_operational: return NmtCommand::enter_pre_operational;
+    case NodeState::operational: return NmtCommand::start;
+    case NodeState::unknown:
+    case NodeState::initialising:
+    case NodeState::bootstrap:
+    case NodeState::safe_operational: break;
+  }
+  return std::nullopt;
+}
+
+can::Frame frame_of(const LifeSign& sign, std::uint8_t node) {
+  return sign.kind == LifeSign::Kind::heartbeat
+             ? canopen::heartbeat_frame(sign.producer, NmtState::operational)
+             : canopen::guarding_request(node);
+}
+
+CanNetwork::CanNetwork(std::unique_ptr<can::Bus> bus, std::string url)
+    : bus_(std::move(bus)), url_(std::move(url)) {}
+
+CanNetwork::~CanNetwork() = default;
+
+std::optional<NodeState> CanNetwork::Records::state(std::uint8_t node) const {
+  const auto state = watch_->state(node);
+  return state ? std::optional(node_state(*state)) : std::nullopt;
+}
+
+Result<bool> CanNetwork::step(TimePoint deadline) {
+  frame_.reset();
+  if (const auto sent = send_guarding(); !sent) return tl::unexpected<Error>(sent.error());
+  const auto heartbeat = send_heartbeat();
+  if (!heartbeat) return tl::unexpected<Error>(heartbeat.error());
+  const auto sync = send_sync();
+  if (!sync) return tl::unexpected<Error>(sync.error());
+  auto frame = bus_->receive(std::min({deadline, watch_.deadline(), guard_.deadline(), *heartbeat, *sync}));
+  if (!frame) return tl::unexpected<Error>(std::move(frame.error()));
+  frame_ = *frame;
+  stepped_at_ = frame_ ? std::max(stepped_at_, bus_->arrived()) : now();
+  if (frame_) hear(*frame_);
+  watch_.on_time(stepped_at_);
+  guard_.on_time(stepped_at_);
+  if (!frame_) return false;
+  if (const auto report = can::parse_report(*frame_))
+    if (const auto alive = on_report(*report); !alive) return tl::unexpected<Error>(alive.error());
+  dispatch(*frame_);
+  return true;
+}
+
+void CanNetwork::hear(const can::Frame& frame) {
+  watch_.on_frame(frame, stepped_at_);
+  duplicates_.on_frame(frame, stepped_at_);
+  guard_.on_frame(frame, stepped_at_);
+  if (sync_ && !frame.extended && frame.id == sync_->options.can_id) ++sync_->foreign;
+  // By index: who hears may begin or end to listen.
+  for (std::size_t i = 0; i < listeners_.size(); ++i) (*listeners_[i])(frame, stepped_at_);
+}
+
+void CanNetwork::dispatch(const can::Frame& frame) {
+  if (frame.id < canopen::kSdoAnswer || frame.id > canopen::kErrorControl + canopen::kLastNode) return;
+  for (auto* channel = channels_[frame.id & 0x7FU]; channel != nullptr; channel = channel->next_)
+    channel->client_.on_frame(frame, stepped_at_);
+}
+
+Result<void> CanNetwork::send_guarding() {
+  while (const auto question = guard_.take_frame())
+    if (auto sent = bus_->send(*question); !sent) return sent;
+  return {};
+}
+
+Result<void> CanNetwork::send_heartbeat(std::uint8_t node) {
+  return send(canopen::heartbeat_frame(node, NmtState::operational));
+}
+
+Result<TimePoint> CanNetwork::send_heartbeat() {
+  if (!heartbeat_) return kNever;
+  const auto time = now();
+  if (time < heartbeat_->next) return heartbeat_->next;
+  heartbeat_->next = time + heartbeat_->period;
+  if (const auto sent = bus_->send(canopen::heartbeat_frame(heartbeat_->node, NmtState::operational)); !sent)
+    return tl::unexpected<Error>(sent.error());
+  return heartbeat_->next;
+}
+
+Result<TimePoint> CanNetwork::send_sync() {
+  if (!sync_) return kNever;
+  sync_->producer.on_time(now());
+  if (const auto frame = sync_->producer.take_frame()) {
+    if (const auto sent = bus_->send(*frame); !sent) return tl::unexpected<Error>(sent.error());
+    sync_->rhythm.add(now());
+  }
+  return sync_->producer.deadline();
+}
+
+Result<void> CanNetwork::on_report(can::ControllerReport report) {
+  if (report == can::ControllerReport::bus_off) {
+    last_report_.reset();
+    return fail(Errc::bus, url_ + ": " + std::string(can::text(report)),
+                "check bitrate, wiring and termination; then take the interface down and up again "
+                "(`ip link set … restart-ms 100` lets it come back by itself)");
+  }
+  if (report != last_report_) reports_.push_back(report);
+  last_report_ = report;
+  return {};
+}
+
+std::vector<std::string> CanNetwork::take_notices() {
+  std::vector<std::string> out;
+  for (const auto report : take_reports()) out.push_back(url_ + ": " + std::string(can::text(report)));
+  for (auto& notice : bus_->take_notices()) out.push_back(std::move(notice));
+  return out;
+}
+
+std::unique_ptr<ObjectChannel> CanNetwork::object_channel(std::uint8_t node, Duration timeout) {
+  return std::make_unique<CanObjectChannel>(*this, node, timeout);
+}
+
+/// What the three have noticed since it was asked last, in the order of time.
+std::optional<NodeEvent> CanNetwork::take_event() {
+  if (events_.empty()) {
+    const auto add = [&](const canopen::NodeEvent& event) {
+      events_.push_back({event.time, event.node, std::visit(InCommon{}, event.what), event.times});
+    };
+    while (const auto event = watch_.take_event()) add(*event);
+    while (const auto event = guard_.take_event()) add(*event);
+    while (const auto event = duplicates_.take_event()) add(*event);
+    std::stable_sort(events_.begin(), events_.end(),
+                     [](const auto& a, const auto& b) { return a.time < b.time; });
+  }
+  if (events_.empty()) return std::nullopt;
+  auto out = std::move(events_.front());
+  events_.pop_front();
+  return out;
+}
+
+Result<void> CanNetwork::request_state(std::uint8_t node, NodeState state) {
+  const auto command = nmt_command(state);
+  if (!command)
+    return fail(Errc::usage, fmt::format("no NMT command makes a node {}", name(state)),
+                "on CAN there are operational, pre-operational and stopped");
+  return send(canopen::nmt_frame(*command, node));
+}
+
+Result<void> CanNetwork::ask_state(std::uint8_t node) { return send(canopen::guarding_request(node)); }
+
+Result<void> CanNetwork::arm_watchdog(std::uint8_t node, const LifeSign& sign) {
+  if (sign.kind == LifeSign::Kind::heartbeat)
+    produce_heartbeat(sign.producer, sign.period);
+  else
+    guard(node, {sign.period, sign.life_factor});
+  return {};
+}
+
+void CanNetwork::disarm_watchdog(std::uint8_t node) {
+  stop_heartbeat();
+  if (guard_.guards(node)) stop_guarding();
+}
+
+void CanNetwork::send_last_word(std::uint8_t node, ObjectAddress object, std::uint16_t value) noexcept {
+  // Expedited, two bytes (CiA 301, 7.2.4.3.3).
+  can::Frame frame;
+  frame.id = static_cast<std::uint32_t>(canopen::kSdoRequest) + node;
+  frame.size = 8;
+  frame.data = {0x2B,
+                static_cast<std::uint8_t>(object.index & 0xFFU),
+                static_cast<std::uint8_t>(object.index >> 8U),
+                object.sub,
+                static_cast<std::uint8_t>(value & 0xFFU),
+                static_cast<std::uint8_t>(value >> 8U),
+                0,
+                0};
+  try {
+    (void)send(frame);
+  } catch (...) {
+    return;
+  }
+}
+
+std::unique_ptr<ProcessValues> CanNetwork::process_values(std::uint8_t node,
+                                                          std::span<const ObjectAddress> objects) {
+  const auto known = pdos_.find(node);
+  const auto pdos = known == pdos_.end() ? std::span<const canopen::Pdo>() : std::span(known->second);
+  return std::make_unique<TpdoValues>(*this, pdos, objects);
+}
+
+void CanNetwork::guard(std::uint8_t node, canopen::GuardOptions options) {
+  watch_.set_guarded(node, true);
+  guard_.start(node, options, now());
+  guard_.on_time(now());
+}
+
+void CanNetwork::stop_guarding() {
+  for (std::uint8_t node = canopen::kFirstNode; node <= canopen::kLastNode; ++node) {
+    watch_.set_guarded(node, false);
+    guard_.stop(node);
+  }
+}
+
+TimePoint CanNetwork::next_event() const {
+  return std::min({bus_->next_event(), watch_.deadline(), guard_.deadline(),
+                   heartbeat_ ? heartbeat_->next : kNever, sync_ ? sync_->producer.deadline() : kNever});
+}
+
+}  // namespace servoctl::session

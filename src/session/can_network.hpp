@@ -1,0 +1,167 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "can/bus.hpp"
+#include "can/controller_report.hpp"
+#include "canopen/duplicate_watch.hpp"
+#include "canopen/node_guard.hpp"
+#include "canopen/node_watch.hpp"
+#include "canopen/pdo.hpp"
+#include "session/network.hpp"
+#include "session/sync_production.hpp"
+
+namespace servoctl::session {
+
+class CanObjectChannel;
+
+/// The state as NodeState has it, and the command that leads there; empty where CANopen has none.
+NodeState node_state(canopen::NmtState state);
+std::optional<canopen::NmtCommand> nmt_command(NodeState state);
+/// What is sent once a period.
+can::Frame frame_of(const LifeSign& sign, std::uint8_t node);
+
+/// A CAN bus with CANopen nodes: all that knows frames, COB-IDs and NMT. What is public here beside Network
+/// is for what only CAN has, and is reached by Session::can().
+class CanNetwork final : public Network {
+ public:
+  using OnFrame = std::function<void(const can::Frame& frame, TimePoint time)>;
+
+  /// `url` stands in messages.
+  CanNetwork(std::unique_ptr<can::Bus> bus, std::string url);
+  ~CanNetwork() override;
+
+  TimePoint now() const override { return bus_->now(); }
+  /// One frame; the watches see it first, then listeners, then the channel it is for. Errc::bus when the
+  /// controller reports bus-off as well.
+  Result<bool> step(TimePoint deadline) override;
+  TimePoint stepped_at() const override { return stepped_at_; }
+  TimePoint next_event() const override;
+  int poll_fd() const override { return bus_->poll_fd(); }
+  Result<void> recover(TimePoint deadline) override { return bus_->recover(deadline); }
+  std::unique_ptr<ObjectChannel> object_channel(std::uint8_t node, Duration timeout) override;
+  const NodeRecords& records() const override { return records_; }
+  std::optional<NodeEvent> take_event() override;
+  /// NMT: operational, pre-operational and stopped.
+  Result<void> request_state(std::uint8_t node, NodeState state) override;
+  /// By node guarding: a node that guards its master's life begins to do so.
+  Result<void> ask_state(std::uint8_t node) override;
+  void doubt_state(std::uint8_t node) override { watch_.on_command(node); }
+  Result<void> arm_watchdog(std::uint8_t node, const LifeSign& sign) override;
+  void disarm_watchdog(std::uint8_t node) override;
+  void send_last_word(std::uint8_t node, ObjectAddress object, std::uint16_t value) noexcept override;
+  /// By TPDOs, of those told by learn_pdos().
+  std::unique_ptr<ProcessValues> process_values(std::uint8_t node,
+                                                std::span<const ObjectAddress> objects) override;
+  /// What the controller reported, and what the bus has to say.
+  std::vector<std::string> take_notices() override;
+  void flush_trace() override { bus_->flush_trace(); }
+  CanNetwork* can() override { return this; }
+
+  /// Sends a frame of any kind. Errors as can::Bus::send().
+  Result<void> send(const can::Frame& frame) {
+    duplicates_.on_sent(frame, now());
+    return bus_->send(frame);
+  }
+  /// The frame that the last step took in; empty when it took none.
+  const std::optional<can::Frame>& frame() const { return frame_; }
+  can::Bus& bus() { return *bus_; }
+  /// What the controller reported since the last call; the same report in succession is told once.
+  std::vector<can::ControllerReport> take_reports() { return std::exchange(reports_, {}); }
+
+  canopen::NodeWatch& watch() { return watch_; }
+  /// Whether two nodes have one number.
+  canopen::DuplicateWatch& duplicates() { return duplicates_; }
+  /// The PDOs that a node has, all of them: process_values() takes their TPDOs for its own.
+  void learn_pdos(std::uint8_t node, std::vector<canopen::Pdo> pdos) { pdos_[node] = std::move(pdos); }
+
+  /// Guards a node in every step from now on; what is noticed is among the events.
+  void guard(std::uint8_t node, canopen::GuardOptions options);
+  void stop_guarding();
+
+  /// servoctl as a heartbeat producer (CiA 301, 7.2.8.2.2.2), state operational: one message at once and one
+  /// a period, in every step from now on. `node` 1..127 is servoctl's own.
+  void produce_heartbeat(std::uint8_t node, Duration period) {
+    heartbeat_ = {node, period, TimePoint::min()};
+  }
+  void stop_heartbeat() { heartbeat_.reset(); }
+  /// One message of such a producer, now.
+  Result<void> send_heartbeat(std::uint8_t node);
+  /// Under which node-ID servoctl produces heartbeats now; empty when it does not.
+  std::optional<std::uint8_t> heartbeat_node() const {
+    return heartbeat_ ? std::optional(heartbeat_->node) : std::nullopt;
+  }
+
+  /// servoctl as SYNC producer: the first one at once, in every step from now on.
+  void produce_sync(const canopen::SyncProducer::Options& options) {
+    sync_ = SyncProduction{options, canopen::SyncProducer(options, now())};
+  }
+  void stop_sync() { sync_.reset(); }
+  /// Null where SYNC is not produced.
+  const SyncProduction* sync() const { return sync_ ? &*sync_ : nullptr; }
+
+ private:
+  friend class CanObjectChannel;
+  friend class Hearing;
+
+  /// canopen::NodeWatch in the words of every network.
+  class Records final : public NodeRecords {
+   public:
+    explicit Records(const canopen::NodeWatch& watch) : watch_(&watch) {}
+    std::optional<NodeState> state(std::uint8_t node) const override;
+    std::uint32_t boots(std::uint8_t node) const override { return watch_->boots(node); }
+    std::uint32_t heartbeats(std::uint8_t node) const override { return watch_->heartbeats(node); }
+    const std::deque<canopen::Emergency>& emergencies(std::uint8_t node) const override {
+      return watch_->emergencies(node);
+    }
+
+   private:
+    const canopen::NodeWatch* watch_;
+  };
+  struct Heartbeat {
+    std::uint8_t node;
+    Duration period;
+    TimePoint next;
+  };
+
+  Result<void> send_guarding();
+  /// Sends the heartbeat when it is due; the answer is when the next one is.
+  Result<TimePoint> send_heartbeat();
+  /// The same for SYNC.
+  Result<TimePoint> send_sync();
+  void hear(const can::Frame& frame);
+  Result<void> on_report(can::ControllerReport report);
+  /// To the channel of the node that the frame belongs to by the pre-defined connection set: answers, what
+  /// other masters ask, boot-up.
+  void dispatch(const can::Frame& frame);
+
+  std::unique_ptr<can::Bus> bus_;
+  std::string url_;
+  canopen::NodeWatch watch_;
+  Records records_{watch_};
+  canopen::DuplicateWatch duplicates_;
+  canopen::NodeGuard guard_;
+  std::optional<Heartbeat> heartbeat_;
+  std::optional<SyncProduction> sync_;
+  std::vector<can::ControllerReport> reports_;
+  std::optional<can::ControllerReport> last_report_;
+  std::map<std::uint8_t, std::vector<canopen::Pdo>> pdos_;
+  std::vector<const OnFrame*> listeners_;
+  std::array<CanObjectChannel*, 128> channels_{};  ///< The first of each node.
+  std::deque<NodeEvent> events_;
+  std::optional<can::Frame> frame_;
+  /// Asking the clock costs a system call on some machines.
+  TimePoint stepped_at_{};
+};
+
+}  // namespace servoctl::session

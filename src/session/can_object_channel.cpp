@@ -1,0 +1,48 @@
+#include "session/can_object_channel.hpp"
+
+#include "drive/standard_objects.hpp"
+
+namespace servoctl::session {
+
+CanObjectChannel::CanObjectChannel(CanNetwork& network, std::uint8_t node, Duration timeout)
+    : network_(&network),
+      client_(node, timeout),
+      next_(std::exchange(network.channels_[node & 0x7FU], this)) {}
+
+CanObjectChannel::~CanObjectChannel() {
+  auto** place = &network_->channels_[client_.node() & 0x7FU];
+  while (*place != this) place = &(*place)->next_;
+  *place = next_;
+}
+
+Result<void> CanObjectChannel::on_time(TimePoint now) {
+  if (client_.deadline() <= now) client_.on_time(now);
+  while (const auto frame = client_.take_frame())
+    if (auto sent = network_->send(*frame); !sent) return sent;
+  return {};
+}
+
+void CanObjectChannel::start_upload(ObjectAddress object, TimePoint now, canopen::Transfer transfer,
+                                    std::size_t size) {
+  object_ = object;
+  emergency_id_.reset();
+  client_.start_upload(object, now, transfer, size);
+}
+
+void CanObjectChannel::start_download(ObjectAddress object, Bytes data, TimePoint now,
+                                      canopen::Transfer transfer) {
+  object_ = object;
+  emergency_id_.reset();
+  if (data.size() == 4) emergency_id_ = static_cast<std::uint32_t>(load_le(data));
+  client_.start_download(object, std::move(data), now, transfer);
+}
+
+std::optional<Result<Bytes>> CanObjectChannel::take_result() {
+  auto result = client_.take_result();
+  if (!result || !*result || object_ != objects::kEmergencyCobId) return result;
+  if ((*result)->size() == 4) emergency_id_ = static_cast<std::uint32_t>(load_le(**result));
+  if (emergency_id_) network_->watch_.learn_emergency_id(client_.node(), *emergency_id_);
+  return result;
+}
+
+}  // namespace servoctl::session

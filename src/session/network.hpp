@@ -1,0 +1,154 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/bytes.hpp"
+#include "base/object_address.hpp"
+#include "base/result.hpp"
+#include "base/time.hpp"
+#include "canopen/emergency.hpp"
+#include "canopen/transfer.hpp"
+#include "session/life_sign.hpp"
+#include "session/node_event.hpp"
+#include "session/node_state.hpp"
+
+namespace servoctl::session {
+
+class CanNetwork;
+
+/// The way to the objects of one node: one transfer at a time, whatever carries it. Lives no longer than its
+/// network, which serves it in every step: what the node answers is noted there.
+///
+/// Every transfer ends with exactly one result: the data, or Errc::sdo_abort (with the abort code), timeout
+/// or protocol, with node and object set.
+class ObjectChannel {
+ public:
+  ObjectChannel() = default;
+  ObjectChannel(const ObjectChannel&) = delete;
+  ObjectChannel& operator=(const ObjectChannel&) = delete;
+  virtual ~ObjectChannel() = default;
+
+  /// The longest silence of the node in a transfer. Not to be called while one is under way.
+  virtual void set_timeout(Duration timeout) = 0;
+
+  /// Reads an object. Not to be called while a transfer is under way. `size` is how many bytes the object
+  /// has, if that is known and needed, else 0. Sends nothing yet: on_time() does.
+  virtual void start_upload(ObjectAddress object, TimePoint now, canopen::Transfer transfer,
+                            std::size_t size) = 0;
+  /// Writes an object; else as start_upload().
+  virtual void start_download(ObjectAddress object, Bytes data, TimePoint now,
+                              canopen::Transfer transfer) = 0;
+
+  /// Sends what is to be sent, and ends a transfer that has waited too long. To be called after each start
+  /// and each step of the network, before take_result(). Errc::bus when the network does not take it.
+  virtual Result<void> on_time(TimePoint now) = 0;
+
+  /// Set once, when the transfer has ended; empty bytes after a write.
+  virtual std::optional<Result<Bytes>> take_result() = 0;
+  /// A transfer is under way. One that has ended and whose result was not taken is not.
+  virtual bool busy() const = 0;
+  /// When on_time() has something to do although nothing arrived; kNever while nothing is under way.
+  virtual TimePoint deadline() const = 0;
+  virtual std::size_t transferred()
+      const = 0;  ///< Bytes of this transfer that the other side has, or that came.
+  virtual std::optional<std::size_t> total() const = 0;  ///< Bytes of the whole transfer, when known.
+};
+
+/// Values that one node tells by itself while this lives: what its TPDOs bring, or its part of a process
+/// image.
+class ProcessValues {
+ public:
+  ProcessValues() = default;
+  ProcessValues(const ProcessValues&) = delete;
+  ProcessValues& operator=(const ProcessValues&) = delete;
+  virtual ~ProcessValues() = default;
+
+  /// The value that came since `since`, each one once; empty when none has: the object is to be read then.
+  virtual std::optional<Bytes> take(ObjectAddress object, TimePoint since) = 0;
+};
+
+/// What was heard of each node (1..127) in all waits since the network was opened.
+class NodeRecords {
+ public:
+  virtual ~NodeRecords() = default;
+
+  /// The state heard last; empty until one was heard.
+  virtual std::optional<NodeState> state(std::uint8_t node) const = 0;
+  /// How often it was heard to start.
+  virtual std::uint32_t boots(std::uint8_t node) const = 0;
+  /// How often it told its state otherwise: heartbeats and answers to guarding.
+  virtual std::uint32_t heartbeats(std::uint8_t node) const = 0;
+  /// The last emergencies since its start or error reset, oldest first, at most eight.
+  virtual const std::deque<canopen::Emergency>& emergencies(std::uint8_t node) const = 0;
+};
+
+/// One wire with its nodes, and the clock that belongs to it. Everything above knows nodes by their number
+/// (1..127), objects and states; frames, COB-IDs and NMT bytes are known below, and to what asks for can().
+class Network {
+ public:
+  Network() = default;
+  Network(const Network&) = delete;
+  Network& operator=(const Network&) = delete;
+  virtual ~Network() = default;
+
+  virtual TimePoint now() const = 0;
+
+  /// Waits until `deadline` at most, and takes in one arrival at most: whoever it concerns is served, the
+  /// channels, the records, what servoctl sends regularly. True when something arrived; without it a step may
+  /// end before the deadline. Errc::bus when the network is lost: nothing will be answered then.
+  virtual Result<bool> step(TimePoint deadline) = 0;
+  /// When what the last step took in arrived, or when it ended without; asks no clock.
+  virtual TimePoint stepped_at() const = 0;
+  /// When step() has something to do although nothing arrives from outside; kNever when it has not.
+  virtual TimePoint next_event() const = 0;
+  /// A descriptor that becomes readable when step() has something to take in, for a poll loop; -1: none.
+  virtual int poll_fd() const { return -1; }
+  /// After Errc::bus: waits until `deadline` at most for the network to come back. Errc::bus while it is not
+  /// back; at once where it never comes.
+  virtual Result<void> recover(TimePoint deadline) = 0;
+
+  virtual std::unique_ptr<ObjectChannel> object_channel(std::uint8_t node, Duration timeout) = 0;
+
+  virtual const NodeRecords& records() const = 0;
+  /// What nodes told since the last call, in the order of time; empty when that is all.
+  virtual std::optional<NodeEvent> take_event() = 0;
+
+  /// Tells the node to change its state; nothing confirms it. Errc::usage for a state that this network has
+  /// no word for, Errc::bus when it is not sent.
+  virtual Result<void> request_state(std::uint8_t node, NodeState state) = 0;
+  /// Asks the node for its state where that is a question of its own; the answer goes to records().
+  virtual Result<void> ask_state(std::uint8_t node) = 0;
+  /// The node is told to change its state: what was heard of it is no longer known to be so, unless it goes
+  /// on telling it by itself.
+  virtual void doubt_state(std::uint8_t node) = 0;
+
+  /// From now on tells the node in every step that servoctl lives; the first time at once. What it does
+  /// without that is written to its objects, by the caller. Errc::usage for a sign that this network does not
+  /// have.
+  virtual Result<void> arm_watchdog(std::uint8_t node, const LifeSign& sign) = 0;
+  /// The node is told no more.
+  virtual void disarm_watchdog(std::uint8_t node) = 0;
+  /// Sends the write of an object of two bytes and looks no further: for a way out on which nothing else
+  /// works any more. Needs no memory.
+  virtual void send_last_word(std::uint8_t node, ObjectAddress object, std::uint16_t value) noexcept = 0;
+
+  /// What the node tells of these objects by itself, as far as its mapping is known; see process_values().
+  virtual std::unique_ptr<ProcessValues> process_values(std::uint8_t node,
+                                                        std::span<const ObjectAddress> objects) = 0;
+
+  /// What people should know of the network beside its nodes, a line each, since the last call.
+  virtual std::vector<std::string> take_notices() { return {}; }
+  /// Whatever is kept back for a file is written to it now.
+  virtual void flush_trace() {}
+
+  /// What only CAN has; null where there are no COB-IDs.
+  virtual CanNetwork* can() { return nullptr; }
+};
+
+}  // namespace servoctl::session

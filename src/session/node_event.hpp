@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <variant>
+
+#include "base/time.hpp"
+#include "canopen/emergency.hpp"
+#include "session/node_state.hpp"
+
+namespace servoctl::session {
+
+/// Something a node told without being asked, or stopped telling, on any network.
+struct NodeEvent {
+  /// It has started, with what it keeps by itself: whatever else was written is gone.
+  struct BootUp {};
+  struct StateChange {
+    NodeState state;
+  };
+  /// It is not heard any more; told once, until it is back.
+  struct Gone {
+    enum class Sign : std::uint8_t {
+      heartbeat,  ///< What it sends by itself stays away.
+      guarding,   ///< It does not answer the question whether it lives.
+      toggle,     ///< It answers that question, and its answers do not change their toggle bit.
+    };
+    Duration silence;
+    Sign sign = Sign::heartbeat;
+  };
+  /// It answers again the question whether it lives. One whose heartbeat is back tells StateChange.
+  struct Back {
+    NodeState state;
+  };
+  /// Two nodes answer under this number; what it was noticed by.
+  struct Doubled {
+    std::string by;
+  };
+  /// It refused or left a state, and says why: the code as it told it, and what that means. Not on CAN.
+  struct StateError {
+    std::uint16_t code = 0;
+    std::string text;
+  };
+  using What = std::variant<BootUp, StateChange, Gone, canopen::Emergency, Back, Doubled, StateError>;
+
+  TimePoint time;  ///< On the clock of the network.
+  std::uint8_t node = 0;
+  What what;
+  std::uint32_t times = 1;  ///< How often in succession the node told the same emergency, or a boot-up.
+};
+
+}  // namespace servoctl::session

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "drive/profile.hpp"
+#include "session/session.hpp"
+
+namespace servoctl::session {
+
+/// What the node tells of these objects by itself from now on. On CAN its mapping is read first; where it
+/// does not tell that, nothing comes, and everything is to be read. `profile` may be null.
+std::unique_ptr<ProcessValues> process_values(Session& session, const drive::Profile* profile,
+                                              std::uint8_t node, std::span<const ObjectAddress> objects);
+
+}  // namespace servoctl::session
