@@ -45,6 +45,8 @@ class SdoClient {
   void on_frame(const can::Frame& frame, TimePoint now);
   void on_time(TimePoint now);
 
+  /// Whether take_frame() may give one.
+  bool may_send() const { return tx_ || state_ == State::block_download_data; }
   std::optional<can::Frame> take_frame();  ///< The next frame to send, if any.
   std::optional<Result<Bytes>>
   take_result();  ///< Set once, when the transfer has ended; empty bytes after a download.

@@ -79,7 +79,8 @@ std::optional<NodeState> CanNetwork::Records::state(std::uint8_t node) const {
 
 Result<bool> CanNetwork::step(TimePoint deadline) {
   frame_.reset();
-  if (const auto sent = send_guarding(); !sent) return tl::unexpected<Error>(sent.error());
+  while (const auto question = guard_.take_frame())
+    if (const auto sent = bus_->send(*question); !sent) return tl::unexpected<Error>(sent.error());
   const auto heartbeat = send_heartbeat();
   if (!heartbeat) return tl::unexpected<Error>(heartbeat.error());
   const auto sync = send_sync();
@@ -111,12 +112,6 @@ void CanNetwork::dispatch(const can::Frame& frame) {
   if (frame.id < canopen::kSdoAnswer || frame.id > canopen::kErrorControl + canopen::kLastNode) return;
   for (auto* channel = channels_[frame.id & 0x7FU]; channel != nullptr; channel = channel->next_)
     channel->client_.on_frame(frame, stepped_at_);
-}
-
-Result<void> CanNetwork::send_guarding() {
-  while (const auto question = guard_.take_frame())
-    if (auto sent = bus_->send(*question); !sent) return sent;
-  return {};
 }
 
 Result<void> CanNetwork::send_heartbeat(std::uint8_t node) {

@@ -134,7 +134,6 @@ class CanNetwork final : public Network {
     TimePoint next;
   };
 
-  Result<void> send_guarding();
   /// Sends the heartbeat when it is due; the answer is when the next one is.
   Result<TimePoint> send_heartbeat();
   /// The same for SYNC.

@@ -17,8 +17,11 @@ CanObjectChannel::~CanObjectChannel() {
 
 Result<void> CanObjectChannel::on_time(TimePoint now) {
   if (client_.deadline() <= now) client_.on_time(now);
-  while (const auto frame = client_.take_frame())
+  while (client_.may_send()) {
+    const auto frame = client_.take_frame();
+    if (!frame) break;
     if (auto sent = network_->send(*frame); !sent) return sent;
+  }
   return {};
 }
 

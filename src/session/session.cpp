@@ -45,9 +45,11 @@ Result<bool> Session::step(TimePoint deadline) {
     // A signal that comes after this question ends the wait below at once: see wait_or_signal().
     if (options_.cancelled()) return fail(Errc::interrupted, "interrupted");
     // A stale time ends the wait too early at most, and saves asking the clock once an arrival.
-    deadline = std::min(deadline, received_at() + kCancelSlice);
+    deadline = std::min(deadline, received_at_ + kCancelSlice);
   }
-  return network_->step(deadline);
+  auto stepped = network_->step(deadline);
+  received_at_ = network_->stepped_at();
+  return stepped;
 }
 
 Result<bool> Session::wait(const std::function<bool()>& done, TimePoint deadline) {

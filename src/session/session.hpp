@@ -74,7 +74,7 @@ class Session {
   /// cancelled, else as Network::step().
   Result<bool> step(TimePoint deadline);
   /// When what step() took in last arrived.
-  TimePoint received_at() const { return network_->stepped_at(); }
+  TimePoint received_at() const { return received_at_; }
   /// Takes in whatever has arrived, without waiting.
   Result<void> listen();
 
@@ -119,6 +119,7 @@ class Session {
   std::array<std::size_t, 128> flash_writes_{};
   EnergisedNodes energised_;
   std::array<std::unique_ptr<ObjectChannel>, 128> channels_;  ///< Those nobody uses now.
+  TimePoint received_at_{};
 };
 
 }  // namespace servoctl::session

@@ -119,12 +119,13 @@ void TransferRun::finish(Channel& channel, Result<Bytes> result) {
   }
   if (silent && result.error().hint.empty())
     result.error().hint = silence_hint(session_->watch(), request.node);
-  results_[channel.current] = result;
+  auto& place = results_[channel.current];
+  place = std::move(result);
   --open_;
   const auto& options = session_->options();
   if (options.list_progress && requests_.size() >= kLongList)
     options.list_progress(requests_.size() - open_, requests_.size(), session_->received_at());
-  if (!result && (silent || request.data)) skip_rest(channel, result.error(), silent);
+  if (!place && (silent || request.data)) skip_rest(channel, place.error(), silent);
   start(channel);
 }
 
