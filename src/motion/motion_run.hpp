@@ -24,7 +24,7 @@ struct MotionRun {
   bool in_counts = false;  ///< In the drive's own counts, whatever is known of a turn.
 };
 
-/// One of the motions of session/motion_kinds.hpp; `kind` must outlive it.
+/// One of the motions of motion/motion_kinds.hpp; `kind` must outlive it.
 template <class Kind>
 MotionRun motion_run(const Kind& kind, Result<MotionPlan> (*plan)(Motion&, const Kind&),
                      MotionReport (*run)(Motion&, const Kind&, const MotionPlan&)) {

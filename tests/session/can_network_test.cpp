@@ -6,7 +6,6 @@
 #include "scripted_bus.hpp"
 #include "session/foreign_writes.hpp"
 #include "session/hearing.hpp"
-#include "session/power_down.hpp"
 #include "session/session.hpp"
 
 namespace servoctl::session {
@@ -150,13 +149,6 @@ TEST_F(CanNetworkTest, HearsWhatAnotherMasterBeginsToWriteOnOneNode) {
     bus->arrive(frame, 1ms);
   pass(5ms);
   EXPECT_EQ(written, (std::vector<ObjectAddress>{{0x6040, 0}, {0x60FF, 1}}));
-}
-
-TEST(PlannedPowerDown, NamesAStateAndNoFrame) {
-  const auto planned = planned_power_down(5, PowerAim::stop_and_disable);
-  ASSERT_FALSE(planned.empty());
-  EXPECT_EQ(planned.back().state, NodeState::pre_operational);
-  EXPECT_FALSE(planned.back().write);
 }
 
 }  // namespace

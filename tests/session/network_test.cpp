@@ -9,9 +9,7 @@
 #include "session/family_check.hpp"
 #include "session/hearing.hpp"
 #include "session/identify.hpp"
-#include "session/power_down.hpp"
 #include "session/process_values.hpp"
-#include "session/producer_claim.hpp"
 #include "session/scan.hpp"
 #include "session/state_pause.hpp"
 #include "session/write.hpp"
@@ -54,10 +52,6 @@ TEST_F(NetworkTest, HasNothingOfCan) {
   EXPECT_TRUE(session->upload(1, objects::kDeviceType));
   EXPECT_TRUE(refuse_duplicate(*session, 1));
   EXPECT_TRUE(settle_duplicates(*session, std::vector<std::uint8_t>{1}, kBriefly));
-  WatchdogPlan plan;
-  plan.kind = WatchdogPlan::Kind::heartbeat;
-  EXPECT_TRUE(claim_producer(*session, 1, std::nullopt, plan)) << "nobody can contest a number there";
-  EXPECT_TRUE(check_producer(*session));
 }
 
 TEST_F(NetworkTest, FindsWhoIsThereAndWhatTheySay) {
@@ -223,25 +217,6 @@ TEST_F(NetworkTest, IsToldThatServoctlLivesAndTakesALastWord) {
   EXPECT_TRUE(network->watched().empty());
   session->network().send_last_word(1, objects::kControlword, 0x0002);
   EXPECT_EQ(objects.values[objects::kControlword], (Bytes{2, 0}));
-}
-
-TEST_F(NetworkTest, TakesADriveDown) {
-  std::vector<PowerDownPlan> plans(1);
-  plans[0].node = 1;
-  const auto done = take_down(*session, std::move(plans)).front();
-  EXPECT_TRUE(done.outcome) << done.outcome.error().message;
-  EXPECT_TRUE(done.is_without_power());
-  EXPECT_EQ(objects.values[objects::kControlword], (Bytes{0, 0}));
-}
-
-TEST_F(NetworkTest, WakesADriveThatIsStoppedOnItsWayDown) {
-  node->state = NodeState::stopped;
-  std::vector<PowerDownPlan> plans(1);
-  plans[0].node = 1;
-  const auto done = take_down(*session, std::move(plans)).front();
-  EXPECT_TRUE(done.outcome) << done.outcome.error().message;
-  EXPECT_EQ(node->state, NodeState::pre_operational);
-  EXPECT_EQ(objects.values[objects::kControlword], (Bytes{0, 0}));
 }
 
 }  // namespace
