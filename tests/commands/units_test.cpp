@@ -133,8 +133,16 @@ TEST_F(Units, GiveWayToWhatIsSaidAndToWhatTheDriveTells) {
   EXPECT_EQ(cell(run("units show"), "value"), "131072");
   ASSERT_TRUE(jog()) << error;
   EXPECT_EQ(notices.find("kept"), std::string::npos) << notices;
+  EXPECT_NE(notices.find("a turn is 131072 increments of 6064h by what the drive's parameters are set to; "
+                         "Pn0458, Pn0456, Pn0462, Pn0464 take effect when the drive is restarted"),
+            std::string::npos)
+      << notices;
+  ASSERT_TRUE(jog({{"--turn", "131072"}})) << error;
+  EXPECT_EQ(notices.find("restarted"), std::string::npos) << notices;
   EXPECT_FALSE(learn());
-  EXPECT_NE(error.find("its own parameters tell"), std::string::npos) << error;
+  EXPECT_NE(error.find("its own parameters tell that a turn has 131072 increments when they are in force"),
+            std::string::npos)
+      << error;
 }
 
 TEST_F(Units, AreNotUsedForAGearThatNobodyKnows) {
