@@ -190,6 +190,7 @@ void CanPort::on_nmt(NmtCommand command, TimePoint now) {
       full_restart_ = command == NmtCommand::reset_node;
       boot_at_ = now + kBootTime;
       error_control_.stop();
+      consumer_ = {};
       server_.reset();
       late_.clear();
       set_nmt(NmtState::initialising, now);
