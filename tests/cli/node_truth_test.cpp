@@ -107,7 +107,18 @@ TEST_F(NodeTruth, AResetOfTheCommunicationSaysWhatIsGone) {
     SCOPED_TRACE(family);
     use("sim:" + family + "@1", "1");
     EXPECT_EQ(run("nmt reset-comm --yes --wait"), 0) << all();
-    EXPECT_TRUE(says("1000h to 1FFFh are now as after power-on")) << all();
+    EXPECT_TRUE(says("node 1: by CiA 301, 1000h to 1FFFh are now as after power-on")) << all();
+    EXPECT_FALSE(says("go back")) << all();
+    for (const char* unseen : {"nmt reset-comm --yes", "nmt reset-comm --dry-run", "nmt reset-comm"}) {
+      (void)run(unseen);
+      EXPECT_TRUE(says("1000h to 1FFFh go back to what they are after power-on")) << all();
+      EXPECT_TRUE(says("the watchdog")) << all();
+      EXPECT_FALSE(says("are now")) << all();
+    }
+    EXPECT_EQ(run("nmt reset-comm --yes --wait -n 1,9"), 4) << all();
+    EXPECT_TRUE(says("node 1: by CiA 301, 1000h to 1FFFh are now")) << all();
+    EXPECT_FALSE(says("node 9: by CiA 301")) << all();
+    EXPECT_TRUE(says("go back")) << all();
     EXPECT_EQ(run("nmt reset --yes --wait"), 0) << all();
     EXPECT_FALSE(says("1000h to 1FFFh")) << all();
   }
