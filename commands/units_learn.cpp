@@ -145,6 +145,7 @@ Result<Learn> learn_of(Context& context, const Arguments& arguments, std::uint8_
   const auto nameplate = nameplate_of(arguments);
   if (!nameplate) return tl::unexpected<Error>(nameplate.error());
   out.expected.told = *nameplate;
+  out.expected.node = node;
   out.expected.disputed = monitor->parameter != nullptr &&
                           std::any_of(monitor->parameter->doubts.contradicted.begin(),
                                       monitor->parameter->doubts.contradicted.end(),
