@@ -143,9 +143,14 @@ INSTANTIATE_TEST_SUITE_P(
       return std::string(test.param.family) + (test.param.value < 0 ? "" : std::to_string(test.param.value));
     });
 
-TEST_F(ErrorBehaviour, OfTheFactoryLeavesADmAsItIsAndTakesAGsd600OutOfOperational) {  // 569; 898
+TEST_F(ErrorBehaviour, OfTheFactoryLeavesADmAsItIs) {  // 569
   lose_the_master("dm", -1);
   EXPECT_EQ(drive().nmt_state(), NmtState::operational);
+}
+
+TEST_F(ErrorBehaviour, OfTheFactoryTakesAGsd600OutOfOperational) {  // 898
+  lose_the_master("gsd600", -1);
+  EXPECT_EQ(drive().nmt_state(), NmtState::pre_operational);
 }
 
 TEST_F(ErrorBehaviour, HoldsForLifeGuardingToo) {
