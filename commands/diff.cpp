@@ -84,19 +84,24 @@ class Difference {
  private:
   bool are_files() const { return operands_[0].source && operands_[1].source; }
 
-  /// The family named on the line, else that of a file, where its data is at hand; a DCF describes its own
-  /// drive.
+  const drive::Profile* family(const std::string& name) const {
+    const auto found =
+        name.empty() ? Result<const drive::Profile*>(nullptr) : context_->front_end->family(name);
+    return found ? *found : nullptr;
+  }
+
+  /// The family named on the line, else that of a file, where its data is at hand; else DCFs describe their
+  /// own drives, each its own.
   Result<void> find_family() {
     profile_ = context_->profile;
-    for (const auto& operand : operands_) {
-      if (profile_ != nullptr || !operand.source) continue;
-      auto name = settings::family_of(*operand.source);
-      if (name.empty() && operand.source->format == settings::BackupFormat::dcf && are_files())
-        name = operand.source->file;
-      const auto found =
-          name.empty() ? Result<const drive::Profile*>(nullptr) : context_->front_end->family(name);
-      if (found) profile_ = *found;
-    }
+    for (const auto& operand : operands_)
+      if (profile_ == nullptr && operand.source) profile_ = family(settings::family_of(*operand.source));
+    if (profile_ == nullptr && are_files())
+      for (std::size_t i = 0; i < operands_.size(); ++i) {
+        if (operands_[i].source->format != settings::BackupFormat::dcf) continue;
+        sides_own_[i] = family(operands_[i].source->file);
+        if (profile_ == nullptr) profile_ = sides_own_[i];
+      }
     const auto needy = std::find_if(operands_.begin(), operands_.end(),
                                     [](const Operand& operand) { return !operand.source; });
     if (profile_ != nullptr || needy == operands_.end()) return {};
@@ -117,9 +122,15 @@ class Difference {
   }
 
   Result<settings::Side> side_of_file(std::size_t i) {
-    const auto backup =
-        settings::read_backup(*context_, *operands_[i].source, profile_, other_node(i), skip_invalid_);
+    const auto* own = sides_own_[i];
+    const auto backup = settings::read_backup(*context_, *operands_[i].source,
+                                              own != nullptr ? own : profile_, other_node(i), skip_invalid_);
     if (!backup) return tl::unexpected<Error>(backup.error());
+    if (own != nullptr) {
+      auto out = settings::side_of(*backup, operands_[i].word);
+      out.profile = own;
+      return out;
+    }
     if (!family_.empty() && family_ != backup->family)
       return fail(Errc::negative,
                   fmt::format("{} is of {}, {} of {}: they have nothing to compare", operands_[1 - i].word,
@@ -157,7 +168,8 @@ class Difference {
   std::vector<Operand> operands_;
   bool skip_invalid_ = false;
   const drive::Profile* profile_ = nullptr;
-  std::string family_;  ///< Of the files read so far.
+  const drive::Profile* sides_own_[2] = {};  ///< Of DCFs that no family describes.
+  std::string family_;                       ///< Of the files read so far.
   settings::Side sides_[2];
 };
 

@@ -99,33 +99,62 @@ report::Table result_table(Context& context, std::span<const Before> before, Nmt
   return table;
 }
 
-/// What a user may have set a moment ago, and a drive no longer has.
-constexpr std::string_view kCommunicationLost =
-    "by CiA 301, 1000h to 1FFFh are now as after power-on: PDOs, COB-IDs, heartbeats (1017h) and watched "
-    "producers (1016h) that were set and not stored are gone";
+/// What a user may have set a moment ago, and a drive loses.
+constexpr std::string_view kSetAndNotStored =
+    "PDOs, COB-IDs, heartbeats (1017h) and watched producers (1016h, the watchdog) that were set and not "
+    "stored";
+
+std::string communication_goes() {
+  return fmt::format("by CiA 301, 1000h to 1FFFh go back to what they are after power-on: {} are lost",
+                     kSetAndNotStored);
+}
+
+std::string whom(std::span<const std::uint8_t> nodes) {
+  if (nodes.front() == 0) return "all nodes";
+  return nodes.size() == 1 ? fmt::format("node {}", nodes.front()) : fmt::format("{} nodes", nodes.size());
+}
+
+/// What is to be answered before a reset.
+std::string question(std::span<const std::uint8_t> nodes, NmtCommand command) {
+  if (command == NmtCommand::reset_node)
+    return fmt::format("Reset {}? Drives restart and a moving axis loses its control.", whom(nodes));
+  return fmt::format(
+      "Reset the communication of {}? PDOs and heartbeats pause, so a moving axis may lose its control; {}.",
+      whom(nodes), communication_goes());
+}
+
+/// What a reset of the communication has done where its boot-up was seen, and does by the standard elsewhere.
+void tell_reset(Context& context, std::span<const Before> before, bool waited) {
+  bool unseen = false;
+  for (const auto& entry : before)
+    if (waited && confirmed(*context.session, entry, NmtCommand::reset_communication))
+      context.notices.push_back(
+          fmt::format("node {}: by CiA 301, 1000h to 1FFFh are now as after power-on: {} are gone",
+                      entry.node, kSetAndNotStored));
+    else
+      unseen = true;
+  if (unseen) context.notices.push_back(communication_goes());
+}
+
+report::Value planned_frames(Context& context, NmtCommand command) {
+  report::Table table;
+  table.columns = {{"node"}, {"frame"}};
+  for (const auto node : context.nodes)
+    table.rows.push_back({node, can::to_string(canopen::nmt_frame(command, node))});
+  if (command == NmtCommand::reset_communication) context.notices.push_back(communication_goes());
+  return report::Value(std::move(table));
+}
 
 Result<report::Value> run(Context& context, const Arguments& arguments, NmtCommand command) {
-  if (context.dry_run) {
-    report::Table table;
-    table.columns = {{"node"}, {"frame"}};
-    for (const auto node : context.nodes)
-      table.rows.push_back({node, can::to_string(canopen::nmt_frame(command, node))});
-    return report::Value(std::move(table));
-  }
+  if (context.dry_run) return planned_frames(context, command);
   const bool all = context.nodes.front() == 0;
   const bool wait = arguments.has("--wait");
   if (wait && all)
     return fail(Errc::usage, "--wait needs node-IDs: `all` does not say whose answer to wait for",
                 "for example -n 1,2,3");
-  if (is_reset(command)) {
-    const auto whom = all                         ? std::string("all nodes")
-                      : context.nodes.size() == 1 ? fmt::format("node {}", context.nodes.front())
-                                                  : fmt::format("{} nodes", context.nodes.size());
-    if (const auto answer = context.confirm(
-            fmt::format("Reset {}? Drives restart and a moving axis loses its control.", whom));
-        !answer)
+  if (is_reset(command))
+    if (const auto answer = context.confirm(question(context.nodes, command)); !answer)
       return tl::unexpected<Error>(answer.error());
-  }
   const auto heartbeats = wait && !is_reset(command) ? heartbeats_of(context) : Heartbeats();
   std::vector<Before> before;
   for (const auto node : context.nodes) {
@@ -135,8 +164,11 @@ Result<report::Value> run(Context& context, const Arguments& arguments, NmtComma
       return tl::unexpected<Error>(sent.error());
     context.session->can()->watch().on_command(node);
   }
-  if (command == NmtCommand::reset_communication) context.notices.emplace_back(kCommunicationLost);
-  if (!wait) return report::Value(result_table(context, before, command, false));
+  const bool tells = command == NmtCommand::reset_communication;
+  if (!wait) {
+    if (tells) tell_reset(context, before, false);
+    return report::Value(result_table(context, before, command, false));
+  }
   const auto done = [&] {
     return std::all_of(before.begin(), before.end(),
                        [&](const Before& b) { return confirmed(*context.session, b, command); });
@@ -146,6 +178,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments, NmtComma
   const auto waited =
       context.session->wait(done, context.session->now() + (hopeless ? Duration::zero() : patience));
   if (!waited) return tl::unexpected<Error>(waited.error());
+  if (tells) tell_reset(context, before, true);
   for (const auto& entry : before)
     if (!confirmed(*context.session, entry, command))
       context.errors.push_back(unconfirmed(entry, command, heartbeats, context.session->can()->watch()));

@@ -101,12 +101,14 @@ Result<double> read_gear(Context& context, std::uint8_t node) {
   const session::MeasureQuestion question[] = {{node, drive::Measure::increments_per_turn, 1.0}};
   const auto known = session::read_measures(*context.session, *context.profile, question).front();
   if (known && known->learned && known->value > 0) return known->value;
-  if (known)
+  if (known) {
+    const auto pending = motion::restart_note(*context.profile, *known->way);
     return refused(
         node,
-        fmt::format("its own parameters tell that a turn has {} increments: nothing is to be learned",
-                    plain_number(known->value, 12)),
-        "`units show` tells by which");
+        fmt::format("its own parameters tell that a turn has {} increments{}: nothing is to be learned",
+                    plain_number(known->value, 12), pending.empty() ? "" : " when they are in force"),
+        "`units show` tells by which" + (pending.empty() ? "" : "; " + pending));
+  }
   const auto why = unmet(context, node);
   return refused(node,
                  "the counts of a turn cannot be measured as it is set" + (why.empty() ? why : ": " + why),
@@ -143,6 +145,7 @@ Result<Learn> learn_of(Context& context, const Arguments& arguments, std::uint8_
   const auto nameplate = nameplate_of(arguments);
   if (!nameplate) return tl::unexpected<Error>(nameplate.error());
   out.expected.told = *nameplate;
+  out.expected.node = node;
   out.expected.disputed = monitor->parameter != nullptr &&
                           std::any_of(monitor->parameter->doubts.contradicted.begin(),
                                       monitor->parameter->doubts.contradicted.end(),
@@ -150,20 +153,11 @@ Result<Learn> learn_of(Context& context, const Arguments& arguments, std::uint8_
   return out;
 }
 
-/// What takes effect by a restart may be set and not in force.
+/// Of the way that is measured.
 std::string restart_note(const Context& context) {
-  std::string out;
   for (const auto& way : context.profile->rules.units.at(drive::Measure::increments_per_turn))
-    for (const auto& condition : way.when) {
-      const auto target = drive::target_at(context.profile, condition.object);
-      if (!way.learned || target.parameter == nullptr ||
-          drive::meaning(target, 0).effect != od::Effect::restart)
-        continue;
-      out += (out.empty() ? "" : ", ") + target.parameter->id;
-    }
-  if (out.empty()) return out;
-  return fmt::format("{} take effect when the drive is restarted: restart it first if one was changed since",
-                     out);
+    if (way.learned) return motion::restart_note(*context.profile, way);
+  return {};
 }
 
 Result<void> keep(Context& context, std::uint8_t node, const motion::LearnReport& done, double gear) {

@@ -61,7 +61,6 @@ std::string_view position_unit(const drive::Profile& profile) {
 /// One measure of one node: what it is, and who tells it.
 List row(const Context& context, std::uint8_t node, Measure measure, std::string_view name,
          std::optional<double> turn, const motion::KnownTurn& known) {
-  const auto ways = context.profile->rules.units.find(measure);
   const bool of_turn = measure == Measure::increments_per_turn;
   const session::MeasureQuestion question[] = {
       {node, measure, of_turn ? known.counts : std::optional<double>()}};
@@ -69,16 +68,16 @@ List row(const Context& context, std::uint8_t node, Measure measure, std::string
   std::optional<double> value;
   std::string_view source;
   std::string from = "nobody";
-  if (of_turn && turn) {
+  if (const auto unit = position_unit(*context.profile); of_turn && unit != "inc") {
+    from = fmt::format("not needed: its positions are in {}{}", unit, turn ? "; --turn changes nothing" : "");
+  } else if (of_turn && turn) {
     value = turn;
     source = "--turn";
     from = "--turn";
   } else if (told) {
     value = told->value;
     source = told->learned ? "kept" : "drive";
-    from = told->learned ? kept_text(known) : "the drive: " + show::ways_text(ways->second);
-  } else if (const auto unit = position_unit(*context.profile); of_turn && unit != "inc") {
-    from = "not needed: its positions are in " + std::string(unit);
+    from = told->learned ? kept_text(known) : "the drive: " + show::way_text(*told->way);
   } else if (of_turn) {
     from += context.profile->rules.learn.speed.empty() ? ": --turn says it"
                                                        : ": `units learn` measures it, --turn says it";

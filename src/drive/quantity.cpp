@@ -163,6 +163,8 @@ Meaning meaning(const Target& target, std::uint8_t node) {
   if (entry.low) out.min = entry.low->for_node(node);
   if (entry.high) out.max = entry.high->for_node(node);
   out.least = entry.least;
+  out.least_assumed = std::any_of(entry.doubts.assumed.begin(), entry.doubts.assumed.end(),
+                                  [](const od::Mark& mark) { return mark.field == "least"; });
   out.labels = entry.labels.empty() ? nullptr : &entry.labels;
   out.effect = entry.effect;
   out.encoding = entry.encoding;
@@ -193,6 +195,12 @@ Result<void> check_limits(const Meaning& meaning, const od::Value& value) {
     hint = "values: " + labels_text(meaning);
   else if (meaning.scale != 1)
     hint = fmt::format("one step is {} {}", plain_number(meaning.scale, 6), meaning.unit);
+  else if (is_too_little(meaning, value))
+    hint = fmt::format(
+        "0 switches it off{}",
+        meaning.least_assumed
+            ? fmt::format("; that {} is the least is assumed: its manual may mean the step", *meaning.least)
+            : std::string());
   return fail(Errc::usage,
               fmt::format("{} is out of range: {}", plain_text(meaning, value), range_text(meaning)),
               std::move(hint));

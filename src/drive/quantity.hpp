@@ -24,6 +24,7 @@ struct Meaning {
   std::optional<od::Value> min;
   std::optional<od::Value> max;
   std::optional<std::uint64_t> least;  ///< Below it only 0, which switches off: od::Entry::least.
+  bool least_assumed = false;          ///< The manual does not state it as a limit.
   const std::vector<od::EnumLabel>* labels = nullptr;
   od::Effect effect = od::Effect::unstated;
   od::Encoding encoding = od::Encoding::plain;

@@ -147,8 +147,26 @@ KnownTurn find_turn(const show::Desk& desk, std::uint8_t node) {
   return out;
 }
 
+std::string restart_note(const drive::Profile& profile, const drive::Quotient& way) {
+  std::string out;
+  for (const auto object : way.objects()) {
+    const auto target = drive::target_at(&profile, object);
+    if (drive::meaning(target, 0).effect != od::Effect::restart) continue;
+    out += (out.empty() ? "" : ", ") + (target.parameter ? target.parameter->id : to_string(object));
+  }
+  if (out.empty()) return out;
+  return fmt::format("{} take effect when the drive is restarted: restart it first if one was changed since",
+                     out);
+}
+
 std::vector<std::string> turn_notes(const MotionUnits& units, const KnownTurn& known) {
   std::vector<std::string> out;
+  const auto* way = units.turn_way();
+  const auto pending = way == nullptr || way->learned ? std::string() : restart_note(units.profile(), *way);
+  if (!pending.empty())
+    out.push_back(
+        fmt::format("a turn is {} increments of 6064h by what the drive's parameters are set to; {}",
+                    plain_number(units.turn().value_or(0), 12), pending));
   if (units.uses_learned() && known.kept)
     out.push_back(fmt::format(
         "a turn is {} increments of 6064h, by the {} counts of its encoder ({}) that were measured at {} and "

@@ -51,8 +51,12 @@ struct KnownTurn {
 /// What is kept for this node, held against family and identity. Asks the drive only where something is kept.
 KnownTurn find_turn(const show::Desk& desk, std::uint8_t node);
 
-/// Where the counts of a turn come from when they are kept ones, and why they are not used where nothing else
-/// tells them: to be told before a motion, and with its result.
+/// What is made of parameters that take effect by a restart may be set and not in force: which of them, and
+/// what to do; empty where there are none.
+std::string restart_note(const drive::Profile& profile, const drive::Quotient& way);
+
+/// Where the counts of a turn come from when they are kept ones, or parameters that may not be in force, and
+/// why kept ones are not used where nothing else tells them: to be told before a motion, and with its result.
 std::vector<std::string> turn_notes(const MotionUnits& units, const KnownTurn& known);
 
 }  // namespace servoctl::motion

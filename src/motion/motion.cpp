@@ -209,7 +209,7 @@ Result<bool> Motion::supervise(const std::function<Result<bool>(const MotionSamp
     const auto sample = monitor_->sample();
     if (!monitor_->samples().empty() && options_.on_sample) options_.on_sample(monitor_->samples().back());
     if (!sample) return tl::unexpected<Error>(sample.error());
-    if (const auto fits = check_learned(*sample); !fits) return tl::unexpected<Error>(fits.error());
+    if (const auto fits = check_turn(*sample); !fits) return tl::unexpected<Error>(fits.error());
     if (options_.unheard && options_.unheard())
       return fail(error(Errc::interrupted, "nobody reads the output any more; the motion was ended"));
     const auto enough = done(*sample);

@@ -133,7 +133,8 @@ class Motion {
 
  private:
   Result<bool> supervise(const std::function<Result<bool>(const MotionSample&)>& done, Duration longest);
-  Result<void> check_learned(const MotionSample& sample);
+  Result<void> check_turn(const MotionSample& sample);
+  Error quarrel(double shown, double speed) const;
   Result<void> look_again();
   Result<void> make_ready(MotionGuard& guard, std::int8_t mode, const std::vector<MotionSetting>& settings,
                           std::optional<ObjectAddress> kept_target, session::Rehearsal& rehearsal);

@@ -209,6 +209,13 @@ class Learning {
   std::vector<TurnLook> looks_;
 };
 
+/// From rest to rest: the measurement, and about two seconds of its speed on the way to it and back.
+long turns_of(const Learn& learn) {
+  constexpr double kOnTheWay = 2;
+  return std::lround(std::abs(learn.rpm) / 60 *
+                     (std::chrono::duration<double>(learn.length).count() + kOnTheWay));
+}
+
 Result<void> check_units(const Motion& motion, const Learn& learn) {
   const auto& units = motion.units();
   if (units.unit(objects::kPositionActual) != "inc" || units.unit(objects::kTargetVelocity) != "inc/s" ||
@@ -249,9 +256,13 @@ Result<MotionPlan> plan_learn(Motion& motion, const Learn& learn) {
           motion.add_ramps(plan.value, {objects::kProfileAcceleration, objects::kProfileDeceleration}, plan);
       !ramps)
     return tl::unexpected<Error>(ramps.error());
-  plan.summary = fmt::format("turn at {} rpm by {} for {}, found in steps from {} {} on",
+  plan.summary = fmt::format("turn at {} rpm by {} for {}, about {} turns, found in steps from {} {} on",
                              number_text(learn.rpm), learn.monitor_name, servoctl::to_string(learn.length),
-                             number_text(std::round(plan.value)), plan.unit);
+                             turns_of(learn), number_text(std::round(plan.value)), plan.unit);
+  plan.tell(
+      fmt::format("60FFh and its ramps are written again and again, each time for at most {} times the "
+                  "last speed, until {} shows {} rpm",
+                  number_text(kSpeedUp), learn.monitor_name, number_text(std::abs(learn.rpm))));
   plan.moving = {{objects::kTargetVelocity, plan.command},
                  {objects::kTargetVelocity, Bytes(plan.command.size(), 0)}};
   motion.set_standstill(plan.value);

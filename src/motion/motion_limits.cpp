@@ -5,6 +5,7 @@
 
 #include "base/number.hpp"
 #include "drive/standard_objects.hpp"
+#include "motion/kept_turn.hpp"
 #include "motion/motion.hpp"
 #include "session/option_scope.hpp"
 
@@ -76,12 +77,12 @@ std::optional<double> Motion::read_as(ObjectAddress as, ObjectAddress object) co
   return value && value->value > 0 ? std::optional(value->value) : std::nullopt;
 }
 
-/// Counts of a turn that were measured once may be those of another motor: what they make of 606Ch is held
-/// against the drive's own monitor, in every look.
-Result<void> Motion::check_learned(const MotionSample& sample) {
+/// Counts of a turn that were measured once may be those of another motor, and parameters that tell them may
+/// not be in force: what they make of 606Ch is held against the drive's own monitor, in every look.
+Result<void> Motion::check_turn(const MotionSample& sample) {
   const auto speed = sample[Channel::velocity];
   const auto& name = profile_->rules.learn.speed;
-  const auto monitor = units_->uses_learned() ? units_->object(name) : std::nullopt;
+  const auto monitor = units_->turn_way() != nullptr ? units_->object(name) : std::nullopt;
   if (!monitor || !speed || units_->unit(objects::kVelocityActual) != "rpm") return {};
   const session::Hurry hurry(*session_, kPatience, 1);
   const auto answer = session_->upload(node_, *monitor);
@@ -94,11 +95,25 @@ Result<void> Motion::check_learned(const MotionSample& sample) {
                    std::max(one, other) > kMostContradiction * std::min(one, other);
   odd_looks_ = odd ? odd_looks_ + 1 : 0;
   if (odd_looks_ < kOddLooks) return {};
-  return fail(error(Errc::negative,
-                    fmt::format("turns at {} rpm by {}, and at {} rpm by the kept counts of a turn",
-                                number_text(shown->value), name, number_text(*speed)),
-                    "is it another motor or drive? `units learn` measures it, `units forget` drops what is "
-                    "kept"));
+  return fail(quarrel(shown->value, *speed));
+}
+
+/// Between the monitor of the speed and 606Ch by the counts of a turn, both in rpm.
+Error Motion::quarrel(double shown, double speed) const {
+  const auto& name = profile_->rules.learn.speed;
+  if (units_->uses_learned())
+    return error(
+        Errc::negative,
+        fmt::format("turns at {} rpm by {}, and at {} rpm by the kept counts of a turn", number_text(shown),
+                    name, number_text(speed)),
+        "is it another motor or drive? `units learn` measures it, `units forget` drops what is kept");
+  const auto pending = restart_note(*profile_, *units_->turn_way());
+  return error(
+      Errc::negative,
+      fmt::format("turns at {} rpm by {}, and at {} rpm by the {} increments that its parameters tell "
+                  "of a turn",
+                  number_text(shown), name, number_text(speed), plain_number(units_->turn().value_or(0), 12)),
+      (pending.empty() ? "" : pending + "; ") + "--turn says how many a turn has");
 }
 
 std::optional<double> Motion::fastest() const {

@@ -32,7 +32,7 @@ MotionUnits::MotionUnits(session::Session& session, const drive::Profile& profil
   for (std::size_t i = 0; i < answers.size(); ++i) {
     if (!answers[i]) continue;
     measures_[questions[i].measure] = answers[i]->value;
-    uses_learned_ = uses_learned_ || (answers[i]->learned && !turn);
+    if (questions[i].measure == drive::Measure::increments_per_turn && !turn) turn_way_ = answers[i]->way;
   }
   if (turn) measures_[drive::Measure::increments_per_turn] = *turn;
   if (encoder) measures_[drive::Measure::pulses_per_turn] = *encoder;

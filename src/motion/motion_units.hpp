@@ -51,7 +51,9 @@ class MotionUnits {
   /// Increments in one turn of the motor, by whoever told it; empty when nobody has.
   std::optional<double> turn() const;
   /// Whether they come from the number that was measured earlier.
-  bool uses_learned() const { return uses_learned_; }
+  bool uses_learned() const { return turn_way_ != nullptr && turn_way_->learned; }
+  /// How turn() was made of the drive's own objects; null where the user told it, or nobody has.
+  const drive::Quotient* turn_way() const { return turn_way_; }
 
   /// The object behind a name of the family's rules (`0x6080`, `Fn_95`); empty for none.
   std::optional<ObjectAddress> object(std::string_view name) const;
@@ -65,7 +67,7 @@ class MotionUnits {
   const drive::Profile* profile_;
   std::uint8_t node_;
   std::map<drive::Measure, double> measures_;
-  bool uses_learned_ = false;
+  const drive::Quotient* turn_way_ = nullptr;
 };
 
 }  // namespace servoctl::motion

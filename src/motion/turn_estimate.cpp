@@ -146,17 +146,18 @@ Result<TurnCounts> counts_behind(double measured, double uncertainty, const Turn
       fmt::format("has {} counts a turn as measured (± {} %)", std::llround(measured), percent(uncertainty));
   if (!is_near(measured, decimal))
     return no_number(said + ": neither a power of two nor a round decimal number is within 1 % of it",
-                     "look at the nameplate of the motor; `units learn --nameplate COUNTS` holds its number "
-                     "against the measurement and keeps it");
+                     fmt::format("look at the nameplate of the motor; `units learn -n {} --nameplate COUNTS` "
+                                 "measures again, holds its number against that and keeps it",
+                                 expected.node));
   if (expected.disputed)
     return no_number(
         fmt::format(
             "{}: {} is near, but the manual prints two scales for the monitor of the speed, and by the "
             "other it would be {}",
             said, std::llround(decimal), plain_number(decimal / 10, 12)),
-        fmt::format(
-            "look at the nameplate of the motor; when it says so, `units learn --nameplate {}` keeps it",
-            std::llround(decimal)));
+        fmt::format("look at the nameplate of the motor; when it says so, `units learn -n {} --nameplate {}` "
+                    "measures again and keeps it",
+                    expected.node, std::llround(decimal)));
   return TurnCounts{decimal, fmt::format("a round decimal number, {}; no power of two is near",
                                          distance(measured, decimal))};
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -49,6 +50,7 @@ Result<TurnMeasurement> measure_turn(std::span<const TurnLook> looks, double ste
 struct TurnExpectation {
   std::optional<double> told;  ///< A number that somebody knows: it is held against the measurement.
   bool disputed = false;       ///< The manual prints two scales for the monitor, a factor of ten apart.
+  std::uint8_t node = 1;       ///< Whose it is, for hints.
 };
 
 /// The number that is meant, and why.

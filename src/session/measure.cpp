@@ -42,7 +42,7 @@ class Evaluation {
     if (way == ways.end() || (way->learned && !learned)) return std::nullopt;
     const auto value = of(*way);
     if (!value) return std::nullopt;
-    return Measured{way->learned ? *value * *learned : *value, way->learned};
+    return Measured{way->learned ? *value * *learned : *value, way->learned, &*way};
   }
 
  private:

@@ -22,7 +22,8 @@ struct MeasureQuestion {
 
 struct Measured {
   double value = 0;
-  bool learned = false;  ///< MeasureQuestion::learned went into it.
+  bool learned = false;                  ///< MeasureQuestion::learned went into it.
+  const drive::Quotient* way = nullptr;  ///< Of the profile's rules, the one whose conditions hold.
 };
 
 /// Reads gear, encoder and rating objects of drives, as the family's rules say (`[units]`): increments in one

@@ -98,9 +98,11 @@ Result<Backup> read_foreign(const BackupSource& source, const drive::Profile& pr
 
 /// What the reader of a restore must know: no checksum, no identity, and what is not written.
 void tell(show::Desk& desk, const BackupSource& source, const Backup& backup) {
-  desk.notices.push_back(fmt::format(
-      "{} is a {}: it proves neither its drive nor that it is whole; its objects and values fit {}",
-      source.file, title_of(source.format), backup.family));
+  // That it fits itself says nothing.
+  const auto fits =
+      backup.family == source.file ? std::string() : "; its objects and values fit " + backup.family;
+  desk.notices.push_back(fmt::format("{} is a {}: it proves neither its drive nor that it is whole{}",
+                                     source.file, title_of(source.format), fits));
   constexpr std::size_t kMostNamed = 4;
   for (std::size_t i = 0; i < std::min(kMostNamed, backup.passed_over.size()); ++i)
     desk.notices.push_back(backup.passed_over[i]);

@@ -36,6 +36,18 @@ Shown show(const drive::Profile* profile, const Side& side, ObjectAddress object
                                   {"bytes", to_hex(found->second)}}};
 }
 
+const drive::Profile* profile_of(const drive::Profile* of_both, const Side& side) {
+  return side.profile != nullptr ? side.profile : of_both;
+}
+
+/// Whether one of two values that both sides have is the other as its own node's, by what describes either.
+bool is_same(const drive::Profile* profile, ObjectAddress object, const Side& a, const Side& b) {
+  const auto& left = a.values.at(object);
+  const auto& right = b.values.at(object);
+  return for_node(profile_of(profile, a), object, left, a.node, b.node) == right ||
+         for_node(profile_of(profile, b), object, right, b.node, a.node) == left;
+}
+
 /// Whether a mapping entry is above the count of its PDO: it is nothing, whatever it holds.
 bool is_unused(const Side& side, ObjectAddress object) {
   const auto count = side.values.find({object.index, 0});
@@ -100,12 +112,11 @@ Comparison compare(const drive::Profile* profile, const Side& a, const Side& b, 
   for (const auto& [object, sides] : objects) {
     if (sides < 2 && (!whole || is_unused(a, object) || is_unused(b, object))) continue;
     ++out.compared;
-    if (sides == 2 && for_node(profile, object, a.values.at(object), a.node, b.node) == b.values.at(object))
-      continue;
+    if (sides == 2 && is_same(profile, object, a, b)) continue;
     ++out.different;
-    const auto target = drive::target_at(profile, object);
-    auto left = show(profile, a, object);
-    auto right = show(profile, b, object);
+    const auto target = drive::target_at(profile_of(profile, a.values.count(object) > 0 ? a : b), object);
+    auto left = show(profile_of(profile, a), a, object);
+    auto right = show(profile_of(profile, b), b, object);
     table.rows.push_back({to_string(object), object.index, object.sub,
                           target.parameter != nullptr ? Value(target.parameter->id) : Value(),
                           report::text_or_null(chinese ? target.label_zh() : target.label()), left.text,

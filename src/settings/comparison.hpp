@@ -14,6 +14,7 @@ struct Side {
   std::string title;
   std::uint8_t node = 1;
   std::map<ObjectAddress, Bytes> values;
+  const drive::Profile* profile = nullptr;  ///< What describes it, where that is not what describes both.
 };
 
 /// The values of a backup; what it left out is not compared.
@@ -32,7 +33,7 @@ Bytes for_node(const drive::Profile* profile, ObjectAddress object, const Bytes&
 
 /// `{compared, different, differences[{index sub id name a{…} b{…}}]}`. An entry that one side lacks counts
 /// as different only where `whole` asks for it. Each side's values are compared as its own node's. `profile`
-/// may be null.
+/// describes both sides where a side has none of its own; it may be null.
 struct Comparison {
   report::Record record;
   std::size_t compared = 0;

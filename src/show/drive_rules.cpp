@@ -60,16 +60,6 @@ std::string product(const std::vector<Quotient::Factor>& factors) {
   return out.empty() ? "1" : out;
 }
 
-std::string quotient_text(const Quotient& quotient) {
-  std::string out = quotient.learned ? "measured" : "";
-  if (!quotient.learned || !quotient.multiply.empty()) append(out, product(quotient.multiply), " × ");
-  for (const auto object : quotient.power_of_two) append(out, fmt::format("2^{}", to_string(object)), " × ");
-  if (!quotient.divide.empty()) out += " / (" + product(quotient.divide) + ")";
-  for (const auto& condition : quotient.when)
-    out += fmt::format(", when {} is {}", to_string(condition.object), condition.value);
-  return out + (quotient.assumed ? " (assumed)" : "");
-}
-
 Value units(const Rules& rules) {
   Record out;
   const std::pair<drive::Measure, const char*> names[] = {
@@ -215,9 +205,19 @@ Value caution_text(const Rules& rules, bool chinese) {
 
 }  // namespace
 
+std::string way_text(const drive::Quotient& way) {
+  std::string out = way.learned ? "measured" : "";
+  if (!way.learned || !way.multiply.empty()) append(out, product(way.multiply), " × ");
+  for (const auto object : way.power_of_two) append(out, fmt::format("2^{}", to_string(object)), " × ");
+  if (!way.divide.empty()) out += " / (" + product(way.divide) + ")";
+  for (const auto& condition : way.when)
+    out += fmt::format(", when {} is {}", to_string(condition.object), condition.value);
+  return out + (way.assumed ? " (assumed)" : "");
+}
+
 std::string ways_text(const drive::Quotients& ways) {
   std::string out;
-  for (const auto& way : ways) append(out, quotient_text(way), "; ");
+  for (const auto& way : ways) append(out, way_text(way), "; ");
   return out;
 }
 

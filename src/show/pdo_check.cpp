@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "base/text.hpp"
 #include "drive/naming.hpp"
 #include "session/cob_id_check.hpp"
 #include "show/pdo_report.hpp"
@@ -76,29 +77,44 @@ bool is_fixed(const drive::Profile& profile, const Pdo& pdo) {
   return count != nullptr && !od::writable(count->access);
 }
 
+/// The transmission types that this PDO of the drive takes.
+std::string types_text(const drive::Profile& profile, const Pdo& pdo) {
+  if (pdo.direction == PdoDirection::receive) return "0 to 240 at the next SYNC, 254 and 255 at once";
+  const auto& refused = profile.rules.pdo.refused_types;
+  std::string out = "0 to 240 by SYNC";
+  const auto add = [&](std::uint8_t first, std::string_view how) {
+    std::string types;
+    for (const std::uint8_t type : {first, static_cast<std::uint8_t>(first + 1)})
+      if (std::count(refused.begin(), refused.end(), type) == 0) append(types, fmt::to_string(type), " and ");
+    if (!types.empty()) out += fmt::format(", {} by {}", types, how);
+  };
+  if ((pdo.cob_id & canopen::kPdoNoRtr) == 0) add(252, "remote frame");
+  add(254, "event");
+  return out;
+}
+
 Result<void> check_type(const drive::Profile& profile, const Pdo& pdo) {
   const auto& refused = profile.rules.pdo.refused_types;
   const bool reserved = pdo.type > 240 && pdo.type < 252;
   const bool remote = pdo.type == 252 || pdo.type == 253;
   const bool transmit = pdo.direction == PdoDirection::transmit;
   if (reserved || (remote && !transmit))
-    return no(pdo, fmt::format("there is no transmission type {}", pdo.type),
-              transmit ? "0 to 240 by SYNC, 252 and 253 by remote frame, 254 and 255 by event"
-                       : "0 to 240 at the next SYNC, 254 and 255 at once");
+    return no(pdo, fmt::format("there is no transmission type {}", pdo.type), types_text(profile, pdo));
   if (transmit && std::count(refused.begin(), refused.end(), pdo.type) > 0)
-    return no(pdo, fmt::format("this drive does not know transmission type {}", pdo.type));
+    return no(pdo, fmt::format("this drive does not know transmission type {}", pdo.type),
+              types_text(profile, pdo));
   return {};
 }
 
 /// A drive refuses to be asked by what its COB-ID forbids (CiA 301, table 71).
-Result<void> check_remote(const Pdo& wanted) {
+Result<void> check_remote(const drive::Profile& profile, const Pdo& wanted) {
   const bool remote = wanted.type == 252 || wanted.type == 253;
   const bool forbidden = (wanted.cob_id & canopen::kPdoNoRtr) != 0;
   if (wanted.direction != PdoDirection::transmit || !remote || !forbidden) return {};
   return no(wanted,
             fmt::format("transmission type {} is sent on remote frames, which bit 30 of its COB-ID forbids",
                         wanted.type),
-            "0 to 240 are sent by SYNC, 254 and 255 by event");
+            types_text(profile, wanted));
 }
 
 Result<void> check_bits(const drive::Profile& profile, const Pdo& present, const Pdo& wanted) {
@@ -172,7 +188,7 @@ Result<void> check_communication(const drive::Profile& profile, const Pdo& prese
     return r;
   if (wanted.type == present.type) return {};
   if (const auto known = check_type(profile, wanted); !known) return known;
-  return check_remote(wanted);
+  return check_remote(profile, wanted);
 }
 
 }  // namespace servoctl::show

@@ -24,7 +24,7 @@ constexpr double kMostSteps = 9e15;
 double Axis::read(ObjectAddress object) const {
   const auto meaning = drive::meaning(drive::target_at(profile_, object), 0);
   if (!meaning.type_known) return 0;
-  const auto value = od::decode(meaning.type, values_->get(object));
+  const auto value = od::decode(meaning.type, values_->in_force(object));
   return value ? drive::scaled(meaning, *value) : 0;
 }
 
@@ -77,7 +77,7 @@ double Axis::per_turn(drive::Measure measure) const {
   const auto& ways = rule->second;
   const auto holds = [&](const drive::Quotient& way) {
     return std::all_of(way.when.begin(), way.when.end(), [&](const drive::Quotient::When& condition) {
-      return load_le(values_->get(condition.object)) == condition.value;
+      return load_le(values_->in_force(condition.object)) == condition.value;
     });
   };
   const auto found = std::find_if(ways.begin(), ways.end(), holds);

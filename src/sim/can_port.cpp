@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "canopen/cob_id.hpp"
+#include "canopen/cob_id_rules.hpp"
 #include "canopen/emergency.hpp"
 #include "drive/standard_objects.hpp"
 #include "sim/communication_guard.hpp"
@@ -190,6 +191,7 @@ void CanPort::on_nmt(NmtCommand command, TimePoint now) {
       full_restart_ = command == NmtCommand::reset_node;
       boot_at_ = now + kBootTime;
       error_control_.stop();
+      consumer_ = {};
       server_.reset();
       late_.clear();
       set_nmt(NmtState::initialising, now);
@@ -252,7 +254,8 @@ void CanPort::collect_emergencies(TimePoint now) {
 }
 
 /// Under the COB-ID in 1014h, unless its bit 31 says that there is none; under that of the pre-defined
-/// connection set where there is no such object.
+/// connection set where there is no such object, or it holds a CAN-ID that no emergency may have: 0 where the
+/// EDS names no default is that of NMT.
 void CanPort::queue(const Emergency& emergency) {
   if (nmt_ == NmtState::stopped || nmt_ == NmtState::initialising) return;
   const auto cob_id = static_cast<std::uint32_t>(values().number(objects::kEmergencyCobId));
@@ -262,7 +265,8 @@ void CanPort::queue(const Emergency& emergency) {
                                          .error_register = emergency.error_register,
                                          .vendor = emergency.vendor,
                                          .size = rules().emergency.size});
-  if (values().has(objects::kEmergencyCobId)) frame.id = cob_id & kCanId;
+  if (values().has(objects::kEmergencyCobId) && !canopen::is_restricted(cob_id & kCanId))
+    frame.id = cob_id & kCanId;
   emergencies_.push(frame);
 }
 

@@ -72,19 +72,34 @@ Result<void> plan_fault(Cell& cell, std::string_view text, TimePoint now) {
   return {};
 }
 
+/// Whether a turn of its motor has counts that no object tells.
+bool has_own_counts(const drive::Profile& profile) {
+  const auto ways = profile.rules.units.find(drive::Measure::increments_per_turn);
+  return ways != profile.rules.units.end() &&
+         std::any_of(ways->second.begin(), ways->second.end(), [](const auto& way) { return way.learned; });
+}
+
+Result<void> set_counts(Cell& cell, std::string_view text) {
+  const auto counts = parse_digits(text, 10);
+  if (!counts || *counts < 2)
+    return bad_spec(fmt::format("'counts={}' is no number of counts in a turn: 2 or more", text));
+  bool taken = false;
+  for (const auto& drive : cell.drives) {
+    if (!has_own_counts(drive->profile())) continue;
+    drive->own_counts() = static_cast<double>(*counts);
+    taken = true;
+  }
+  if (taken) return {};
+  return bad_spec(fmt::format("'counts={}': no drive here has counts of a turn that it does not tell", text));
+}
+
 Result<void> apply_option(Cell& cell, std::string_view option, TimePoint now) {
   const auto equals = option.find('=');
   const auto key = option.substr(0, equals);
   const auto value = equals == std::string_view::npos ? std::string_view() : option.substr(equals + 1);
   if (key == "state") return {};
   if (key == "fault") return plan_fault(cell, value, now);
-  if (key == "counts") {
-    const auto counts = parse_digits(value, 10);
-    if (!counts || *counts < 2)
-      return bad_spec(fmt::format("'counts={}' is no number of counts in a turn", value));
-    for (const auto& drive : cell.drives) drive->own_counts() = static_cast<double>(*counts);
-    return {};
-  }
+  if (key == "counts") return set_counts(cell, value);
   const auto time = read_duration(value);
   if (key != "silent" && key != "delay") {
     const std::string keys[] = {"state", "fault", "silent", "delay", "counts"};

@@ -70,9 +70,7 @@ void DriveModel::load_values(TimePoint now) {
       load();
     }
   }
-  at_start_.clear();
-  for (const auto& p : profile_->parameters)
-    if (p.object && p.effect == od::Effect::restart) at_start_[*p.object] = values_.number(*p.object);
+  values_.start();
   power_.reset();
   axis_.reset(now);
   errors_ = {};

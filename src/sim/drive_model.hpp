@@ -7,7 +7,6 @@
 #include <set>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 
 #include "base/bytes.hpp"
 #include "base/object_address.hpp"
@@ -145,7 +144,7 @@ class DriveModel final : public canopen::ObjectStore {
   void raise_access_alarm(ObjectAddress object, std::uint32_t code);
   void tell(std::uint16_t code, std::array<std::uint8_t, 5> vendor);
   void move_axis();
-  std::uint64_t effective(ObjectAddress object) const;
+  std::uint64_t effective(ObjectAddress object) const { return load_le(values_.in_force(object)); }
   const od::Parameter* parameter(const std::string& id) const {
     return id.empty() ? nullptr : profile_->parameter(id);
   }
@@ -156,7 +155,6 @@ class DriveModel final : public canopen::ObjectStore {
   std::uint8_t node_;
   DrivePort* port_ = nullptr;
   ObjectValues values_;
-  std::unordered_map<ObjectAddress, std::uint64_t> at_start_;  ///< Parameters that take effect by a restart.
   PowerStage power_;
   Axis axis_;
   bool operational_ = false;

@@ -45,11 +45,6 @@ void DriveModel::load_mirrors() {
   }
 }
 
-std::uint64_t DriveModel::effective(ObjectAddress object) const {
-  const auto found = at_start_.find(object);
-  return found == at_start_.end() ? values_.number(object) : found->second;
-}
-
 std::uint32_t DriveModel::restore_objects(std::uint8_t group) {
   std::erase_if(memory_->cells(key_), [&](const auto& cell) { return is_in(group, cell.first.index); });
   return memory_->save() ? 0 : abort::kCannotStore;

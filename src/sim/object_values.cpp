@@ -50,6 +50,17 @@ std::uint32_t ObjectValues::supported_modes() const {
   return out;
 }
 
+void ObjectValues::start() {
+  at_start_.clear();
+  for (const auto& p : profile_->parameters)
+    if (p.object && p.effect == od::Effect::restart) at_start_[*p.object] = get(*p.object);
+}
+
+const Bytes& ObjectValues::in_force(ObjectAddress object) const {
+  const auto found = at_start_.find(object);
+  return found == at_start_.end() ? get(object) : found->second;
+}
+
 const Bytes& ObjectValues::get(ObjectAddress object) const {
   static const Bytes kNothing;
   const auto found = values_.find(object);

@@ -30,7 +30,12 @@ class ObjectValues {
   /// Abort code when the entry does not take these bytes, or 0.
   std::uint32_t check_write(ObjectAddress object, ByteSpan data, std::uint8_t node) const;
 
+  /// From now on the parameters that take effect by a restart are in force as they are.
+  void start();
+
   const Bytes& get(ObjectAddress object) const;
+  /// As get(); of a parameter that takes effect by a restart, what it was at start().
+  const Bytes& in_force(ObjectAddress object) const;
   std::uint64_t number(ObjectAddress object) const { return load_le(get(object)); }
   void set(ObjectAddress object, ByteSpan data) { values_[object].assign(data.begin(), data.end()); }
   /// Sets a number in the size the entry has.
@@ -46,6 +51,7 @@ class ObjectValues {
 
   const drive::Profile* profile_;
   std::unordered_map<ObjectAddress, Bytes> values_;
+  std::unordered_map<ObjectAddress, Bytes> at_start_;  ///< Parameters that take effect by a restart.
 };
 
 }  // namespace servoctl::sim

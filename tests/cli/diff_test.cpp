@@ -51,6 +51,25 @@ TEST_F(BackupTest, GivesTheLinesThatLeadFromOneToAnother) {
   EXPECT_EQ(run("diff node:1 node:2"), 0) << console.out_text;
 }
 
+TEST_F(BackupTest, OfADcfIsComparedWithAnotherByTheDictionariesOfBothWhicheverStandsFirst) {
+  const auto dcf = [](const std::string& more) {
+    return "[DeviceInfo]\nProductName=X\n[2001]\nParameterName=Gain\nObjectType=7\nDataType=6\nAccessType="
+           "rw\n"
+           "ParameterValue=5\n" +
+           more;
+  };
+  spill("a.dcf", dcf(""));
+  spill("b.dcf",
+        dcf("[2002]\nParameterName=Extra\nObjectType=7\nDataType=6\nAccessType=rw\nParameterValue=7\n"));
+  use("", "");
+  for (const auto* line : {"diff %a.dcf %b.dcf --json", "diff %b.dcf %a.dcf --json"}) {
+    EXPECT_EQ(run(line), 1) << console.err_text;
+    EXPECT_NE(console.out_text.find(R"("compared":2,"different":1,)"), std::string::npos) << console.out_text;
+    EXPECT_NE(console.out_text.find(R"("name":"Extra")"), std::string::npos) << console.out_text;
+    EXPECT_EQ(console.out_text.find("fit "), std::string::npos) << console.out_text;
+  }
+}
+
 TEST_F(BackupTest, WithAnEmptyTextShowsItAsOne) {
   spill("t.eds", "[2000]\nParameterName=Label\nObjectType=7\nDataType=9\nAccessType=rw\nDefaultValue=abc\n");
   use("sim:t@1", "t");

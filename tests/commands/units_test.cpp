@@ -131,10 +131,21 @@ TEST_F(Units, GiveWayToWhatIsSaidAndToWhatTheDriveTells) {
   start({{{0x2002, 0x39}, store_le(1, 2)}});  // Pn0456 = 1: Pn0458 counts.
   EXPECT_EQ(cell(run("units show"), "source"), "\"drive\"");
   EXPECT_EQ(cell(run("units show"), "value"), "131072");
+  EXPECT_EQ(cell(run("units show"), "from"),
+            "\"the drive: 0x2002:3B × 0x6091:2 / (0x6091:1), when 0x2002:39 is 1, when 0x2002:3F is 1, when "
+            "0x2002:41 is 1\"");
   ASSERT_TRUE(jog()) << error;
   EXPECT_EQ(notices.find("kept"), std::string::npos) << notices;
+  EXPECT_NE(notices.find("a turn is 131072 increments of 6064h by what the drive's parameters are set to; "
+                         "Pn0458, Pn0456, Pn0462, Pn0464 take effect when the drive is restarted"),
+            std::string::npos)
+      << notices;
+  ASSERT_TRUE(jog({{"--turn", "131072"}})) << error;
+  EXPECT_EQ(notices.find("restarted"), std::string::npos) << notices;
   EXPECT_FALSE(learn());
-  EXPECT_NE(error.find("its own parameters tell"), std::string::npos) << error;
+  EXPECT_NE(error.find("its own parameters tell that a turn has 131072 increments when they are in force"),
+            std::string::npos)
+      << error;
 }
 
 TEST_F(Units, AreNotUsedForAGearThatNobodyKnows) {

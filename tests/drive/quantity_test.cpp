@@ -90,7 +90,11 @@ TEST(Quantity, ThatIsNeitherNothingNorEnoughIsRefused) {
   EXPECT_EQ(unsigned_of(parse_quantity(period, "0")), 0U);
   EXPECT_EQ(unsigned_of(parse_quantity(period, "1000")), 1000U);
   for (const auto* text : {"1", "999"})
-    expect_refused(period, text, std::string(text) + " is out of range: 0, or at least 1000", "");
+    expect_refused(period, text, std::string(text) + " is out of range: 0, or at least 1000",
+                   "0 switches it off");
+  period.least_assumed = true;
+  expect_refused(period, "1", "1 is out of range: 0, or at least 1000",
+                 "0 switches it off; that 1000 is the least is assumed: its manual may mean the step");
   period.max = od::Value(std::uint64_t{5000});
   EXPECT_EQ(range_text(period), "0, or 1000..5000");
   expect_refused(period, "5001", "5001 is out of range: 0, or 1000..5000", "");

@@ -246,6 +246,37 @@ TEST(Learn, StopsAMotionWhoseKeptNumberIsThatOfAnotherMotor) {
   EXPECT_TRUE(moved.outcome) << moved.outcome.error().message;
 }
 
+TEST(Learn, StopsAMotionWhoseParametersAreSetAndNotInForce) {
+  for (const auto& motion :
+       {std::function([](LearnBench& b) { return b.jog(jog_for("60rpm", 1s)); }),
+        std::function([](LearnBench& b) { return b.move(move_to("720deg", "60rpm", true)); })}) {
+    LearnBench bench(131072);
+    ASSERT_TRUE(bench.session->download(1, kMode, store_le(1, 2)));
+    ASSERT_TRUE(bench.session->download(1, {0x2002, 0x3B}, store_le(8388608, 4)));  // Pn0458
+    const auto done = motion(bench);
+    ASSERT_FALSE(done.outcome);
+    EXPECT_NE(done.outcome.error().message.find("by the 8388608 increments that its parameters tell"),
+              std::string::npos)
+        << done.outcome.error().message;
+    EXPECT_NE(done.outcome.error().hint.find("Pn0458, Pn0456"), std::string::npos)
+        << done.outcome.error().hint;
+    EXPECT_FALSE(bench.energised());
+    ASSERT_TRUE(bench.session->send(*can::parse_frame("000#8101")));
+    bench.wait(1s);
+    const auto again = motion(bench);
+    EXPECT_TRUE(again.outcome) << again.outcome.error().message;
+  }
+}
+
+TEST(Learn, LeavesAMotionAloneThatIsToldItsCounts) {
+  LearnBench bench(131072);
+  ASSERT_TRUE(bench.session->download(1, kMode, store_le(1, 2)));
+  ASSERT_TRUE(bench.session->download(1, {0x2002, 0x3B}, store_le(8388608, 4)));
+  bench.options.turn = 131072;
+  const auto done = bench.jog(jog_for("60rpm", 1s));
+  EXPECT_TRUE(done.outcome) << done.outcome.error().message;
+}
+
 std::vector<TurnLook> looks(double counts, double rpm, int number = 100) {
   std::vector<TurnLook> out;
   for (int i = 0; i < number; ++i) {

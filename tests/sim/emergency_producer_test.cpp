@@ -1,6 +1,11 @@
 // Under which CAN-ID and how often simulated drives send emergencies (CiA 301, 7.5.2.17 and 7.5.2.18).
 #include "sim/emergency_producer.hpp"
 
+#include <fmt/format.h>
+#include <unistd.h>
+#include <filesystem>
+
+#include "base/file.hpp"
 #include "sim_support.hpp"
 
 namespace servoctl::sim {
@@ -32,6 +37,24 @@ TEST_P(EmergencyCobId, ThatIsNotValidIsUsedByNone) {
   drive().raise_fault(0x3210, {}, bus.now());
   EXPECT_EQ(next().substr(0, 8), "081#1032");
 }
+
+class EmergencyDefault : public DrivenTest, public testing::WithParamInterface<const char*> {};
+
+TEST_P(EmergencyDefault, IsAsPredefinedWhereTheEdsNamesNoneOrThatOfAnotherService) {
+  const auto eds = read_file(source_dir() + "/eds/cia/cia402.eds").value();
+  const auto begin = eds.find("DefaultValue=", eds.find("[1014]"));
+  const auto end = eds.find_first_of("\r\n", begin);
+  const auto file = std::filesystem::temp_directory_path() / fmt::format("emcy-{}.eds", ::getpid());
+  auto text = eds;
+  ASSERT_TRUE(write_file_atomically(file, text.replace(begin, end - begin, GetParam())));
+  boot(file.string());
+  std::filesystem::remove(file);
+  drive().raise_fault(0x2310, {}, bus.now());
+  EXPECT_EQ(next().substr(0, 8), "081#1023");
+}
+
+INSTANTIATE_TEST_SUITE_P(Values, EmergencyDefault,
+                         testing::Values("", "DefaultValue=0", "DefaultValue=0x701"));
 
 INSTANTIATE_TEST_SUITE_P(Families, EmergencyCobId, testing::Values("gsd600", "dm", "ts", "cia402"),
                          family_name);

@@ -178,7 +178,7 @@ TEST_F(FamilyTest, Sv2KeepsWhatIsWrittenUnlessTheEepromIsSwitchedOff) {
 
 TEST_F(FamilyTest, Gsd600ChangesOnlyBitThirtyOneOfItsCobIdsAndMapsInvalidPdos) {
   boot("gsd600@1");
-  EXPECT_EQ(ask("601#2301140101020000").substr(0, 6), "581#80");  // 680
+  EXPECT_EQ(ask("601#2301140101020000").substr(0, 6), "581#80");  // 1511
   EXPECT_EQ(ask("601#2F00160000000000").substr(0, 6), "581#80");  // 1549
   EXPECT_EQ(ask("601#2300140101020080").substr(0, 6), "581#60");
   EXPECT_EQ(ask("601#2F00160000000000").substr(0, 6), "581#60");

@@ -80,6 +80,24 @@ TEST_F(LostMaster, DoesNothingWhereTheOptionIsNoAction) {
   EXPECT_EQ(drive().power_state(), drive::DriveState::operation_enabled);
 }
 
+class EndedWatch : public DrivenTest, public testing::WithParamInterface<const char*> {};
+
+TEST_P(EndedWatch, LosesNobodyDuringAResetNorBehindIt) {
+  boot(GetParam());
+  for (const char* reset : {"000#8201", "000#8101"}) {
+    ASSERT_EQ(sdo("601#2316100196007F00").substr(0, 6), "581#60");
+    ASSERT_TRUE(bus.send(kBeat));
+    ASSERT_EQ(next(140ms), "");
+    send(reset);
+    EXPECT_EQ(next(100ms), "701#00");
+    EXPECT_EQ(next(1s), "") << "1016h is 0";
+    EXPECT_NE(drive().power_state(), drive::DriveState::fault);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, EndedWatch, testing::Values("gsd600", "dm", "ts", "cia402"),
+                         [](const auto& test) { return std::string(test.param); });
+
 struct Behaviour {
   const char* family;
   int value;  ///< Of 1029h:01; -1: the family has none.
@@ -125,9 +143,14 @@ INSTANTIATE_TEST_SUITE_P(
       return std::string(test.param.family) + (test.param.value < 0 ? "" : std::to_string(test.param.value));
     });
 
-TEST_F(ErrorBehaviour, OfTheFactoryLeavesADmAsItIsAndTakesAGsd600OutOfOperational) {  // 569; 898
+TEST_F(ErrorBehaviour, OfTheFactoryLeavesADmAsItIs) {  // 569
   lose_the_master("dm", -1);
   EXPECT_EQ(drive().nmt_state(), NmtState::operational);
+}
+
+TEST_F(ErrorBehaviour, OfTheFactoryTakesAGsd600OutOfOperational) {  // 898
+  lose_the_master("gsd600", -1);
+  EXPECT_EQ(drive().nmt_state(), NmtState::pre_operational);
 }
 
 TEST_F(ErrorBehaviour, HoldsForLifeGuardingToo) {

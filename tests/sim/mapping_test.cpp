@@ -131,7 +131,7 @@ TEST_F(Mapping, OfTheTsARemoteFrameIsATypeAsBit30Says) {
   expect_remote_types_by_bit_30();
 }
 
-TEST_F(Mapping, OfTheGsd600NoRemoteFrameIsAType) {  // Its TPDOs have bit 30 set (1664), and it stays (680).
+TEST_F(Mapping, OfTheGsd600NoRemoteFrameIsAType) {  // 241 to 253 are reserved (1664).
   boot("gsd600");
   ASSERT_EQ(sdo("601#23001801810100C0").substr(0, 6), kTaken);
   for (const char* type : {"FC", "FD"})

@@ -137,7 +137,7 @@ TEST_F(RemoteFrames, TheInhibitTimeHoldsTheAnswerBack) {
   EXPECT_EQ(tpdo1(200ms), "") << "once for a request";
 }
 
-TEST_F(RemoteFrames, AreNotAnsweredByTheGsd600) {  // Bit 30 is set in its TPDOs (1664), and stays (680).
+TEST_F(RemoteFrames, AreNotAnsweredByTheGsd600) {  // Bit 30 is set (1638), and stays (1636).
   boot("gsd600");
   start();
   EXPECT_EQ(ask_tpdo1(), "");
