@@ -46,6 +46,8 @@ servoctl_tests(report servoctl_report)
 servoctl_tests(sim servoctl_sim)
 servoctl_tests(session servoctl_session)
 servoctl_tests(motion servoctl_motion)
+servoctl_tests(settings servoctl_settings)
+servoctl_tests(traffic servoctl_traffic)
 servoctl_tests(commands servoctl_commands)
 servoctl_tests(cli servoctl_cli)
 

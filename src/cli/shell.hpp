@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/admission.hpp"
 #include "cli/bus_holder.hpp"
 #include "cli/outcome.hpp"
 #include "cli/parse.hpp"
@@ -21,14 +22,6 @@
 #include "sim/sim_bus.hpp"
 
 namespace servoctl::cli {
-
-/// Whether the command may run at all: --read-only refuses what changes a drive, and a line is no batch file.
-Result<void> check_allowed(const command::Command& command, const command::Arguments& arguments,
-                           const Settings& settings);
-/// Whether the command can be run on this network: one that speaks in frames needs CAN. Errc::usage.
-Result<void> check_network(const command::Command& command, session::Session& session);
-/// The command was given no node.
-Error no_node(const command::Command& command);
 
 /// Runs command lines, one after the other: opens what a command needs, runs it, renders its result. Keeps
 /// the bus and the drive data open from one line to the next. Every front end runs its lines here.

@@ -27,7 +27,7 @@ class NoWire : public testing::TestWithParam<const char*> {
  protected:
   NoWire()
       : profile(drive::load_profile(GetParam(), kFolders).value()),
-        model(profile, 1, memory_, "1"),
+        model(profile, 1, memory, "1"),
         folder_(fs::temp_directory_path() / ("servoctl-no-wire-" + std::to_string(::getpid()))) {
     fs::create_directories(folder_);
     auto owned = std::make_unique<MemoryNetwork>();
@@ -75,11 +75,11 @@ class NoWire : public testing::TestWithParam<const char*> {
   }
 
   drive::Profile profile;
+  sim::Memory memory;
   sim::DriveModel model;
   std::optional<session::Session> session;
 
  private:
-  sim::Memory memory_;
   fs::path folder_;
   show::Willing willing_;
 };

@@ -9,7 +9,7 @@
 #include <unistd.h>
 #include <fstream>
 
-#include "../session/troubled_bus.hpp"
+#include "tests/session/troubled_bus.hpp"
 #include "drive/drive_settings.hpp"
 #include "session/can_network.hpp"
 #include "session/pdo_setup.hpp"

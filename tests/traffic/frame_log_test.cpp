@@ -8,7 +8,7 @@
 #include "base/text.hpp"
 #include "od/eds.hpp"
 
-namespace servoctl::commands {
+namespace servoctl::traffic {
 namespace {
 
 /// Objects whose names would break JSON that is written without care.
@@ -93,7 +93,7 @@ Logged write_log(std::string_view interface_name) {
   const auto write = [&](show::Desk& desk) {
     desk.profile = &profile;
     desk.audience = &reader;
-    traffic::FrameLog log(desk, {}, false);
+    FrameLog log(desk, {}, false);
     Duration time{1'700'000'000'000'000};
     for (const auto frame : kLog)
       log.add(time += Duration(100'101), interface_name, *can::parse_frame(frame));
@@ -125,8 +125,7 @@ TEST(FrameLog, WritesWhatATreeOfValuesWouldGiveForEveryService) {
     EXPECT_EQ(report::to_json(*read), line);
     services.insert(std::get<std::string>(report::find(*read, "service")->data()));
   }
-  for (const auto service : traffic::kServices)
-    EXPECT_EQ(services.count(std::string(service)), 1U) << service;
+  for (const auto service : kServices) EXPECT_EQ(services.count(std::string(service)), 1U) << service;
 }
 
 TEST(FrameLog, KeepsTheSameRecordsForOneDocument) {
@@ -154,9 +153,9 @@ TEST(FrameLog, WritesNamesThatNeedCareAsTheyAre) {
 /// What is said of the last of these frames.
 std::string last_text(std::initializer_list<std::string_view> frames) {
   drive::Profile profile;
-  traffic::FrameDecoder::Options options;
+  FrameDecoder::Options options;
   options.profile = &profile;
-  traffic::FrameDecoder decoder(options);
+  FrameDecoder decoder(options);
   std::string out;
   for (const auto text : frames) out = decoder.decode(*can::parse_frame(text)).text;
   return out;
@@ -179,4 +178,4 @@ TEST(FrameLog, FindsEmergenciesUnderThe1014hThatWasReadOrWritten) {
 }
 
 }  // namespace
-}  // namespace servoctl::commands
+}  // namespace servoctl::traffic

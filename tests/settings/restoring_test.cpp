@@ -7,14 +7,14 @@
 #include <unistd.h>
 #include <filesystem>
 
-#include "../session/troubled_bus.hpp"
 #include "drive/quantity.hpp"
 #include "session/can_network.hpp"
 #include "settings/restore_journal.hpp"
+#include "tests/session/troubled_bus.hpp"
 #include "tests/show/audiences.hpp"
 #include "tests/source_dir.hpp"
 
-namespace servoctl::commands {
+namespace servoctl::settings {
 namespace {
 
 namespace fs = std::filesystem;
@@ -44,7 +44,7 @@ class World {
     for (const auto& setting : c.settings) {
       const auto target = drive::resolve(&profile_, setting.name).value();
       objects_.push_back(target.address);
-      settings::Backup::Entry entry;
+      Backup::Entry entry;
       entry.object = target.address;
       entry.type = drive::meaning(target, 1).type;
       entry.bytes = od::encode(entry.type, od::Value(setting.wanted)).value();
@@ -61,8 +61,8 @@ class World {
   World& operator=(const World&) = delete;
 
   /// Runs one restore; true when it was not killed and had no error.
-  bool run(const settings::Backup& what, const std::string& title, const fs::path& saved,
-           settings::RestoringOptions options, int kill_at, const fs::path& undoes = {}) {
+  bool run(const Backup& what, const std::string& title, const fs::path& saved, RestoringOptions options,
+           int kill_at, const fs::path& undoes = {}) {
     Trouble trouble;
     trouble.kill_at = kill_at;
     auto bus = std::make_unique<TroubledBus>(bus_, drive_, trouble, 1);
@@ -75,7 +75,7 @@ class World {
     show::Willing willing;
     desk.audience = &willing;
     try {
-      const auto done = settings::put_into(desk, what, title, 1, saved, options, undoes);
+      const auto done = put_into(desk, what, title, 1, saved, options, undoes);
       frames = counted->frames();
       EXPECT_TRUE(done) << done.error().message;
       for (const auto& error : desk.errors) ADD_FAILURE() << error.message;
@@ -105,7 +105,7 @@ class World {
   session::Values means() { return read(means_); }
   fs::path saved() const { return folder_ / "drive.json.before-node-1.json"; }
 
-  settings::Backup backup;
+  Backup backup;
   session::Values before;
   session::Values means_before;
   int frames = 0;
@@ -126,8 +126,8 @@ const std::vector<fs::path> World::kFolders = {fs::path(source_dir()) / "eds"};
 
 class KilledRestore : public testing::TestWithParam<Case> {
  protected:
-  settings::RestoringOptions options() const {
-    settings::RestoringOptions out;
+  RestoringOptions options() const {
+    RestoringOptions out;
     out.keep = true;
     out.unlock = GetParam().unlock;
     return out;
@@ -137,22 +137,22 @@ class KilledRestore : public testing::TestWithParam<Case> {
 TEST_P(KilledRestore, IsGoneOnWithFromAnyStep) {
   World measure(GetParam());
   ASSERT_TRUE(measure.run(measure.backup, "drive.json", measure.saved(), options(), -1));
-  EXPECT_FALSE(fs::exists(settings::journal_of(measure.saved())));
+  EXPECT_FALSE(fs::exists(journal_of(measure.saved())));
   int cut_off = 0;
   for (int step = 0; step < measure.frames; ++step) {
     SCOPED_TRACE(step);
     World world(GetParam());
     ASSERT_FALSE(world.run(world.backup, "drive.json", world.saved(), options(), step));
-    if (!fs::exists(settings::journal_of(world.saved()))) {
+    if (!fs::exists(journal_of(world.saved()))) {
       EXPECT_EQ(world.values(), world.before) << "written without a journal";
       continue;
     }
     ++cut_off;
     // The options are those it was begun with, whatever is said now.
-    settings::RestoringOptions resume;
+    RestoringOptions resume;
     resume.resume = true;
     ASSERT_TRUE(world.run(world.backup, "drive.json", world.saved(), resume, -1));
-    EXPECT_FALSE(fs::exists(settings::journal_of(world.saved())));
+    EXPECT_FALSE(fs::exists(journal_of(world.saved())));
     EXPECT_EQ(world.means(), world.means_before);
     world.power_cycle();
     world.expect_values_of_backup();
@@ -167,12 +167,12 @@ TEST_P(KilledRestore, IsUndoneFromAnyStep) {
     SCOPED_TRACE(step);
     World world(GetParam());
     ASSERT_FALSE(world.run(world.backup, "drive.json", world.saved(), options(), step));
-    if (!fs::exists(settings::journal_of(world.saved()))) continue;
-    const auto back = settings::read_backup(world.saved());
+    if (!fs::exists(journal_of(world.saved()))) continue;
+    const auto back = read_backup(world.saved());
     ASSERT_TRUE(back) << back.error().message;
     ASSERT_TRUE(world.run(*back, "before", world.saved().string() + ".before-node-1.json", {}, -1,
-                          settings::journal_of(world.saved())));
-    EXPECT_FALSE(fs::exists(settings::journal_of(world.saved())));
+                          journal_of(world.saved())));
+    EXPECT_FALSE(fs::exists(journal_of(world.saved())));
     EXPECT_EQ(world.values(), world.before);
     EXPECT_EQ(world.means(), world.means_before);
     world.power_cycle();
@@ -188,4 +188,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& each) { return std::string(each.param.family); });
 
 }  // namespace
-}  // namespace servoctl::commands
+}  // namespace servoctl::settings

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "cli/settings.hpp"
+#include "command/command.hpp"
+
+/// Whether a command line may be run.
+namespace servoctl::cli {
+
+/// Whether the command may run at all: --read-only refuses what changes a drive, and a line is no batch file.
+Result<void> check_allowed(const command::Command& command, const command::Arguments& arguments,
+                           const Settings& settings);
+/// Whether the command can be run on this network: one that speaks in frames needs CAN. Errc::usage.
+Result<void> check_network(const command::Command& command, session::Session& session);
+/// The command was given no node.
+Error no_node(const command::Command& command);
+
+}  // namespace servoctl::cli
