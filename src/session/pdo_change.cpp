@@ -5,8 +5,8 @@
 
 #include "drive/cia402.hpp"
 #include "drive/standard_objects.hpp"
-#include "session/state_pause.hpp"
 #include "session/option_scope.hpp"
+#include "session/state_pause.hpp"
 
 namespace servoctl::session {
 namespace {

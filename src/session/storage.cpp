@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "drive/standard_objects.hpp"
-#include "session/option_scope.hpp"
 #include "session/drive_error.hpp"
+#include "session/option_scope.hpp"
 #include "session/setting_write.hpp"
 
 namespace servoctl::session {

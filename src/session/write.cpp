@@ -8,8 +8,7 @@ namespace {
 Error about(const SdoRequest& request, Errc code, std::string what, std::string hint) {
   Error error;
   error.code = code;
-  error.message =
-      fmt::format("node {}, object {}: {}", request.node, to_string(request.object), what);
+  error.message = fmt::format("node {}, object {}: {}", request.node, to_string(request.object), what);
   error.hint = std::move(hint);
   error.node = request.node;
   error.object = request.object;

@@ -100,8 +100,7 @@ class Direction {
   }
 
   /// The change of a quantity from the first to the last of these samples that have it.
-  static std::optional<double> change(const std::vector<const MotionSample*>& samples,
-                                      Channel channel) {
+  static std::optional<double> change(const std::vector<const MotionSample*>& samples, Channel channel) {
     std::optional<double> first;
     std::optional<double> last;
     for (const auto* sample : samples) {
@@ -118,8 +117,8 @@ class Direction {
     const auto way = change(turning_, Channel::position);
     if (!way) return skip("direction", std::move(name));
     const double along = commanded() < 0 ? -*way : *way;
-    auto criterion = report::at_least(id("direction"), std::move(name), rounded(along), 0,
-                                      unit(Channel::position));
+    auto criterion =
+        report::at_least(id("direction"), std::move(name), rounded(along), 0, unit(Channel::position));
     // Standing still is no direction.
     if (along == 0) criterion.verdict = report::Verdict::failed;
     out_->criteria.push_back(std::move(criterion));
@@ -142,9 +141,9 @@ class Direction {
     const auto way = change(steady_, Channel::position);
     if (!growth || !way || unit(Channel::following_error) != unit(Channel::position))
       return skip("following_error", std::move(name));
-    out_->criteria.push_back(
-        report::at_most(id("following_error"), std::move(name), rounded(std::abs(*growth)),
-                        rounded(kMostGrowth * std::abs(*way)), unit(Channel::position)));
+    out_->criteria.push_back(report::at_most(id("following_error"), std::move(name),
+                                             rounded(std::abs(*growth)),
+                                             rounded(kMostGrowth * std::abs(*way)), unit(Channel::position)));
   }
 
   void judge_stop(TimePoint end) {

@@ -9,10 +9,10 @@
 #include <unistd.h>
 #include <fstream>
 
-#include "tests/session/troubled_bus.hpp"
 #include "drive/drive_settings.hpp"
 #include "session/can_network.hpp"
 #include "session/pdo_setup.hpp"
+#include "tests/session/troubled_bus.hpp"
 #include "tests/show/audiences.hpp"
 #include "tests/source_dir.hpp"
 
