@@ -130,7 +130,7 @@ Result<void> Motion::begin(std::int8_t mode, const std::vector<MotionSetting>& s
   if (const auto ready = look_again(); !ready) return ready;
   if (const auto own = claim_producer(*session_, node_, options_.producer, watchdog_); !own) return own;
   monitor_->find_tpdos();
-  guard_.reset();  // The next one hears through what this one put back.
+  guard_.reset();  // Its way out comes before the next one begins.
   guard_ = std::make_unique<MotionGuard>(*session_, *units_, node_);
   guard_->set_standstill(standstill_);
   session::Rehearsal unused;
@@ -244,6 +244,7 @@ MotionReport Motion::finish(Result<void> outcome) {
   }
   out.events = monitor_->events();
   out.by_pdo = monitor_->by_pdo();
+  if (!turn_unchecked_.empty()) out.unchecked.push_back(turn_unchecked_);
   return out;
 }
 

@@ -156,6 +156,7 @@ class Motion {
   WatchdogPlan watchdog_;
   Result<double> speed_cap_ = 0.0;
   double standstill_ = 0;
+  std::string turn_unchecked_;  ///< Why the counts of a turn were not held against the monitor.
   int odd_looks_ = 0;  ///< In a row, at which the monitor of the speed contradicted the counts of a turn.
 };
 

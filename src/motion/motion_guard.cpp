@@ -36,6 +36,7 @@ MotionGuard::~MotionGuard() {
   try {
     (void)end();
   } catch (...) {
+    if (rehearsal_ != nullptr) return;
     for (const auto controlword : {kQuickStop, kDisableVoltage, kDisableVoltage}) say(controlword);
   }
 }

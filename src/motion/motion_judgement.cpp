@@ -133,7 +133,7 @@ void MotionJudgement::judge_torque(const Motion& motion, const MotionPlan& plan,
 MotionReport MotionJudgement::into(MotionReport report) const {
   if (!report.outcome) return report;
   report.differences = differences;
-  report.unchecked = unchecked;
+  report.unchecked.insert(report.unchecked.end(), unchecked.begin(), unchecked.end());
   return report;
 }
 

@@ -85,7 +85,14 @@ Result<void> Motion::check_turn(const MotionSample& sample) {
   const auto monitor = units_->turn_way() != nullptr ? units_->object(name) : std::nullopt;
   if (!monitor || !speed || units_->unit(objects::kVelocityActual) != "rpm") return {};
   const session::Hurry hurry(*session_, kPatience, 1);
+  if (!turn_unchecked_.empty()) return {};
   const auto answer = session_->upload(node_, *monitor);
+  // Kept counts were measured by this monitor; what the drive's own parameters tell holds without it.
+  if (!answer && answer.error().code == Errc::sdo_abort && !units_->uses_learned()) {
+    turn_unchecked_ =
+        fmt::format("its counts of a turn were not held against {}, which it refuses to tell", name);
+    return {};
+  }
   if (!answer) return tl::unexpected<Error>(answer.error());
   const auto shown = units_->physical(*monitor, *answer);
   if (!shown) return {};
@@ -113,7 +120,8 @@ Error Motion::quarrel(double shown, double speed) const {
       fmt::format("turns at {} rpm by {}, and at {} rpm by the {} increments that its parameters tell "
                   "of a turn",
                   number_text(shown), name, number_text(speed), plain_number(units_->turn().value_or(0), 12)),
-      (pending.empty() ? "" : pending + "; ") + "--turn says how many a turn has");
+      (pending.empty() ? "" : pending + "; ") +
+          "--turn says how many a turn has, and then it is not held against " + name);
 }
 
 std::optional<double> Motion::fastest() const {

@@ -216,7 +216,7 @@ void CanNetwork::send_last_word(std::uint8_t node, ObjectAddress object, std::ui
                 0,
                 0};
   try {
-    (void)send(frame);
+    (void)bus_->send(frame);  // Past what remembers who was asked: that needs memory.
   } catch (...) {
     return;
   }

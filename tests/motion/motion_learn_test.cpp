@@ -269,6 +269,16 @@ TEST(Learn, StopsAMotionWhoseParametersAreSetAndNotInForce) {
   }
 }
 
+TEST(Learn, GoesOnWithWhatItsParametersTellWhereTheDriveDoesNotHaveTheMonitor) {
+  LearnBench bench(131072);
+  ASSERT_TRUE(bench.session->download(1, kMode, store_le(1, 2)));
+  bench.drive().misbehaviour().unreadable.insert(0x2005);
+  const auto done = bench.jog(jog_for("60rpm", 1s));
+  EXPECT_TRUE(done.outcome) << done.outcome.error().message;
+  ASSERT_FALSE(done.unchecked.empty());
+  EXPECT_NE(done.unchecked.front().find("not held against Pn1002"), std::string::npos);
+}
+
 TEST(Learn, LeavesAMotionAloneThatIsToldItsCounts) {
   LearnBench bench(131072);
   ASSERT_TRUE(bench.session->download(1, kMode, store_le(1, 2)));
