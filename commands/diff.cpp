@@ -96,9 +96,10 @@ class Difference {
     profile_ = context_->profile;
     for (const auto& operand : operands_)
       if (profile_ == nullptr && operand.source) profile_ = family(settings::family_of(*operand.source));
-    if (profile_ == nullptr && are_files())
+    const bool dcfs = are_files() && operands_[0].source->format == settings::BackupFormat::dcf &&
+                      operands_[1].source->format == settings::BackupFormat::dcf;
+    if (profile_ == nullptr && dcfs)
       for (std::size_t i = 0; i < operands_.size(); ++i) {
-        if (operands_[i].source->format != settings::BackupFormat::dcf) continue;
         sides_own_[i] = family(operands_[i].source->file);
         if (profile_ == nullptr) profile_ = sides_own_[i];
       }

@@ -46,8 +46,8 @@ class AllTests {
     if (!home) return tl::unexpected<Error>(home.error());
     const auto inputs = trial::parse_inputs(*context_, arguments_->text("--expect"));
     if (!inputs) return tl::unexpected<Error>(inputs.error());
-    if (const std::string path(arguments_->text("--junit")); !path.empty() && !context_->dry_run)
-      if (const auto possible = check_writable(path); !possible)
+    if (arguments_->has("--junit") && !context_->dry_run)
+      if (const auto possible = check_writable(std::string(arguments_->text("--junit"))); !possible)
         return tl::unexpected<Error>(possible.error());
     if (const auto done = add(trial::test_communication(*context_, node, {})); !done)
       return tl::unexpected<Error>(done.error());

@@ -62,7 +62,10 @@ Result<std::uint32_t> count_option(const Arguments& arguments, std::string_view 
 }
 
 trial::VerdictOptions verdict_options(const Arguments& arguments) {
-  return {.plot = arguments.has("--plot"), .junit = std::string(arguments.text("--junit"))};
+  trial::VerdictOptions out;
+  out.plot = arguments.has("--plot");
+  if (arguments.has("--junit")) out.junit = std::string(arguments.text("--junit"));
+  return out;
 }
 
 }  // namespace servoctl::command

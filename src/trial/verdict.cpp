@@ -102,8 +102,8 @@ Value verdicts(show::Desk& desk, const VerdictOptions& options, std::vector<Test
     if (!passed(result)) desk.errors.push_back(failure(result));
     out.emplace_back(verdict_record(desk, result, samples));
   }
-  if (options.junit.empty()) return Value(std::move(out));
-  const auto written = write_file_atomically(options.junit, report::junit_xml(results));
+  if (!options.junit) return Value(std::move(out));
+  const auto written = write_file_atomically(*options.junit, report::junit_xml(results));
   if (!written) desk.errors.push_back(written.error());
   return Value(std::move(out));
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,8 +26,8 @@ Error failure(const report::TestResult& result);
 
 /// How results are shown.
 struct VerdictOptions {
-  bool plot = false;            ///< Samples are drawn for people.
-  std::filesystem::path junit;  ///< Written as JUnit XML as well; empty: not.
+  bool plot = false;                           ///< Samples are drawn for people.
+  std::optional<std::filesystem::path> junit;  ///< Written as JUnit XML as well.
 };
 
 /// The results of a command: as value, as JUnit file where one is asked for, and as exit code 1 where a test
