@@ -9,7 +9,7 @@ using namespace command;
 constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
     {.name = "method", .help = "number or name of 6098h; the drive's own unless said", .kind = Kind::value},
     {.name = "--speed", .help = "speed to the switch (6099h:01)", .kind = Kind::value},
-    {.name = "--search", .help = "speed to the index pulse (6099h:02)", .kind = Kind::value},
+    {.name = "--search", .help = "speed of the search for zero (6099h:02)", .kind = Kind::value},
     {.name = "--offset", .help = "position of the home point (607Ch)", .kind = Kind::value},
     {.name = "--within",
      .help = "longest time it may take (by --window and speed, else 60s)",

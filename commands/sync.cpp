@@ -159,7 +159,8 @@ const Command kSyncStart{
     .summary = "Produce SYNC in a steady period; asks first",
     .details =
         "At the prompt and in a batch file it goes on while other lines run, until `sync stop` or the end of "
-        "them; alone, or with --for, it lasts until Ctrl-C and then tells the periods that were measured: "
+        "them; alone it lasts until Ctrl-C, with --for so long, and then tells the periods that were "
+        "measured: "
         "mean, shortest, longest, standard deviation, and how many SYNCs were missed because the computer "
         "was late. There must be no other producer of SYNC on the bus.",
     .parameters = kStartParameters,

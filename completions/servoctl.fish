@@ -159,7 +159,7 @@ complete -c servoctl -n '__servoctl_in move' -l master-node -x -d 'servoctl'\''s
 complete -c servoctl -n '__servoctl_in move' -l plot -d 'draw the samples over time at the end'
 complete -c servoctl -n __servoctl_at -a home -d 'Find the home position'
 complete -c servoctl -n '__servoctl_in home' -l speed -x -d 'speed to the switch (6099h:01)'
-complete -c servoctl -n '__servoctl_in home' -l search -x -d 'speed to the index pulse (6099h:02)'
+complete -c servoctl -n '__servoctl_in home' -l search -x -d 'speed of the search for zero (6099h:02)'
 complete -c servoctl -n '__servoctl_in home' -l offset -x -d 'position of the home point (607Ch)'
 complete -c servoctl -n '__servoctl_in home' -l within -x -d 'longest time it may take (by --window and speed, else 60s)'
 complete -c servoctl -n '__servoctl_in home' -l csv -r -F -d 'write the samples to this file'
