@@ -85,8 +85,8 @@ class Difference {
   bool are_files() const { return operands_[0].source && operands_[1].source; }
 
   const drive::Profile* family(const std::string& name) const {
-    const auto found =
-        name.empty() ? Result<const drive::Profile*>(nullptr) : context_->front_end->family(name);
+    if (name.empty() || context_->front_end == nullptr) return nullptr;
+    const auto found = context_->front_end->family(name);
     return found ? *found : nullptr;
   }
 
@@ -147,6 +147,8 @@ class Difference {
       return fail(Errc::refused,
                   fmt::format("{} is of {}, not of {}", operands_[1 - i].word, family_, profile_->family),
                   "name the family of the backup with -d when the drive really is one");
+    if (context_->front_end == nullptr)
+      return fail(Errc::usage, fmt::format("{}: there is no bus to open here", operand.word));
     const auto session = context_->front_end->open_bus();
     if (!session) return tl::unexpected<Error>(session.error());
     if (const auto right = context_->hold_family(std::span(&operand.node, 1), profile_, false); !right)

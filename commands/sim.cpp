@@ -41,7 +41,8 @@ const Command kSim{
         "commands with "
         "--bus local:cell in another. Options after `?`, separated by `&`: state=FILE keeps the drives' "
         "memory, fault=0xFF00@2s "
-        "raises a fault, silent=5s makes them fall silent, delay=20ms answers late; counts=8388608 is what a "
+        "raises a fault, silent=5s makes them fall silent after 5 s, delay=20ms answers late; counts=8388608 "
+        "is what a "
         "turn of the motor has where no object tells it.",
     .parameters = kParameters,
     .needs = Needs::can,

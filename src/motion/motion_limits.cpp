@@ -163,7 +163,15 @@ Result<void> Motion::check_speed(double speed) const {
   if (!speed_cap_) return tl::unexpected<Error>(speed_cap_.error());
   if (std::abs(speed) <= *speed_cap_ * kRounding) return {};
   const auto unit = units_->unit(objects::kTargetVelocity);
-  const auto numbers = told_apart(std::abs(speed), *speed_cap_);
+  // What the drive itself does not allow, no option raises.
+  const auto most = fastest();
+  const bool beyond = most && std::abs(speed) > *most * kRounding;
+  const auto numbers = told_apart(std::abs(speed), beyond ? *most : *speed_cap_);
+  if (beyond)
+    return fail(error(
+        Errc::refused,
+        fmt::format("{} {} is above what the drive allows, {} {}", numbers.first, unit, numbers.second, unit),
+        "607Fh and 6080h hold it"));
   return fail(error(
       Errc::refused,
       fmt::format("{} {} is above the limit of {} {}", numbers.first, unit, numbers.second, unit),

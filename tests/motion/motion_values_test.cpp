@@ -152,6 +152,17 @@ TEST_F(Measured, AMoveThatAWidePositionWindowCallsDoneIsDoneBut) {
   EXPECT_NE(done.differences.front().find("180 deg was asked for"), std::string::npos);
 }
 
+TEST(SpeedLimit, OfTheDriveItselfIsRaisedByNoOption) {
+  MotionBench bench("cia402", 10000);
+  ASSERT_TRUE(bench.session->download(1, {0x607F, 0}, store_le(10000, 4)));  // 60 rpm of 10000 counts.
+  const auto done = bench.jog(jog_for("100rpm", 1s));
+  ASSERT_FALSE(done.outcome);
+  EXPECT_NE(done.outcome.error().message.find("what the drive allows, 60 rpm"), std::string::npos)
+      << done.outcome.error().message;
+  EXPECT_EQ(done.outcome.error().hint.find("--limit"), std::string::npos) << done.outcome.error().hint;
+  EXPECT_FALSE(done.begun);
+}
+
 TEST_F(Measured, ATorqueThatIsNotThereIsDoneBut) {
   bench.options.speed_limit = "200rpm";
   MotionBench other("ts", 10000);
