@@ -37,7 +37,7 @@ Result<session::SettingFilter> filter_of(const Context& context, std::string_vie
     auto error = selection.error();
     if (const auto place = error.hint.find("params,"); place != std::string::npos)
       error.hint.insert(place, "changed, ");
-    return tl::unexpected<Error>(std::move(error));
+    return fail(std::move(error));
   }
   return session::SettingFilter{
       [chosen = std::move(*selection)](const auto& setting) { return chosen(setting.entry->address); }};
@@ -71,21 +71,20 @@ Result<Saved> save(Context& context, settings::Backup backup, bool changed, sett
   Saved out;
   for (const auto& entry : backup.entries) ++(entry.bytes ? out.values : out.left_out);
   const auto text = settings::backup_text(context, backup, format, file);
-  if (!text) return tl::unexpected<Error>(text.error());
-  if (const auto written = write_file_atomically(file, *text); !written)
-    return tl::unexpected<Error>(written.error());
+  if (!text) return fail(text.error());
+  if (const auto written = write_file_atomically(file, *text); !written) return fail(written.error());
   return out;
 }
 
 Result<Value> run(Context& context, const Arguments& arguments) {
   const auto only = arguments.text("--only");
   const auto wanted = filter_of(context, only);
-  if (!wanted) return tl::unexpected<Error>(wanted.error());
+  if (!wanted) return fail(wanted.error());
   const std::filesystem::path path(arguments.text("file"));
   const bool many = context.nodes.size() > 1;
   const auto format = settings::format_of(path, arguments.text("--format"));
   if (many)
-    if (const auto made = make_folder(path); !made) return tl::unexpected<Error>(made.error());
+    if (const auto made = make_folder(path); !made) return fail(made.error());
   const auto snapshots = session::take_snapshots(*context.session, *context.profile, context.nodes, *wanted);
   report::Table table;
   table.columns = {{"node"}, {"file"}, {"values"}, {"left_out", "left out"}, {"error", "", Show::json}};
@@ -94,7 +93,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
     const auto file = many ? path / fmt::format("node-{}{}", node, settings::extension_of(format)) : path;
     const auto saved = snapshots[i] ? save(context, settings::make_backup(context, *snapshots[i]),
                                            only == kChanged, format, file)
-                                    : Result<Saved>(tl::unexpected<Error>(snapshots[i].error()));
+                                    : Result<Saved>(fail(snapshots[i].error()));
     if (!saved) context.errors.push_back(saved.error());
     table.rows.push_back({node, saved ? Value(file.string()) : Value("not written"),
                           saved ? saved->values : 0U, saved ? saved->left_out : 0U,

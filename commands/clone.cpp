@@ -42,20 +42,19 @@ Result<std::vector<std::uint8_t>> nodes_of(std::string_view text) {
 }
 
 Result<Value> run(Context& context, const Arguments& arguments) {
-  if (const auto alone = check_resume(arguments); !alone) return tl::unexpected<Error>(alone.error());
+  if (const auto alone = check_resume(arguments); !alone) return fail(alone.error());
   const auto from = nodes_of(arguments.text("--from"));
-  if (!from) return tl::unexpected<Error>(from.error());
+  if (!from) return fail(from.error());
   const auto to = nodes_of(arguments.text("--to"));
-  if (!to) return tl::unexpected<Error>(to.error());
+  if (!to) return fail(to.error());
   if (from->size() != 1) return fail(Errc::usage, "--from takes one node");
   if (std::find(to->begin(), to->end(), from->front()) != to->end())
     return fail(Errc::usage, fmt::format("node {} cannot be cloned into itself", from->front()));
   std::vector<std::uint8_t> all = *to;
   all.push_back(from->front());
-  if (const auto right = context.hold_family(all, context.profile, true); !right)
-    return tl::unexpected<Error>(right.error());
+  if (const auto right = context.hold_family(all, context.profile, true); !right) return fail(right.error());
   const auto snapshot = session::take_snapshots(*context.session, *context.profile, *from, {}).front();
-  if (!snapshot) return tl::unexpected<Error>(snapshot.error());
+  if (!snapshot) return fail(snapshot.error());
   const auto backup = settings::make_backup(context, *snapshot);
   settings::tell_left_out(context, backup);
   report::List out;
@@ -69,7 +68,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
                                     .unlock = arguments.has("--unlock"),
                                     .resume = arguments.has("--resume")});
     // One that went wrong ends the work: the others stay as they are.
-    if (!done && out.empty()) return tl::unexpected<Error>(done.error());
+    if (!done && out.empty()) return fail(done.error());
     if (!done) {
       context.errors.push_back(done.error());
       break;

@@ -28,9 +28,9 @@ constexpr Parameter kParameters[] = {
 
 Result<Value> run(Context& context, const Arguments& arguments) {
   auto filter = frame_filter(context, arguments);
-  if (!filter) return tl::unexpected<Error>(filter.error());
+  if (!filter) return fail(filter.error());
   const auto text = traffic::read_recording(arguments.text("file"));
-  if (!text) return tl::unexpected<Error>(text.error());
+  if (!text) return fail(text.error());
   traffic::FrameLog log(context, std::move(*filter), arguments.has("--raw"));
   const auto strays = traffic::for_each_frame(*text, [&](const can::LogFrame& line) {
     log.add(line.time, line.interface_name, line.frame);

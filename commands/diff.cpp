@@ -47,7 +47,7 @@ Result<Operand> parse_operand(std::string_view word, settings::LineReader* lines
   auto source = settings::open_backup(word, lines);
   if (!source) {
     if (parse_digits(word, 10)) source.error().hint = fmt::format("a drive is named {}{}", kNode, word);
-    return tl::unexpected<Error>(source.error());
+    return fail(source.error());
   }
   out.source = std::move(*source);
   return out;
@@ -60,13 +60,13 @@ class Difference {
       : context_(&context), operands_(std::move(operands)), skip_invalid_(skip_invalid) {}
 
   Result<Value> run(bool batch) {
-    if (const auto found = find_family(); !found) return tl::unexpected<Error>(found.error());
+    if (const auto found = find_family(); !found) return fail(found.error());
     // The files first: what is wrong in them is told before a bus is opened.
     for (const bool files : {true, false})
       for (std::size_t i = 0; i < operands_.size(); ++i) {
         if (operands_[i].source.has_value() != files) continue;
         auto side = side_of_operand(i);
-        if (!side) return tl::unexpected<Error>(side.error());
+        if (!side) return fail(side.error());
         sides_[i] = std::move(*side);
       }
     const bool whole = std::none_of(operands_.begin(), operands_.end(),
@@ -126,7 +126,7 @@ class Difference {
     const auto* own = sides_own_[i];
     const auto backup = settings::read_backup(*context_, *operands_[i].source,
                                               own != nullptr ? own : profile_, other_node(i), skip_invalid_);
-    if (!backup) return tl::unexpected<Error>(backup.error());
+    if (!backup) return fail(backup.error());
     if (own != nullptr) {
       auto out = settings::side_of(*backup, operands_[i].word);
       out.profile = own;
@@ -150,9 +150,9 @@ class Difference {
     if (context_->front_end == nullptr)
       return fail(Errc::usage, fmt::format("{}: there is no bus to open here", operand.word));
     const auto session = context_->front_end->open_bus();
-    if (!session) return tl::unexpected<Error>(session.error());
+    if (!session) return fail(session.error());
     if (const auto right = context_->hold_family(std::span(&operand.node, 1), profile_, false); !right)
-      return tl::unexpected<Error>(right.error());
+      return fail(right.error());
     std::vector<ObjectAddress> objects;
     if (operands_[1 - i].source)
       for (const auto& value : sides_[1 - i].values) objects.push_back(value.first);
@@ -160,7 +160,7 @@ class Difference {
       for (const auto& setting : drive::settings_of(*profile_))
         if (setting.left_out.empty()) objects.push_back(setting.entry->address);
     const auto read = session::read_objects(**session, operand.node, objects);
-    if (!read) return tl::unexpected<Error>(read.error());
+    if (!read) return fail(read.error());
     settings::Side out{operand.word, operand.node, {}};
     for (const auto& entry : *read)
       if (entry.bytes) out.values.emplace(entry.object, *entry.bytes);
@@ -180,7 +180,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   std::vector<Operand> operands;
   for (const auto word : {arguments.text("a"), arguments.text("b")}) {
     auto operand = parse_operand(word, context.front_end);
-    if (!operand) return tl::unexpected<Error>(operand.error());
+    if (!operand) return fail(operand.error());
     operands.push_back(std::move(*operand));
   }
   const bool batch = arguments.has("--batch");

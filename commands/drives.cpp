@@ -14,7 +14,7 @@ constexpr Parameter kParameters[] = {
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   if (arguments.has("family")) {
     const auto profile = drive::load_profile(arguments.text("family"), context.drive_folders);
-    if (!profile) return tl::unexpected<Error>(profile.error());
+    if (!profile) return fail(profile.error());
     for (const auto& warning : profile->warnings) context.notices.push_back(warning);
     return report::Value(show::rules_record(*profile, context.chinese));
   }

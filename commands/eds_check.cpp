@@ -96,7 +96,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   const auto paths = arguments.all("file");
   for (const auto& path : paths) {
     const auto text = text_of(context, path);
-    const auto file = text ? od::read_eds(*text, path) : tl::unexpected<Error>(text.error());
+    const auto file = text ? od::read_eds(*text, path) : fail(text.error());
     if (!file) {
       context.errors.push_back(file.error());
       out.emplace_back(record_of(path, file.error(), paths.size() == 1));

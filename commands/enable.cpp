@@ -32,20 +32,20 @@ Result<void> energise(Context& context, motion::Motion& motion, session::Rehears
 }
 
 Result<void> enable_one(Context& context, motion::Motion& motion, session::Rehearsal& rehearsal) {
-  if (const auto ready = motion.prepare(); !ready) return tl::unexpected<Error>(ready.error());
+  if (const auto ready = motion.prepare(); !ready) return fail(ready.error());
   // It stays energised after servoctl has gone, so nothing can watch servoctl.
   const auto items = motion::preflight(*context.session, motion.units(), motion.node(), {}, context.chinese);
-  if (!items) return tl::unexpected<Error>(items.error());
+  if (!items) return fail(items.error());
   context.tell(motion::preflight_text(*items));
   if (const auto possible = motion::check_preflight(*items, motion.node()); !possible)
-    return tl::unexpected<Error>(possible.error());
+    return fail(possible.error());
   if (context.dry_run) return energise(context, motion, rehearsal);
   const auto mode = motion::read_mode(*context.session, motion.node());
-  if (!mode) return tl::unexpected<Error>(mode.error());
+  if (!mode) return fail(mode.error());
   const auto question = fmt::format(
       "Energise node {} and leave it so, in mode {}? Nothing will watch over it, and the motor may move.",
       motion.node(), motion::mode_text(*context.profile, *mode, context.chinese));
-  if (const auto answer = context.confirm(question); !answer) return tl::unexpected<Error>(answer.error());
+  if (const auto answer = context.confirm(question); !answer) return fail(answer.error());
   return energise(context, motion, rehearsal);
 }
 
@@ -54,7 +54,7 @@ Result<Value> planned(Context& context, const Arguments& arguments) {
   session::Rehearsal rehearsal;
   for (const auto node : context.nodes) {
     auto options = motion_options(context, arguments);
-    if (!options) return tl::unexpected<Error>(options.error());
+    if (!options) return fail(options.error());
     motion::Motion motion(*context.session, *context.profile, node, std::move(*options));
     if (const auto done = enable_one(context, motion, rehearsal); !done) {
       context.errors.push_back(done.error());
@@ -71,7 +71,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   table.columns = {{"node"}, {"state"}, {"energised", "", Show::json}, {"result"}, {"error", "", Show::json}};
   for (const auto node : context.nodes) {
     auto options = motion_options(context, arguments);
-    if (!options) return tl::unexpected<Error>(options.error());
+    if (!options) return fail(options.error());
     motion::Motion motion(*context.session, *context.profile, node, std::move(*options));
     auto done = enable_one(context, motion, unused);
     motion::Power power(*context.session, *context.profile, node);

@@ -48,7 +48,7 @@ Value planned_resets(Context& context) {
 Result<Value> run_reset(Context& context, const Arguments&) {
   if (context.dry_run) return planned_resets(context);
   const auto question = fmt::format("Reset the fault of {}? Its cause must be gone.", whom(context));
-  if (const auto answer = context.confirm(question); !answer) return tl::unexpected<Error>(answer.error());
+  if (const auto answer = context.confirm(question); !answer) return fail(answer.error());
   auto table = result_table();
   for (const auto node : context.nodes) {
     const auto done = motion::reset_fault(*context.session, context.profile, node);
@@ -66,7 +66,7 @@ Result<Value> run_clear(Context& context, const Arguments&) {
     planned.push_back(session::planned_write({node, objects::kErrorHistory, Bytes{0}}));
   if (context.dry_run) return show::planned_messages(context, planned);
   const auto question = fmt::format("Clear the fault history of {}?", whom(context));
-  if (const auto answer = context.confirm(question); !answer) return tl::unexpected<Error>(answer.error());
+  if (const auto answer = context.confirm(question); !answer) return fail(answer.error());
   auto table = result_table();
   for (const auto& each : planned) {
     const auto node = each.node;

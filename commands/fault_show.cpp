@@ -46,7 +46,7 @@ class FaultReport {
     add_alarm();
     add_emergencies();
     add_history();
-    if (failure_) return tl::unexpected<Error>(*failure_);
+    if (failure_) return fail(*failure_);
     // A few are told in full; of many `fault list PANEL` tells more.
     const bool few = candidates_.size() <= show::kFewFaults;
     for (const auto* fault : candidates_)

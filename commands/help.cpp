@@ -17,7 +17,7 @@ Result<report::Value> run(Context&, const Arguments& arguments) {
   std::string path;
   for (const auto& word : arguments.all("command")) append(path, word, " ");
   auto text = help_text(path, 0);
-  if (!text) return tl::unexpected<Error>(text.error());
+  if (!text) return fail(text.error());
   if (!text->empty() && text->back() == '\n') text->pop_back();
   return report::Value(std::move(*text));
 }

@@ -24,10 +24,10 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   home.slow = arguments.text("--search");
   home.offset = arguments.text("--offset");
   const auto longest = duration_option(arguments, "--within");
-  if (!longest) return tl::unexpected<Error>(longest.error());
+  if (!longest) return fail(longest.error());
   home.longest = *longest;
   const auto request = motion_request(context, arguments);
-  if (!request) return tl::unexpected<Error>(request.error());
+  if (!request) return fail(request.error());
   return motion::run_motion(context, *request, motion::motion_run(home, motion::plan_home, motion::run_home));
 }
 

@@ -74,7 +74,7 @@ Value one(const session::Identity& node, std::span<const drive::Family> families
 
 Result<report::Value> run(Context& context, const Arguments&) {
   auto found = session::scan(*context.session, context.nodes);
-  if (!found) return tl::unexpected<Error>(found.error());
+  if (!found) return fail(found.error());
   const auto families = drive::find_families(context.drive_folders);
   session::look_for_families(*context.session, *found, families);
   std::vector<session::SdoRequest> requests;

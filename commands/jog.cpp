@@ -62,7 +62,7 @@ Result<motion::Jog> parse_jog(const Arguments& arguments) {
   motion::Jog jog;
   jog.speed = arguments.text("speed");
   const auto length = duration_option(arguments, "--for");
-  if (!length) return tl::unexpected<Error>(length.error());
+  if (!length) return fail(length.error());
   jog.length = *length;
   if (arguments.has("--turns")) {
     jog.turns = parse_real(arguments.text("--turns"));
@@ -77,7 +77,7 @@ Result<motion::Jog> parse_jog(const Arguments& arguments) {
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   auto jog = parse_jog(arguments);
-  if (!jog) return tl::unexpected<Error>(jog.error());
+  if (!jog) return fail(jog.error());
   const bool by_key = !jog->length && !jog->turns;
   const auto missing = fail(Errc::usage, "how long?", "add --for 2s or --turns 3; keys need a terminal");
   motion::MotionRun motion;
@@ -100,7 +100,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
       (context.front_end == nullptr || context.front_end->open_keys() == nullptr))
     return missing;
   const auto request = motion_request(context, arguments);
-  if (!request) return tl::unexpected<Error>(request.error());
+  if (!request) return fail(request.error());
   return motion::run_motion(context, *request, motion);
 }
 

@@ -52,7 +52,7 @@ Result<void> check_change(Context& context, const Wanted& wanted) {
   if (const auto known = motion::check_mode(session, profile, wanted.node, wanted.mode); !known) return known;
   motion::Power power(session, profile, wanted.node);
   const auto state = power.state();
-  if (!state) return tl::unexpected<Error>(state.error());
+  if (!state) return fail(state.error());
   if (!drive::is_energised(*state)) return {};
   return fail(session::drive_error(
       Errc::refused, wanted.node,
@@ -80,7 +80,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   std::optional<std::int8_t> wanted;
   if (arguments.has("mode")) {
     const auto mode = parse_mode(*context.profile, arguments.text("mode"));
-    if (!mode) return tl::unexpected<Error>(mode.error());
+    if (!mode) return fail(mode.error());
     wanted = *mode;
   }
   if (wanted && context.dry_run) return planned(context, *wanted);

@@ -54,7 +54,7 @@ Result<void> ask_mappings(Context& context, show::PdoBook& book) {
     return fail(Errc::usage, "--ask needs to know which nodes", "add -n 1 or a list");
   auto answers = session::read_pdo_values(*context.session, context.profile, context.nodes);
   for (std::size_t i = 0; i < answers.size(); ++i) {
-    if (!answers[i]) return tl::unexpected<Error>(answers[i].error());
+    if (!answers[i]) return fail(answers[i].error());
     book.set(context.nodes[i], std::move(*answers[i]));
   }
   return {};
@@ -132,19 +132,18 @@ class Monitor {
 
 Result<Value> run(Context& context, const Arguments& arguments) {
   auto filter = frame_filter(context, arguments);
-  if (!filter) return tl::unexpected<Error>(filter.error());
+  if (!filter) return fail(filter.error());
   const auto length = duration_option(arguments, "--for");
-  if (!length) return tl::unexpected<Error>(length.error());
+  if (!length) return fail(length.error());
   auto bitrate = bitrate_option(arguments);
-  if (!bitrate) return tl::unexpected<Error>(bitrate.error());
+  if (!bitrate) return fail(bitrate.error());
   if (const auto link = session::link_of(context.session->url()); *bitrate == 0 && link)
     bitrate = link->bitrate.value_or(0);
   traffic::FrameLog log(context, std::move(*filter), arguments.has("--raw"));
   if (arguments.has("--ask"))
-    if (const auto asked = ask_mappings(context, log.decoder().pdos()); !asked)
-      return tl::unexpected<Error>(asked.error());
+    if (const auto asked = ask_mappings(context, log.decoder().pdos()); !asked) return fail(asked.error());
   Monitor monitor(context, log, *bitrate);
-  if (const auto ended = monitor.run(*length); !ended) return tl::unexpected<Error>(ended.error());
+  if (const auto ended = monitor.run(*length); !ended) return fail(ended.error());
   auto summary = monitor.summary();
   if (context.keeps_samples) summary.push_back({"samples", log.take_kept()});
   return Value(std::move(summary));

@@ -25,7 +25,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   move.relative = arguments.has("--relative");
   move.speed = arguments.text("--speed");
   const auto request = motion_request(context, arguments);
-  if (!request) return tl::unexpected<Error>(request.error());
+  if (!request) return fail(request.error());
   return motion::run_motion(context, *request, motion::motion_run(move, motion::plan_move, motion::run_move));
 }
 

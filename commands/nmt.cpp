@@ -154,14 +154,14 @@ Result<report::Value> run(Context& context, const Arguments& arguments, NmtComma
                 "for example -n 1,2,3");
   if (is_reset(command))
     if (const auto answer = context.confirm(question(context.nodes, command)); !answer)
-      return tl::unexpected<Error>(answer.error());
+      return fail(answer.error());
   const auto heartbeats = wait && !is_reset(command) ? heartbeats_of(context) : Heartbeats();
   std::vector<Before> before;
   for (const auto node : context.nodes) {
     before.push_back({node, context.session->can()->watch().boots(node),
                       context.session->can()->watch().heartbeats(node)});
     if (const auto sent = context.session->can()->send(canopen::nmt_frame(command, node)); !sent)
-      return tl::unexpected<Error>(sent.error());
+      return fail(sent.error());
     context.session->can()->watch().on_command(node);
   }
   const bool tells = command == NmtCommand::reset_communication;
@@ -177,7 +177,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments, NmtComma
   const auto patience = is_reset(command) ? kBootPatience : std::max(kStatePatience, 2 * heartbeats.longest);
   const auto waited =
       context.session->wait(done, context.session->now() + (hopeless ? Duration::zero() : patience));
-  if (!waited) return tl::unexpected<Error>(waited.error());
+  if (!waited) return fail(waited.error());
   if (tells) tell_reset(context, before, true);
   for (const auto& entry : before)
     if (!confirmed(*context.session, entry, command))

@@ -39,10 +39,10 @@ struct Plan {
 Result<Plan> plan_of(const Arguments& arguments) {
   Plan plan;
   const auto length = duration_option(arguments, "--for");
-  if (!length) return tl::unexpected<Error>(length.error());
+  if (!length) return fail(length.error());
   plan.length = *length;
   const auto guard_time = duration_option(arguments, "--guard");
-  if (!guard_time) return tl::unexpected<Error>(guard_time.error());
+  if (!guard_time) return fail(guard_time.error());
   plan.guard_time = *guard_time;
   if (!arguments.has("--life")) return plan;
   if (!plan.guard_time)
@@ -62,7 +62,7 @@ Result<std::vector<std::uint8_t>> nodes_of(Context& context) {
   std::vector<std::uint8_t> every(canopen::kLastNode);
   std::iota(every.begin(), every.end(), canopen::kFirstNode);
   const auto found = session::scan(*context.session, every);
-  if (!found) return tl::unexpected<Error>(found.error());
+  if (!found) return fail(found.error());
   std::vector<std::uint8_t> out;
   for (const auto& identity : *found) out.push_back(identity.node);
   if (out.empty())
@@ -229,9 +229,9 @@ report::Table guarding_frames(std::span<const std::uint8_t> nodes) {
 
 Result<Value> run(Context& context, const Arguments& arguments) {
   const auto plan = plan_of(arguments);
-  if (!plan) return tl::unexpected<Error>(plan.error());
+  if (!plan) return fail(plan.error());
   const auto nodes = nodes_of(context);
-  if (!nodes) return tl::unexpected<Error>(nodes.error());
+  if (!nodes) return fail(nodes.error());
   auto& session = *context.session;
   if (plan->guard_time && context.dry_run) return Value(guarding_frames(*nodes));
   Log log(context, *nodes);
@@ -246,7 +246,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
     log.take_events();
   }
   session.can()->stop_guarding();
-  if (!waited && waited.error().code != Errc::interrupted) return tl::unexpected<Error>(waited.error());
+  if (!waited && waited.error().code != Errc::interrupted) return fail(waited.error());
   return log.summary();
 }
 

@@ -13,7 +13,7 @@ constexpr Parameter kParameters[] = {
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   const auto parameter = drive::resolve_parameter(*context.profile, arguments.text("id"));
-  if (!parameter) return tl::unexpected<Error>(parameter.error());
+  if (!parameter) return fail(parameter.error());
   return report::Value(show::parameter_record(**parameter, context.chinese));
 }
 

@@ -22,7 +22,7 @@ Result<std::vector<drive::Target>> wanted(const drive::Profile& profile, std::sp
   for (const auto& word : words) {
     if (word.find('*') == std::string::npos) {
       const auto target = drive::resolve_panel(profile, word);
-      if (!target) return tl::unexpected<Error>(target.error());
+      if (!target) return fail(target.error());
       if (!od::readable(drive::meaning(*target, 0).access))
         return fail(Errc::usage, fmt::format("{} is write-only", target->label()), "`param set` writes it");
       out.push_back(*target);
@@ -41,13 +41,13 @@ Result<std::vector<drive::Target>> wanted(const drive::Profile& profile, std::sp
 
 Result<void> check(Context& context, const Arguments& arguments) {
   if (const auto targets = wanted(*context.profile, arguments.all("id")); !targets)
-    return tl::unexpected<Error>(targets.error());
+    return fail(targets.error());
   return {};
 }
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   const auto targets = wanted(*context.profile, arguments.all("id"));
-  if (!targets) return tl::unexpected<Error>(targets.error());
+  if (!targets) return fail(targets.error());
   std::vector<show::Reading> readings;
   std::vector<session::SdoRequest> requests;
   for (const auto node : context.nodes) {

@@ -23,10 +23,10 @@ constexpr Parameter kParameters[] = {
 
 Result<void> check(Context& context, const Arguments& arguments) {
   const auto assignments = parse_assignments(arguments.all("assignment"));
-  if (!assignments) return tl::unexpected<Error>(assignments.error());
+  if (!assignments) return fail(assignments.error());
   for (const auto& assignment : *assignments) {
     const auto target = drive::resolve_panel(*context.profile, assignment.id);
-    if (!target) return tl::unexpected<Error>(target.error());
+    if (!target) return fail(target.error());
     for (const auto node : context.nodes)
       if (const auto fits = settings::check_change(context, node, *target, assignment.value, {}); !fits)
         return fits;
@@ -36,21 +36,21 @@ Result<void> check(Context& context, const Arguments& arguments) {
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   const auto assignments = parse_assignments(arguments.all("assignment"));
-  if (!assignments) return tl::unexpected<Error>(assignments.error());
+  if (!assignments) return fail(assignments.error());
   std::vector<settings::Change> changes;
   for (const auto node : context.nodes) {
     for (const auto& assignment : *assignments) {
       const auto target = drive::resolve_panel(*context.profile, assignment.id);
-      if (!target) return tl::unexpected<Error>(target.error());
+      if (!target) return fail(target.error());
       auto change = settings::make_change(context, node, *target, assignment.value, {});
-      if (!change) return tl::unexpected<Error>(change.error());
+      if (!change) return fail(change.error());
       changes.push_back(std::move(*change));
     }
   }
   settings::WriteOptions options{.keep = arguments.has("--keep"), .unlock = arguments.has("--unlock")};
   if (context.dry_run) return settings::planned_changes(context, changes, options);
   if (const auto confirmed = settings::confirm_changes(context, changes); !confirmed)
-    return tl::unexpected<Error>(confirmed.error());
+    return fail(confirmed.error());
   // A write-only parameter starts an action and has nothing to read back.
   options.read_back = std::all_of(changes.begin(), changes.end(), [](const settings::Change& c) {
     return od::readable(drive::meaning(c.target, c.node).access);
@@ -60,7 +60,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
 
 Result<std::vector<settings::NamedValue>> setting_values(const Arguments& arguments) {
   const auto assignments = parse_assignments(arguments.all("assignment"));
-  if (!assignments) return tl::unexpected<Error>(assignments.error());
+  if (!assignments) return fail(assignments.error());
   std::vector<settings::NamedValue> out;
   for (const auto& assignment : *assignments)
     out.push_back({std::string(assignment.id), std::string(assignment.value), true});

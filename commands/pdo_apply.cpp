@@ -53,7 +53,7 @@ drive::PdoFile recipes_of(const drive::Profile* profile, std::string family, con
 
 Result<drive::PdoFile> from_backup(const Context& context, const std::filesystem::path& path) {
   const auto backup = settings::read_backup(path);
-  if (!backup) return tl::unexpected<Error>(backup.error());
+  if (!backup) return fail(backup.error());
   Values values;
   for (const auto& entry : backup->entries)
     if (entry.bytes) values.emplace(entry.object, *entry.bytes);
@@ -62,9 +62,9 @@ Result<drive::PdoFile> from_backup(const Context& context, const std::filesystem
 
 Result<drive::PdoFile> from_dictionary(const Context& context, const std::filesystem::path& path) {
   const auto text = read_file(path);
-  if (!text) return tl::unexpected<Error>(text.error());
+  if (!text) return fail(text.error());
   const auto file = od::read_eds(*text, path.string());
-  if (!file) return tl::unexpected<Error>(file.error());
+  if (!file) return fail(file.error());
   if (file->error_count() > 0)
     return fail(Errc::file, fmt::format("{} has {} errors", path.string(), file->error_count()),
                 fmt::format("`eds check {}` shows them", path.string()));
@@ -78,7 +78,7 @@ Result<drive::PdoFile> read(const Context& context, const std::filesystem::path&
   if (extension == ".eds" || extension == ".dcf") return from_dictionary(context, path);
   if (extension == ".toml") return pdo::read_pdo_file(path);
   const auto text = read_file(path);
-  if (!text) return tl::unexpected<Error>(text.error());
+  if (!text) return fail(text.error());
   return text->find("\"servoctl_backup\"") != std::string::npos ? from_backup(context, path)
                                                                 : pdo::read_pdo_file(path);
 }
@@ -96,20 +96,20 @@ Result<drive::PdoFile> fitting(const Context& context, const Arguments& argument
 }
 
 Result<void> check(Context& context, const Arguments& arguments) {
-  if (const auto file = fitting(context, arguments); !file) return tl::unexpected<Error>(file.error());
+  if (const auto file = fitting(context, arguments); !file) return fail(file.error());
   return {};
 }
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   const auto file = fitting(context, arguments);
-  if (!file) return tl::unexpected<Error>(file.error());
+  if (!file) return fail(file.error());
   const pdo::PdoEdit edit = [&](const pdo::PresentPdos& present) -> Result<pdo::WantedPdos> {
     auto wanted = pdo::follow(*context.profile, present, file->pdos);
     if (wanted) return wanted;
     auto error = wanted.error();
     error.message = fmt::format("{}{}: {}", arguments.text("file"),
                                 error.line ? fmt::format(":{}", *error.line) : std::string(), error.message);
-    return tl::unexpected<Error>(std::move(error));
+    return fail(std::move(error));
   };
   return pdo::change_pdos(
       context, edit,

@@ -40,20 +40,19 @@ Result<void> act(const Context& context, const pdo::PresentPdos& present, Action
 
 Result<void> check(Context&, const Arguments& arguments) {
   for (const auto& word : arguments.all("pdo"))
-    if (!canopen::parse_pdo_name(word)) return tl::unexpected<Error>(pdo::find_pdo({}, word).error());
+    if (!canopen::parse_pdo_name(word)) return fail(pdo::find_pdo({}, word).error());
   return {};
 }
 
 template <Action action>
 Result<report::Value> run(Context& context, const Arguments& arguments) {
-  if (const auto fits = check(context, arguments); !fits) return tl::unexpected<Error>(fits.error());
+  if (const auto fits = check(context, arguments); !fits) return fail(fits.error());
   const pdo::PdoEdit edit = [&](const pdo::PresentPdos& present) -> Result<pdo::WantedPdos> {
     pdo::WantedPdos out;
     for (const auto& word : arguments.all("pdo")) {
       const auto pdo = pdo::find_pdo(present, word);
-      if (!pdo) return tl::unexpected<Error>(pdo.error());
-      if (const auto done = act(context, present, action, *pdo, out); !done)
-        return tl::unexpected<Error>(done.error());
+      if (!pdo) return fail(pdo.error());
+      if (const auto done = act(context, present, action, *pdo, out); !done) return fail(done.error());
     }
     return out;
   };

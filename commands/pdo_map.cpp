@@ -75,25 +75,24 @@ Result<Options> parse_options(const drive::Profile& profile, const Arguments& ar
   Options out;
   for (const auto& word : arguments.all("object")) {
     const auto entry = pdo::parse_mapped(profile, word);
-    if (!entry) return tl::unexpected<Error>(entry.error());
+    if (!entry) return fail(entry.error());
     out.entries.push_back(*entry);
   }
   const auto type = byte_option(arguments, "--type");
   const auto sync_start = byte_option(arguments, "--sync-start");
   const auto inhibit = steps_option(arguments, "--inhibit", std::chrono::microseconds(100));
   const auto event = steps_option(arguments, "--event", std::chrono::milliseconds(1));
-  if (!type) return tl::unexpected<Error>(type.error());
-  if (!sync_start) return tl::unexpected<Error>(sync_start.error());
-  if (!inhibit) return tl::unexpected<Error>(inhibit.error());
-  if (!event) return tl::unexpected<Error>(event.error());
+  if (!type) return fail(type.error());
+  if (!sync_start) return fail(sync_start.error());
+  if (!inhibit) return fail(inhibit.error());
+  if (!event) return fail(event.error());
   out.type = *type;
   out.sync_start = *sync_start;
   out.inhibit = *inhibit;
   out.event = *event;
   out.cob_id = arguments.text("--cob-id");
   if (!out.cob_id.empty())
-    if (const auto can_id = pdo::parse_can_id(out.cob_id, 0); !can_id)
-      return tl::unexpected<Error>(can_id.error());
+    if (const auto can_id = pdo::parse_can_id(out.cob_id, 0); !can_id) return fail(can_id.error());
   return out;
 }
 
@@ -139,9 +138,9 @@ Result<void> settle_event(Context& context, const Options& options, std::uint8_t
 
 Result<void> check(Context& context, const Arguments& arguments) {
   const auto options = parse_options(*context.profile, arguments);
-  if (!options) return tl::unexpected<Error>(options.error());
+  if (!options) return fail(options.error());
   auto pdo = canopen::parse_pdo_name(arguments.text("pdo"));
-  if (!pdo) return tl::unexpected<Error>(pdo::find_pdo({}, arguments.text("pdo")).error());
+  if (!pdo) return fail(pdo::find_pdo({}, arguments.text("pdo")).error());
   pdo->entries = options->entries;
   if (options->type) {
     pdo->type = *options->type;
@@ -160,31 +159,31 @@ Result<void> check(Context& context, const Arguments& arguments) {
 }
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
-  if (const auto fits = check(context, arguments); !fits) return tl::unexpected<Error>(fits.error());
+  if (const auto fits = check(context, arguments); !fits) return fail(fits.error());
   const auto options = parse_options(*context.profile, arguments);
-  if (!options) return tl::unexpected<Error>(options.error());
+  if (!options) return fail(options.error());
   const bool absolute = !options->cob_id.empty() && options->cob_id.front() != '$';
   if (absolute && context.nodes.size() > 1)
     return fail(Errc::usage, "one CAN-ID for several nodes is a conflict", "--cob-id '$NODEID+0x180'");
   const pdo::PdoEdit edit = [&](const pdo::PresentPdos& present) -> Result<pdo::WantedPdos> {
     auto pdo = pdo::find_pdo(present, arguments.text("pdo"));
-    if (!pdo) return tl::unexpected<Error>(pdo.error());
+    if (!pdo) return fail(pdo.error());
     pdo->entries = options->entries;
     if (options->type) pdo->type = *options->type;
     if (options->inhibit) pdo->inhibit = options->inhibit;
     if (options->event) pdo->event = options->event;
     if (const auto counts = settle_event(context, *options, present.node, *pdo); !counts)
-      return tl::unexpected<Error>(counts.error());
+      return fail(counts.error());
     if (options->sync_start) pdo->sync_start = options->sync_start;
     const bool linked = present.values.count({pdo->communication_index(), 1}) > 0;
     if (!linked && !options->cob_id.empty()) return fail(Errc::usage, "this drive's PDOs have no COB-ID");
     if (!options->cob_id.empty()) {
       const auto can_id = pdo::parse_pdo_can_id(options->cob_id, present.node);
-      if (!can_id) return tl::unexpected<Error>(can_id.error());
+      if (!can_id) return fail(can_id.error());
       pdo->set_can_id(*can_id);
     }
     if (linked)
-      if (const auto on = pdo::switch_on(*pdo, present.node); !on) return tl::unexpected<Error>(on.error());
+      if (const auto on = pdo::switch_on(*pdo, present.node); !on) return fail(on.error());
     return pdo::WantedPdos{{std::move(*pdo)}};
   };
   return pdo::change_pdos(context, edit,

@@ -32,14 +32,13 @@ Result<const drive::PdoPreset*> preset_of(const Context& context, const Argument
 }
 
 Result<void> check(Context& context, const Arguments& arguments) {
-  if (const auto preset = preset_of(context, arguments); !preset)
-    return tl::unexpected<Error>(preset.error());
+  if (const auto preset = preset_of(context, arguments); !preset) return fail(preset.error());
   return {};
 }
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   const auto preset = preset_of(context, arguments);
-  if (!preset) return tl::unexpected<Error>(preset.error());
+  if (!preset) return fail(preset.error());
   const pdo::PdoEdit edit = [&](const pdo::PresentPdos& present) {
     return pdo::follow(*context.profile, present, (*preset)->pdos);
   };

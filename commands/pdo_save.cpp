@@ -25,7 +25,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
     return fail(Errc::usage, "the PDOs of one node go into one file", "say -n 1");
   const auto node = context.nodes.front();
   const auto read = session::read_pdo_values(*context.session, context.profile, context.nodes).front();
-  if (!read) return tl::unexpected<Error>(read.error());
+  if (!read) return fail(read.error());
   const pdo::PresentPdos present{node, *read, session::pdos_of(*read)};
   drive::PdoFile file;
   if (context.profile != nullptr) file.family = context.profile->family;
@@ -38,8 +38,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   }
   const auto text = extension == ".json" ? pdo::pdo_json(file) : pdo::pdo_toml(file, names);
   if (!context.dry_run)
-    if (const auto written = write_file_atomically(path, text); !written)
-      return tl::unexpected<Error>(written.error());
+    if (const auto written = write_file_atomically(path, text); !written) return fail(written.error());
   return report::Value(report::Record{
       {"node", node}, {"file", path.string()}, {"pdos", file.pdos.size(), report::Show::everywhere, "PDOs"}});
 }

@@ -60,8 +60,7 @@ struct Message {
 };
 Result<Message> make_message(Context& context, const show::PdoView& view,
                              std::span<const std::string> values) {
-  if (const auto right = check_count(view, values.size()); !right)
-    return tl::unexpected<Error>(right.error());
+  if (const auto right = check_count(view, values.size()); !right) return fail(right.error());
   std::vector<Bytes> data;
   std::size_t next = 0;
   for (const auto& entry : view.pdo.entries) {
@@ -71,7 +70,7 @@ Result<Message> make_message(Context& context, const show::PdoView& view,
     }
     const auto& field = view.fields[next];
     auto change = settings::make_change(context, view.node, field.target, values[next], field.type);
-    if (!change) return tl::unexpected<Error>(change.error());
+    if (!change) return fail(change.error());
     data.push_back(std::move(change->data));
     ++next;
   }
@@ -82,7 +81,7 @@ Result<Message> make_message(Context& context, const show::PdoView& view,
 
 Result<void> check_operational(Context& context, const show::PdoView& view) {
   const auto state = session::ask_state(*context.session, view.node, !context.dry_run);
-  if (!state) return tl::unexpected<Error>(state.error());
+  if (!state) return fail(state.error());
   if (!*state) {
     context.notices.push_back(fmt::format(
         "node {} does not tell whether it is operational (no heartbeat{}); if not, it ignores PDOs",
@@ -106,31 +105,29 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   if (context.nodes.size() != 1)
     return fail(Errc::usage, "`pdo send` is for one node at a time", "name one node, such as -n 1");
   const auto views = pdo::read_views(context, context.nodes.front());
-  if (!views) return tl::unexpected<Error>(views.error());
+  if (!views) return fail(views.error());
   const auto found = pdo::find_view(*views, context.nodes.front(), arguments.text("pdo"));
-  if (!found) return tl::unexpected<Error>(found.error());
+  if (!found) return fail(found.error());
   const auto& view = **found;
-  if (const auto usable = check_usable(view); !usable) return tl::unexpected<Error>(usable.error());
+  if (const auto usable = check_usable(view); !usable) return fail(usable.error());
   const auto message = make_message(context, view, arguments.all("value"));
-  if (!message) return tl::unexpected<Error>(message.error());
+  if (!message) return fail(message.error());
   report::Record answer{{"node", view.node},
                         {"pdo", view.name},
                         {"frame", can::to_string(message->frame)},
                         {"values", message->text, report::Show::text},
                         {"values", written_values(view, message->frame), report::Show::json}};
-  if (const auto ready = check_operational(context, view); !ready)
-    return tl::unexpected<Error>(ready.error());
+  if (const auto ready = check_operational(context, view); !ready) return fail(ready.error());
   if (context.dry_run) return Value(std::move(answer));
   if (const auto sure = context.confirm(
           fmt::format("Send {} to node {}: {}? The motor may move.", view.name, view.node, message->text));
       !sure)
-    return tl::unexpected<Error>(sure.error());
+    return fail(sure.error());
   const auto& entries = view.pdo.entries;
   if (std::any_of(entries.begin(), entries.end(),
                   [](const auto& e) { return e.object == objects::kControlword; }))
     context.session->energised().insert(view.node);
-  if (const auto sent = context.session->can()->send(message->frame); !sent)
-    return tl::unexpected<Error>(sent.error());
+  if (const auto sent = context.session->can()->send(message->frame); !sent) return fail(sent.error());
   if (view.pdo.type <= kLastSynchronous)
     context.notices.push_back(fmt::format("{} takes effect at the next SYNC: `sync once`", view.name));
   return Value(std::move(answer));

@@ -34,10 +34,10 @@ Result<std::vector<Watched>> pdos_of(Context& context, const Arguments& argument
   std::vector<Watched> out;
   for (const auto node : context.nodes) {
     const auto views = pdo::read_views(context, node);
-    if (!views) return tl::unexpected<Error>(views.error());
+    if (!views) return fail(views.error());
     for (const auto& name : arguments.all("pdo")) {
       const auto view = pdo::find_view(*views, node, name);
-      if (!view) return tl::unexpected<Error>(view.error());
+      if (!view) return fail(view.error());
       if (!(*view)->pdo.is_valid())
         return fail(Errc::negative, fmt::format("node {}: {} is not in use", node, (*view)->name),
                     "bit 31 of its COB-ID is set; `pdo enable` clears it");
@@ -84,9 +84,9 @@ void show(Context& context, show::SampleWriter& writer, const Watched& entry, co
 
 Result<Value> run(Context& context, const Arguments& arguments) {
   const auto length = duration_option(arguments, "--for");
-  if (!length) return tl::unexpected<Error>(length.error());
+  if (!length) return fail(length.error());
   auto watched = pdos_of(context, arguments);
-  if (!watched) return tl::unexpected<Error>(watched.error());
+  if (!watched) return fail(watched.error());
   if (watched->empty())
     return fail(Errc::negative, "none of the PDOs is in use",
                 "`pdo show` tells them, `pdo enable` opens one");
@@ -103,8 +103,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
       show(context, writer, entry, frame, time - begin);
     }
   };
-  if (const auto ended = traffic::listen(session, *length, listener); !ended)
-    return tl::unexpected<Error>(ended.error());
+  if (const auto ended = traffic::listen(session, *length, listener); !ended) return fail(ended.error());
   const bool silent = std::all_of(watched->begin(), watched->end(),
                                   [](const Watched& entry) { return entry.rhythm.count() == 0; });
   if (silent)

@@ -32,11 +32,10 @@ Result<drive::Target> readable_target(const Context& context, std::uint8_t node,
 }
 
 Result<void> check(Context& context, const Arguments& arguments) {
-  if (const auto type = parse_type_option(arguments); !type) return tl::unexpected<Error>(type.error());
+  if (const auto type = parse_type_option(arguments); !type) return fail(type.error());
   for (const auto node : context.nodes)
     for (const auto& word : arguments.all("object"))
-      if (const auto target = readable_target(context, node, word); !target)
-        return tl::unexpected<Error>(target.error());
+      if (const auto target = readable_target(context, node, word); !target) return fail(target.error());
   return {};
 }
 
@@ -49,7 +48,7 @@ Result<report::Value> run_to_file(Context& context, const Arguments& arguments) 
     return fail(Errc::usage, "--to takes one object of one node",
                 "one line for each object and node, each with a file of its own");
   const auto target = drive::resolve(context.profile, arguments.text("object"));
-  if (!target) return tl::unexpected<Error>(target.error());
+  if (!target) return fail(target.error());
   return settings::read_to_file(context, context.nodes.front(), *target,
                                 read_transfer(context, arguments, true), arguments.text("--to"));
 }
@@ -57,13 +56,13 @@ Result<report::Value> run_to_file(Context& context, const Arguments& arguments) 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   if (arguments.has("--to")) return run_to_file(context, arguments);
   const auto type = parse_type_option(arguments);
-  if (!type) return tl::unexpected<Error>(type.error());
+  if (!type) return fail(type.error());
   std::vector<show::Reading> readings;
   std::vector<session::SdoRequest> requests;
   for (const auto node : context.nodes) {
     for (const auto& word : arguments.all("object")) {
       const auto target = readable_target(context, node, word);
-      if (!target) return tl::unexpected<Error>(target.error());
+      if (!target) return fail(target.error());
       readings.push_back({node, *target, *type, Bytes{}});
       const auto fixed_size = show::size_of(readings.back());
       const bool large = drive::meaning(*target, node).type == od::DataType::domain;

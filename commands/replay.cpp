@@ -172,11 +172,11 @@ void tell_plan(Context& context, const traffic::ReplayPlan& plan, std::string_vi
 Result<Value> run(Context& context, const Arguments& arguments) {
   const auto file = arguments.text("file");
   const auto speed = speed_of(arguments);
-  if (!speed) return tl::unexpected<Error>(speed.error());
+  if (!speed) return fail(speed.error());
   const auto text = traffic::read_recording(file);
-  if (!text) return tl::unexpected<Error>(text.error());
+  if (!text) return fail(text.error());
   const auto drives = traffic::find_drives(context, *text);
-  if (!drives) return tl::unexpected<Error>(drives.error());
+  if (!drives) return fail(drives.error());
   const auto plan = traffic::plan_replay(
       context, {.only = arguments.all("--only"), .of_master = arguments.has("--master")}, *text, *drives);
   tell_plan(context, plan, file);
@@ -191,11 +191,10 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   report::Record answer{{"frames", plan.frames.size()},
                         {"can_move", plan.dangerous(), report::Show::everywhere, "can move a motor"}};
   if (!context.dry_run) {
-    if (const auto right = hold_drives(context, *drives); !right) return tl::unexpected<Error>(right.error());
+    if (const auto right = hold_drives(context, *drives); !right) return fail(right.error());
     if (const auto sure = context.confirm(question(plan, file, context.session->url())); !sure)
-      return tl::unexpected<Error>(sure.error());
-    if (const auto done = send(context, plan, *drives, *speed, answer); !done)
-      return tl::unexpected<Error>(done.error());
+      return fail(sure.error());
+    if (const auto done = send(context, plan, *drives, *speed, answer); !done) return fail(done.error());
   }
   report::Table services;
   services.columns = {{"service"}, {"frames"}};

@@ -84,12 +84,12 @@ class Collection {
     out_.title = title.empty() ? say("Commissioning report", "调试报告") : std::move(title);
     const auto time = utc_now_text();
     auto bus = part("bus", say("Bus", "总线"), "scan", {}, {});
-    if (!bus) return tl::unexpected<Error>(bus.error());
+    if (!bus) return fail(bus.error());
     out_.bus = std::move(*bus);
     out_.link = link_record();
     for (const auto node : context_->nodes) {
       auto drive = of_drive(node);
-      if (!drive) return tl::unexpected<Error>(drive.error());
+      if (!drive) return fail(drive.error());
       out_.drives.push_back(std::move(*drive));
     }
     // Of the whole command now: said once.
@@ -173,13 +173,13 @@ class Collection {
     for (const auto& wanted : kParts) {
       auto one =
           part(std::string(wanted.id), say(wanted.title, wanted.title_zh), wanted.command, node, factory);
-      if (!one) return tl::unexpected<Error>(one.error());
+      if (!one) return fail(one.error());
       const bool silent = one->value.is_null() && wanted.id == "identity";
       out.parts.push_back(std::move(*one));
       if (silent) return out;  // Each further part would only wait for it.
     }
     ++answered_;
-    if (const auto tested = add_tests(node, out); !tested) return tl::unexpected<Error>(tested.error());
+    if (const auto tested = add_tests(node, out); !tested) return fail(tested.error());
     return out;
   }
 
@@ -198,7 +198,7 @@ class Collection {
     });
     if (!tested) {
       auto comm = trial::test_communication(*context_, node, {});
-      if (!comm) return tl::unexpected<Error>(comm.error());
+      if (!comm) return fail(comm.error());
       comm->origin = trial::origin_of(*context_, node);
       drive.tests.push_back(std::move(*comm));
     }
@@ -223,28 +223,27 @@ class Collection {
 
 Result<Value> run(Context& context, const Arguments& arguments) {
   const auto named = file_of(arguments);
-  if (!named) return tl::unexpected<Error>(named.error());
+  if (!named) return fail(named.error());
   const auto& file = *named;
   const auto form = form_of(file);
-  if (!form) return tl::unexpected<Error>(form.error());
+  if (!form) return fail(form.error());
   std::vector<report::TestResult> earlier;
   for (const auto& tests : arguments.all("--tests")) {
     auto read = trial::read_tests(tests);
-    if (!read) return tl::unexpected<Error>(read.error());
+    if (!read) return fail(read.error());
     for (auto& result : *read) earlier.push_back(std::move(result));
   }
   for (const auto& result : earlier)
     if (std::find(context.nodes.begin(), context.nodes.end(), result.node) == context.nodes.end())
       context.notices.push_back(fmt::format(
           "the test {} of node {} is not in the report: -n does not name it", result.test, result.node));
-  if (const auto same = trial::check_tested(context, earlier); !same)
-    return tl::unexpected<Error>(same.error());
+  if (const auto same = trial::check_tested(context, earlier); !same) return fail(same.error());
   const auto made = Collection(context, earlier).make(std::string(arguments.text("--title")));
-  if (!made) return tl::unexpected<Error>(made.error());
+  if (!made) return fail(made.error());
   const auto text =
       *form == Form::html ? trial::report_page(context, *made) : trial::report_json(context, *made);
   const auto written = write_file_atomically(file, text);
-  if (!written) return tl::unexpected<Error>(written.error());
+  if (!written) return fail(written.error());
   report::Record out{{"file", file.string()}, {"nodes", made->drives.size()}};
   for (const auto& field : made->head)
     if (field.key.starts_with("tests")) out.push_back(field);

@@ -30,7 +30,7 @@ constexpr Parameter kParameters[] = {
 Result<void> keep_part(const Context& context, settings::Backup& backup, const std::string& file,
                        std::string_view only) {
   const auto part = settings::selection_of(*context.profile, only);
-  if (!part) return tl::unexpected<Error>(part.error());
+  if (!part) return fail(part.error());
   if (!*part) return {};
   std::erase_if(backup.entries, [&](const settings::Backup::Entry& entry) { return !(*part)(entry.object); });
   if (!backup.entries.empty()) return {};
@@ -40,15 +40,15 @@ Result<void> keep_part(const Context& context, settings::Backup& backup, const s
 Result<Value> run(Context& context, const Arguments& arguments) {
   if (context.nodes.size() != 1 || context.nodes.front() == 0)
     return fail(Errc::usage, "restore takes one node: each drive has a backup of its own", "-n 1");
-  if (const auto alone = check_resume(arguments); !alone) return tl::unexpected<Error>(alone.error());
+  if (const auto alone = check_resume(arguments); !alone) return fail(alone.error());
   const std::string file(arguments.text("file"));
   const auto node = context.nodes.front();
   auto backup =
       settings::read_backup(context, file, context.front_end, node, arguments.has("--skip-invalid"));
   if (backup)
     if (const auto kept = keep_part(context, *backup, file, arguments.text("--only")); !kept)
-      return tl::unexpected<Error>(kept.error());
-  if (!backup) return tl::unexpected<Error>(backup.error());
+      return fail(kept.error());
+  if (!backup) return fail(backup.error());
   auto done =
       settings::put_into(context, *backup, file, node, fmt::format("{}.before-node-{}.json", file, node),
                          {.choice = {.with_address = arguments.has("--with-address"),
@@ -59,7 +59,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
                           .unlock = arguments.has("--unlock"),
                           .resume = arguments.has("--resume")},
                          settings::journal_of(file));
-  if (!done) return tl::unexpected<Error>(done.error());
+  if (!done) return fail(done.error());
   return std::move(done->answer);
 }
 

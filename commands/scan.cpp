@@ -19,7 +19,7 @@ Result<report::Value> run(Context& context, const Arguments&) {
     std::iota(nodes.begin(), nodes.end(), canopen::kFirstNode);
   }
   auto found = session::scan(*context.session, nodes);
-  if (!found) return tl::unexpected<Error>(found.error());
+  if (!found) return fail(found.error());
   if (found->empty()) {
     Error error;
     error.code = Errc::timeout;

@@ -94,7 +94,7 @@ class Scope {
       const auto i = sample.channel;
       const bool failed = !sample.bytes.has_value();
       if (failed && (first || sample.bytes.error().code == Errc::interrupted))
-        return tl::unexpected<Error>(sample.bytes.error());
+        return fail(sample.bytes.error());
       if (first)
         if (const auto number = traffic::check_number(sampler_->channels()[i], *sample.bytes); !number)
           return number;
@@ -131,24 +131,24 @@ Result<std::vector<std::unique_ptr<pdo::ScopeMapping>>> map_objects(Context& con
                                                                     const Arguments& arguments) {
   std::vector<std::unique_ptr<pdo::ScopeMapping>> out;
   const auto period = duration_option(arguments, "--every");
-  if (!period) return tl::unexpected<Error>(period.error());
+  if (!period) return fail(period.error());
   if (!arguments.has("--map")) return out;
   if (context.read_only || context.dry_run)
     return fail(Errc::refused, "--map changes a TPDO of the drive, and that is forbidden",
                 "without --map the objects are read by SDO");
   if (const auto right = context.hold_family(context.nodes, context.profile, true); !right)
-    return tl::unexpected<Error>(right.error());
+    return fail(right.error());
   std::string nodes;
   for (const auto node : context.nodes) append(nodes, fmt::format("{}", node));
   if (const auto sure = context.confirm(fmt::format(
           "Put the objects into a spare TPDO of node {} while sampling, and put it back after?", nodes));
       !sure)
-    return tl::unexpected<Error>(sure.error());
+    return fail(sure.error());
   for (const auto node : context.nodes) {
     out.push_back(std::make_unique<pdo::ScopeMapping>(context, node));
     const auto mapped = out.back()->begin(arguments.all("object"), period->value_or(kDefaultPeriod));
     if (mapped) continue;
-    if (mapped.error().code == Errc::interrupted) return tl::unexpected<Error>(mapped.error());
+    if (mapped.error().code == Errc::interrupted) return fail(mapped.error());
     context.notices.push_back(
         fmt::format("node {}: read by SDO, not mapped: {}{}", node, mapped.error().message,
                     mapped.error().hint.empty() ? "" : " (" + mapped.error().hint + ")"));
@@ -160,7 +160,7 @@ Result<std::vector<std::unique_ptr<pdo::ScopeMapping>>> map_objects(Context& con
 Result<void> check_names(const Context& context, std::span<const std::string> names) {
   for (const auto& name : names) {
     const auto target = drive::resolve(context.profile, name);
-    if (!target) return tl::unexpected<Error>(target.error());
+    if (!target) return fail(target.error());
     if (const auto number = traffic::check_number({context.nodes.front(), *target, name}); !number)
       return number;
   }
@@ -181,21 +181,21 @@ Result<void> write_files(const Arguments& arguments, std::span<const Series> ser
 
 Result<Value> run(Context& context, const Arguments& arguments) {
   const auto length = duration_option(arguments, "--for");
-  if (!length) return tl::unexpected<Error>(length.error());
+  if (!length) return fail(length.error());
   if (const auto numbers = check_names(context, arguments.all("object")); !numbers)
-    return tl::unexpected<Error>(numbers.error());
+    return fail(numbers.error());
   const auto mapping = map_objects(context, arguments);
-  if (!mapping) return tl::unexpected<Error>(mapping.error());
+  if (!mapping) return fail(mapping.error());
   auto sampler = traffic::Sampler::make(context, arguments.all("object"));
-  if (!sampler) return tl::unexpected<Error>(sampler.error());
+  if (!sampler) return fail(sampler.error());
   Scope scope(context, *sampler);
   const auto recorded = scope.run(length->value_or(kDefaultLength));
   for (const auto& each : *mapping) each->end();
   const auto series = traffic::series_of(scope.records());
   // What was sampled before something broke is worth keeping.
   const auto written = write_files(arguments, series);
-  if (!recorded) return tl::unexpected<Error>(recorded.error());
-  if (!written) return tl::unexpected<Error>(written.error());
+  if (!recorded) return fail(recorded.error());
+  if (!written) return fail(written.error());
   for (auto& error : traffic::failures_of(scope.last())) context.errors.push_back(std::move(error));
   report::Record out{{"seconds", std::round(scope.seconds() * 1000) / 1000},
                      {"objects", traffic::sampling_table(scope.records())}};

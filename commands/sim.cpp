@@ -17,7 +17,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
     return fail(Errc::usage, "a simulated drive cannot be put on a bus that is simulated itself",
                 "use a bus others can reach: vcan0 or local:NAME");
   auto cell = sim::build_cell(arguments.text("drives"), context.drive_folders, context.session->now());
-  if (!cell) return tl::unexpected<Error>(cell.error());
+  if (!cell) return fail(cell.error());
   report::List nodes;
   for (const auto& drive : cell->drives) nodes.emplace_back(drive->node());
   const auto count = nodes.size();
@@ -25,8 +25,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
       {{"bus", context.session->url()}, {"nodes", std::move(nodes)}},
       fmt::format("{} drive{} on {}; Ctrl-C ends it", count, count == 1 ? "" : "s", context.session->url()));
   if (context.dry_run) return report::Value();
-  if (const auto served = session::serve(*context.session, *cell); !served)
-    return tl::unexpected<Error>(served.error());
+  if (const auto served = session::serve(*context.session, *cell); !served) return fail(served.error());
   return report::Value();
 }
 

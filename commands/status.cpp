@@ -44,7 +44,7 @@ Result<void> hear_heartbeats(Context& context, std::span<const Result<Bytes>> an
   };
   const auto heard =
       context.session->wait(all_heard, context.session->now() + std::min(longest, kMostPatience));
-  if (!heard) return tl::unexpected<Error>(heard.error());
+  if (!heard) return fail(heard.error());
   return {};
 }
 
@@ -118,8 +118,7 @@ Result<report::Value> run(Context& context, const Arguments&) {
     for (std::size_t i = 0; i < kCount; ++i)
       requests.push_back({.node = node, .object = kObjects[i], .size = kSizes[i]});
   const auto answers = context.session->transfer(requests);
-  if (const auto heard = hear_heartbeats(context, answers); !heard)
-    return tl::unexpected<Error>(heard.error());
+  if (const auto heard = hear_heartbeats(context, answers); !heard) return fail(heard.error());
   report::List out;
   for (std::size_t i = 0; i < context.nodes.size(); ++i) {
     const auto mine = std::span(answers).subspan(i * kCount, kCount);

@@ -52,12 +52,12 @@ Value planned(Context& context, ParameterGroup group, const Action& action) {
 
 Result<Value> run(Context& context, const Arguments& arguments, const Action& action, const Words& words) {
   const auto group = group_of(arguments);
-  if (!group) return tl::unexpected<Error>(group.error());
+  if (!group) return fail(group.error());
   if (context.dry_run) return planned(context, *group, action);
   const auto whom = context.nodes.size() == 1 ? fmt::format("node {}", context.nodes.front())
                                               : fmt::format("{} nodes", context.nodes.size());
   if (const auto answer = context.confirm(fmt::format(fmt::runtime(words.question), whom)); !answer)
-    return tl::unexpected<Error>(answer.error());
+    return fail(answer.error());
   report::Table table;
   table.columns = {{"node"}, {"result"}, {"error", "", Show::json}};
   for (const auto node : context.nodes) {

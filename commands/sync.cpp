@@ -56,26 +56,25 @@ Result<void> check_quiet(session::Session& session) {
     heard = heard || (frame.id == canopen::kSync && !frame.extended && !frame.error);
   });
   const auto waited = session.wait([&] { return heard; }, session.now() + kListening);
-  if (!waited) return tl::unexpected<Error>(waited.error());
+  if (!waited) return fail(waited.error());
   if (!*waited) return {};
   return fail(Errc::refused, "somebody else on this bus produces SYNC already",
               "end that one first: a PLC, another `sync start`, or a drive whose 1005h has bit 30 set");
 }
 
 Result<Value> run_once(Context& context, const Arguments&) {
-  if (const auto free = check_none(context); !free) return tl::unexpected<Error>(free.error());
+  if (const auto free = check_none(context); !free) return fail(free.error());
   if (context.dry_run) return planned_frame({});
   if (const auto sure = context.confirm(fmt::format("Send a SYNC? {}", kWarning)); !sure)
-    return tl::unexpected<Error>(sure.error());
-  if (const auto sent = context.session->can()->send(canopen::sync_frame()); !sent)
-    return tl::unexpected<Error>(sent.error());
+    return fail(sure.error());
+  if (const auto sent = context.session->can()->send(canopen::sync_frame()); !sent) return fail(sent.error());
   return Value(report::Record{{"sent", 1}});
 }
 
 Result<canopen::SyncProducer::Options> options_of(const Arguments& arguments) {
   canopen::SyncProducer::Options out;
   const auto period = duration_option(arguments, "--period");
-  if (!period) return tl::unexpected<Error>(period.error());
+  if (!period) return fail(period.error());
   out.period = period->value_or(kDefaultPeriod);
   if (out.period < kShortestPeriod)
     return fail(Errc::usage, fmt::format("a period of {} is too short", to_string(out.period)),
@@ -91,26 +90,26 @@ Result<canopen::SyncProducer::Options> options_of(const Arguments& arguments) {
 
 Result<Value> run_start(Context& context, const Arguments& arguments) {
   const auto options = options_of(arguments);
-  if (!options) return tl::unexpected<Error>(options.error());
+  if (!options) return fail(options.error());
   const auto length = duration_option(arguments, "--for");
-  if (!length) return tl::unexpected<Error>(length.error());
-  if (const auto free = check_none(context); !free) return tl::unexpected<Error>(free.error());
+  if (!length) return fail(length.error());
+  if (const auto free = check_none(context); !free) return fail(free.error());
   if (context.dry_run) {
-    if (const auto quiet = check_quiet(*context.session); !quiet) return tl::unexpected<Error>(quiet.error());
+    if (const auto quiet = check_quiet(*context.session); !quiet) return fail(quiet.error());
     return planned_frame(options->last_counter == 0 ? std::nullopt : std::optional<std::uint8_t>(1));
   }
   if (const auto sure =
           context.confirm(fmt::format("Send a SYNC every {}? {}", to_string(options->period), kWarning));
       !sure)
-    return tl::unexpected<Error>(sure.error());
+    return fail(sure.error());
   auto& session = *context.session;
-  if (const auto quiet = check_quiet(session); !quiet) return tl::unexpected<Error>(quiet.error());
+  if (const auto quiet = check_quiet(session); !quiet) return fail(quiet.error());
   session.can()->produce_sync(*options);
   if (context.stays_open && !length->has_value()) {
     // The first one goes out now, not when the next line is waited for.
     if (const auto heard = session.listen(); !heard) {
       session.can()->stop_sync();
-      return tl::unexpected<Error>(heard.error());
+      return fail(heard.error());
     }
     const std::chrono::duration<double, std::milli> period = options->period;
     return Value(
@@ -121,7 +120,7 @@ Result<Value> run_start(Context& context, const Arguments& arguments) {
   const auto ended = traffic::listen(session, *length, {});
   auto result = traffic::end_sync(session);
   for (auto& warning : result.warnings) context.notices.push_back(std::move(warning));
-  if (!ended) return tl::unexpected<Error>(ended.error());
+  if (!ended) return fail(ended.error());
   return Value(std::move(result.table));
 }
 

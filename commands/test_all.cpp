@@ -37,27 +37,27 @@ class AllTests {
 
   Result<report::Value> run() {
     auto request = motion_request(*context_, *arguments_);
-    if (!request) return tl::unexpected<Error>(request.error());
+    if (!request) return fail(request.error());
     request_ = std::move(*request);
     const auto node = request_->node;
     const auto jog = parse_jog_test(*arguments_, arguments_->text("speed"));
-    if (!jog) return tl::unexpected<Error>(jog.error());
+    if (!jog) return fail(jog.error());
     const auto home = parse_home_test(*arguments_, {});
-    if (!home) return tl::unexpected<Error>(home.error());
+    if (!home) return fail(home.error());
     const auto inputs = trial::parse_inputs(*context_, arguments_->text("--expect"));
-    if (!inputs) return tl::unexpected<Error>(inputs.error());
+    if (!inputs) return fail(inputs.error());
     if (arguments_->has("--junit") && !context_->dry_run)
       if (const auto possible = check_writable(std::string(arguments_->text("--junit"))); !possible)
-        return tl::unexpected<Error>(possible.error());
+        return fail(possible.error());
     if (const auto done = add(trial::test_communication(*context_, node, {})); !done)
-      return tl::unexpected<Error>(done.error());
+      return fail(done.error());
     // A motor is not moved by way of a bus that has just failed.
     bool may_move = passed(results_.back());
     const bool heard = may_move;
     // Asked here and not before the command: a drive that does not answer has failed its first test.
     if (heard)
       if (const auto fits = context_->hold_family(context_->nodes, context_->profile, true); !fits)
-        return tl::unexpected<Error>(fits.error());
+        return fail(fits.error());
     // Nothing is begun that a limit would end half way.
     if (may_move)
       if (const auto possible = check(*jog, *home); !possible) {
@@ -66,7 +66,7 @@ class AllTests {
       }
     if (!inputs->empty() && may_move)
       if (const auto done = add(trial::test_inputs(*context_, node, {*inputs})); !done)
-        return tl::unexpected<Error>(done.error());
+        return fail(done.error());
     // What was found before is told even when a motion is refused, or not confirmed.
     if (may_move)
       if (const auto done = move(*jog, *home); !done) context_->errors.push_back(done.error());
@@ -79,13 +79,13 @@ class AllTests {
 
  private:
   Result<void> add(Result<TestResult> result) {
-    if (!result) return tl::unexpected<Error>(result.error());
+    if (!result) return fail(result.error());
     results_.push_back(std::move(*result));
     return {};
   }
 
   Result<void> add(Result<trial::MotionTrial> done) {
-    if (!done) return tl::unexpected<Error>(done.error());
+    if (!done) return fail(done.error());
     if (!done->result) {
       plans_.push_back(std::move(done->plan));
       return {};

@@ -18,14 +18,14 @@ constexpr Parameter kParameters[] = {
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   trial::CommTrial test;
   const auto count = count_option(arguments, "--count", 1, 1'000'000, test.count);
-  if (!count) return tl::unexpected<Error>(count.error());
+  if (!count) return fail(count.error());
   const auto longest = duration_option(arguments, "--longest");
-  if (!longest) return tl::unexpected<Error>(longest.error());
+  if (!longest) return fail(longest.error());
   test = {*count, longest->value_or(test.longest)};
   std::vector<report::TestResult> results;
   for (const auto node : context.nodes) {
     auto result = trial::test_communication(context, node, test);
-    if (!result) return tl::unexpected<Error>(result.error());
+    if (!result) return fail(result.error());
     results.push_back(std::move(*result));
   }
   return trial::verdicts(context, verdict_options(arguments), results);

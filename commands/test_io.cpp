@@ -21,13 +21,13 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   if (context.nodes.size() != 1) return fail(Errc::usage, "'test io' watches one drive", "name it: -n 1");
   trial::InputTrial test;
   auto expected = trial::parse_inputs(context, arguments.text("--expect"));
-  if (!expected) return tl::unexpected<Error>(expected.error());
+  if (!expected) return fail(expected.error());
   test.expected = std::move(*expected);
   const auto length = duration_option(arguments, "--for");
-  if (!length) return tl::unexpected<Error>(length.error());
+  if (!length) return fail(length.error());
   test.length = length->value_or(test.length);
   auto result = trial::test_inputs(context, context.nodes.front(), test);
-  if (!result) return tl::unexpected<Error>(result.error());
+  if (!result) return fail(result.error());
   return trial::verdicts(context, verdict_options(arguments), {std::move(*result)});
 }
 

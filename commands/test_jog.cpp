@@ -27,11 +27,11 @@ constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   const auto test = parse_jog_test(arguments, arguments.text("speed"));
-  if (!test) return tl::unexpected<Error>(test.error());
+  if (!test) return fail(test.error());
   const auto request = motion_request(context, arguments);
-  if (!request) return tl::unexpected<Error>(request.error());
+  if (!request) return fail(request.error());
   auto done = trial::test_jog(context, *request, *test);
-  if (!done) return tl::unexpected<Error>(done.error());
+  if (!done) return fail(done.error());
   if (!done->result) return std::move(done->plan);
   return trial::verdicts(context, verdict_options(arguments), {std::move(*done->result)});
 }

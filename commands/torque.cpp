@@ -19,11 +19,11 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   motion::Torque torque;
   torque.torque = arguments.text("torque");
   const auto length = duration_option(arguments, "--for");
-  if (!length) return tl::unexpected<Error>(length.error());
+  if (!length) return fail(length.error());
   if (!*length) return fail(Errc::usage, "how long?", "add --for 1s");
   torque.length = **length;
   const auto request = motion_request(context, arguments);
-  if (!request) return tl::unexpected<Error>(request.error());
+  if (!request) return fail(request.error());
   return motion::run_motion(context, *request,
                             motion::motion_run(torque, motion::plan_torque, motion::run_torque));
 }

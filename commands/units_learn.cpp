@@ -65,7 +65,7 @@ Result<std::optional<double>> nameplate_of(const Arguments& arguments) {
 
 Result<Duration> length_of(const Arguments& arguments) {
   const auto length = duration_option(arguments, "--for");
-  if (!length) return tl::unexpected<Error>(length.error());
+  if (!length) return fail(length.error());
   if (!*length) return Learn{}.length;
   if (**length >= kShortest && **length <= kLongest) return **length;
   return fail(Errc::usage, "--for: it is measured for 2 s to 60 s", "--for 6s");
@@ -128,13 +128,13 @@ Result<Learn> learn_of(Context& context, const Arguments& arguments, std::uint8_
         told.empty() ? std::string(motion::kOtherWay) : "`units show` reads them");
   }
   const auto monitor = drive::resolve(context.profile, rules.learn.speed);
-  if (!monitor) return tl::unexpected<Error>(monitor.error());
+  if (!monitor) return fail(monitor.error());
   const auto gear = read_gear(context, node);
-  if (!gear) return tl::unexpected<Error>(gear.error());
+  if (!gear) return fail(gear.error());
   const auto rpm = speed_of(arguments);
-  if (!rpm) return tl::unexpected<Error>(rpm.error());
+  if (!rpm) return fail(rpm.error());
   const auto length = length_of(arguments);
-  if (!length) return tl::unexpected<Error>(length.error());
+  if (!length) return fail(length.error());
   Learn out;
   out.rpm = *rpm;
   out.length = *length;
@@ -143,7 +143,7 @@ Result<Learn> learn_of(Context& context, const Arguments& arguments, std::uint8_
   out.least = rules.learn.least;
   out.gear = *gear;
   const auto nameplate = nameplate_of(arguments);
-  if (!nameplate) return tl::unexpected<Error>(nameplate.error());
+  if (!nameplate) return fail(nameplate.error());
   out.expected.told = *nameplate;
   out.expected.node = node;
   out.expected.disputed = monitor->parameter != nullptr &&
@@ -166,7 +166,7 @@ Result<void> keep(Context& context, std::uint8_t node, const motion::LearnReport
   if (!now || *now != gear)
     return refused(node, "its gear was changed while it was measured: nothing is kept", "measure again");
   const auto identity = session::read_identity(*context.session, node);
-  if (!identity) return tl::unexpected<Error>(identity.error());
+  if (!identity) return fail(identity.error());
   motion::KeptTurn turn;
   turn.counts = static_cast<std::uint64_t>(std::llround(done.counts->counts));
   turn.measured = static_cast<std::uint64_t>(std::llround(done.measured->increments / gear));
@@ -180,7 +180,7 @@ Result<void> keep(Context& context, std::uint8_t node, const motion::LearnReport
   auto error = written.error();
   error.message =
       fmt::format("the {} counts that were measured are not kept: {}", turn.counts, error.message);
-  return tl::unexpected<Error>(std::move(error));
+  return fail(std::move(error));
 }
 
 void add_measurement(Value& answer, const motion::LearnReport& done, double gear, bool kept) {
@@ -209,17 +209,16 @@ void add_measurement(Value& answer, const motion::LearnReport& done, double gear
 
 Result<Value> run(Context& context, const Arguments& arguments) {
   const auto request = motion_request(context, arguments);
-  if (!request) return tl::unexpected<Error>(request.error());
+  if (!request) return fail(request.error());
   const auto node = request->node;
   const auto learn = learn_of(context, arguments, node);
-  if (!learn) return tl::unexpected<Error>(learn.error());
+  if (!learn) return fail(learn.error());
   const motion::TurnFile file(context, node);
   if (file.path().empty())
     return fail(Errc::refused, "there is no folder to keep in what is measured",
                 "set HOME or XDG_STATE_HOME");
   if (!context.dry_run)
-    if (const auto possible = check_writable(file.path()); !possible)
-      return tl::unexpected<Error>(possible.error());
+    if (const auto possible = check_writable(file.path()); !possible) return fail(possible.error());
   motion::LearnReport done;
   bool moved = false;
   motion::MotionRun motion;

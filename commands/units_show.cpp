@@ -93,7 +93,7 @@ List row(const Context& context, std::uint8_t node, Measure measure, std::string
 
 Result<Value> run(Context& context, const Arguments& arguments) {
   const auto options = motion_options(context, arguments);
-  if (!options) return tl::unexpected<Error>(options.error());
+  if (!options) return fail(options.error());
   report::Table table;
   table.columns = {{"node"},
                    {"measure"},

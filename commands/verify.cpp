@@ -24,7 +24,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   if (name != kFactory) {
     auto read = settings::read_backup(context, name, context.front_end, context.nodes.front(),
                                       arguments.has("--skip-invalid"));
-    if (!read) return tl::unexpected<Error>(read.error());
+    if (!read) return fail(read.error());
     if (read->family != context.profile->family)
       return fail(Errc::refused,
                   fmt::format("{} is of {}, not of {}", name, read->family, context.profile->family),

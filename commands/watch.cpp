@@ -45,8 +45,7 @@ class Watching {
     const auto failed =
         std::find_if(samples.begin(), samples.end(), [](const traffic::Sample& s) { return !s.bytes; });
     const bool interrupted = failed != samples.end() && failed->bytes.error().code == Errc::interrupted;
-    if (interrupted || (looks_++ == 0 && failed != samples.end()))
-      return tl::unexpected<Error>(failed->bytes.error());
+    if (interrupted || (looks_++ == 0 && failed != samples.end())) return fail(failed->bytes.error());
     const auto seconds = std::chrono::duration<double>(since).count();
     for (std::size_t i = 0; i < samples.size(); ++i) records_[i].add(seconds, samples[i]);
     for (const auto node : context_->nodes) show(node, seconds, samples);
@@ -132,11 +131,11 @@ class Watching {
 
 Result<Value> run(Context& context, const Arguments& arguments) {
   const auto every = duration_option(arguments, "--every");
-  if (!every) return tl::unexpected<Error>(every.error());
+  if (!every) return fail(every.error());
   const auto length = duration_option(arguments, "--for");
-  if (!length) return tl::unexpected<Error>(length.error());
+  if (!length) return fail(length.error());
   auto sampler = traffic::Sampler::make(context, arguments.all("object"));
-  if (!sampler) return tl::unexpected<Error>(sampler.error());
+  if (!sampler) return fail(sampler.error());
   auto& session = *context.session;
   const auto period = every->value_or(kDefaultEvery);
   Watching watching(context, *sampler, arguments.has("--changes"));
@@ -153,7 +152,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
     return looked;
   };
   const auto ended = traffic::listen(session, *length, listener);
-  if (!ended && ended.error().code != Errc::interrupted) return tl::unexpected<Error>(ended.error());
+  if (!ended && ended.error().code != Errc::interrupted) return fail(ended.error());
   return watching.result(arguments.has("--plot"));
 }
 

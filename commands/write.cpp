@@ -43,17 +43,17 @@ Result<settings::Change> change_of(Context& context, const Arguments& arguments,
                     : settings::make_change(context, node, target, arguments.text("value"), type);
   if (!change) return change;
   const auto transfer = write_transfer(context, arguments, change->data.size());
-  if (!transfer) return tl::unexpected<Error>(show::located(transfer.error(), node, target.address));
+  if (!transfer) return fail(show::located(transfer.error(), node, target.address));
   change->transfer = *transfer;
   return change;
 }
 
 Result<void> check(Context& context, const Arguments& arguments) {
   const auto type = parse_type_option(arguments);
-  if (!type) return tl::unexpected<Error>(type.error());
+  if (!type) return fail(type.error());
   if (const auto one = check_one_source(arguments); !one) return one;
   const auto target = drive::resolve(context.profile, arguments.text("object"));
-  if (!target) return tl::unexpected<Error>(target.error());
+  if (!target) return fail(target.error());
   if (arguments.has("--from")) return {};
   for (const auto node : context.nodes)
     if (const auto fits = settings::check_change(context, node, *target, arguments.text("value"), *type);
@@ -64,21 +64,21 @@ Result<void> check(Context& context, const Arguments& arguments) {
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   const auto type = parse_type_option(arguments);
-  if (!type) return tl::unexpected<Error>(type.error());
-  if (const auto one = check_one_source(arguments); !one) return tl::unexpected<Error>(one.error());
+  if (!type) return fail(type.error());
+  if (const auto one = check_one_source(arguments); !one) return fail(one.error());
   const auto target = drive::resolve(context.profile, arguments.text("object"));
-  if (!target) return tl::unexpected<Error>(target.error());
+  if (!target) return fail(target.error());
   std::vector<settings::Change> changes;
   for (const auto node : context.nodes) {
     auto change = change_of(context, arguments, node, *target, *type);
-    if (!change) return tl::unexpected<Error>(change.error());
+    if (!change) return fail(change.error());
     changes.push_back(std::move(*change));
   }
   const settings::WriteOptions options{
       .read_back = false, .keep = arguments.has("--keep"), .unlock = arguments.has("--unlock")};
   if (context.dry_run) return settings::planned_changes(context, changes, options);
   if (const auto confirmed = settings::confirm_changes(context, changes); !confirmed)
-    return tl::unexpected<Error>(confirmed.error());
+    return fail(confirmed.error());
   return arguments.has("--from")
              ? settings::write_from_file(context, changes, arguments.text("--from"), options)
              : settings::write_changes(context, changes, options);

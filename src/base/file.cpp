@@ -251,7 +251,7 @@ Result<std::string> read_file(const std::filesystem::path& path, std::uintmax_t 
 
 Result<void> check_writable(const std::filesystem::path& path) {
   const auto target = target_of(path);
-  if (!target) return tl::unexpected<Error>(target.error());
+  if (!target) return fail(target.error());
   if (target->kind == Target::Kind::other) return {};
   if (target->kind == Target::Kind::descriptor) {
     const int flags = ::fcntl(target->descriptor, F_GETFL);
@@ -267,7 +267,7 @@ Result<void> check_writable(const std::filesystem::path& path) {
 
 Result<void> write_file_atomically(const std::filesystem::path& path, std::string_view content) {
   const auto target = target_of(path);
-  if (!target) return tl::unexpected<Error>(target.error());
+  if (!target) return fail(target.error());
   if (target->kind != Target::Kind::regular) return write_through(path, *target, content);
   Temporary file(*target);
   file.fill(content);

@@ -58,7 +58,7 @@ void ReplayBus::skip_done() {
 
 Result<std::unique_ptr<Bus>> open_replay(const std::filesystem::path& file) {
   const auto text = read_file(file, kMaxFile);
-  if (!text) return tl::unexpected<Error>(text.error());
+  if (!text) return fail(text.error());
   std::vector<LogFrame> lines;
   for (const auto row : split(std::string_view(*text), '\n')) {
     auto line = parse_log_line(row);

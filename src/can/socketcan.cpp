@@ -130,7 +130,7 @@ Result<std::optional<Frame>> SocketCanBus::receive(TimePoint deadline) {
     if (woken == Wake::interrupted && inbox_.empty() && !failed_) return std::optional<Frame>();
   }
   while (inbox_.empty()) {
-    if (failed_) return tl::unexpected<Error>(*std::exchange(failed_, std::nullopt));
+    if (failed_) return fail(*std::exchange(failed_, std::nullopt));
     if (wait_or_signal(socket_.get(), POLLIN, deadline) != Wake::ready) return std::optional<Frame>();
     drain();
   }
@@ -156,7 +156,7 @@ Result<void> SocketCanBus::recover(TimePoint deadline) {
       lost_frames_ = 0;
       return {};
     }
-    if (now() >= deadline) return tl::unexpected<Error>(opened.error());
+    if (now() >= deadline) return fail(opened.error());
     nap(std::min<Duration>(kReopenPause, deadline - now()));
   }
 }

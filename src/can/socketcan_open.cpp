@@ -102,7 +102,7 @@ Result<std::unique_ptr<Bus>> open_socketcan(std::string_view interface_name,
                                             std::span<const Filter> filters) {
   const std::string name(interface_name);
   auto socket = socketcan_socket(name, filters);
-  if (!socket) return tl::unexpected<Error>(socket.error());
+  if (!socket) return fail(socket.error());
   auto bus = std::make_unique<SocketCanBus>(std::move(*socket), name);
   bus->keep_filters(filters);
   return bus;

@@ -202,7 +202,7 @@ Result<Descriptor> open_trace(const std::filesystem::path& file) {
 Result<std::unique_ptr<Bus>> trace_to(std::unique_ptr<Bus> inner, const std::filesystem::path& file,
                                       std::string_view interface_name, TraceClock clock, TraceFailed failed) {
   auto log = open_trace(file);
-  if (!log) return tl::unexpected<Error>(log.error());
+  if (!log) return fail(log.error());
   // Taken once, so that a step of the system clock does not tear the trace apart.
   const auto wall = std::chrono::duration_cast<Duration>(std::chrono::system_clock::now().time_since_epoch());
   const auto offset = clock == TraceClock::wall ? wall - inner->now().time_since_epoch() : Duration::zero();

@@ -99,7 +99,7 @@ void SdoClient::on_abort(const can::Frame& frame, TimePoint now) {
       error(Errc::sdo_abort, fmt::format("refused: {} (abort 0x{:08X})", sdo_abort_text(code), code),
             reads ? sdo_abort_hint(code) : sdo_abort_hint(code, object_));
   refused.abort_code = code;
-  finish(tl::unexpected<Error>(std::move(refused)));
+  finish(fail(std::move(refused)));
 }
 
 /// Segments carry no object: what another master asks for would be taken as ours. Before them, answers tell
@@ -109,8 +109,8 @@ void SdoClient::on_foreign_request() {
   const bool anonymous = state_ != State::upload_initiate && state_ != State::download_initiate &&
                          state_ != State::block_upload_initiate && state_ != State::block_download_initiate;
   if (anonymous)
-    finish(tl::unexpected<Error>(error(Errc::protocol, "another master uses its SDO channel at the same time",
-                                       "stop the other master, a PLC or a second tool, and try again")));
+    finish(fail(error(Errc::protocol, "another master uses its SDO channel at the same time",
+                      "stop the other master, a PLC or a second tool, and try again")));
 }
 
 /// Some send it without having restarted, when 1017h is written: the answer that follows is the true one.
@@ -121,9 +121,8 @@ void SdoClient::on_boot_up(TimePoint now) {
 }
 
 void SdoClient::end_by_boot_up() {
-  finish(tl::unexpected<Error>(
-      error(Errc::timeout, "the node restarted (boot-up) in the middle of the transfer",
-            "did it lose its supply, or did somebody reset it? Try again when it has started")));
+  finish(fail(error(Errc::timeout, "the node restarted (boot-up) in the middle of the transfer",
+                    "did it lose its supply, or did somebody reset it? Try again when it has started")));
 }
 
 void SdoClient::on_upload_initiate(const can::Frame& frame, TimePoint now) {
@@ -256,7 +255,7 @@ void SdoClient::send(const can::Frame& frame, State next, TimePoint now) {
 }
 
 void SdoClient::abort(std::uint32_t code, Errc errc, std::string why, std::string hint) {
-  finish(tl::unexpected<Error>(error(errc, std::move(why), std::move(hint))));
+  finish(fail(error(errc, std::move(why), std::move(hint))));
   tx_ = sdo_frame(kSdoRequest + node_, kSdoAbortCommand, object_, code);
 }
 

@@ -45,7 +45,7 @@ Result<session::Session*> BusHolder::open(const Settings& settings) {
     stop_sync();
     drop();
     bus_options_.trace = settings.trace;
-    if (auto done = connect(settings.bus); !done) return tl::unexpected<Error>(done.error());
+    if (auto done = connect(settings.bus); !done) return fail(done.error());
   }
   session_->options().timeout = settings.timeout;
   session_->options().retries = settings.retries;
@@ -54,7 +54,7 @@ Result<session::Session*> BusHolder::open(const Settings& settings) {
 
 Result<void> BusHolder::connect(const std::string& url) {
   auto bus = session::open_bus(url, bus_options_);
-  if (!bus) return tl::unexpected<Error>(bus.error());
+  if (!bus) return fail(bus.error());
   auto session = std::make_unique<session::Session>(std::move(*bus), url, options_);
   // Boot-ups of drives that are simulated in this process are no news.
   if (auto heard = session->listen(); !heard) return heard;

@@ -59,7 +59,7 @@ Result<void> FamilyGate::ask_who(std::span<const std::uint8_t> nodes) {
   for (const auto& identity : identities)
     // A recording (replay:) answers nothing but what it was asked; a lost bus fails the command itself.
     if (identity || identity.error().code == Errc::bus) return {};
-  return tl::unexpected<Error>(identities.front().error());
+  return fail(identities.front().error());
 }
 
 Result<void> FamilyGate::ask_all(std::span<const std::uint8_t> nodes, const drive::Profile& profile,
@@ -76,7 +76,7 @@ Result<void> FamilyGate::ask_all(std::span<const std::uint8_t> nodes, const driv
     }
     const auto code = identity.error().code;
     if (code == Errc::bus || code == Errc::interrupted || (must_answer && none))
-      return tl::unexpected<Error>(identity.error());
+      return fail(identity.error());
     if (must_answer)
       notices_->push_back(
           fmt::format("node {} did not answer when it was asked what it is: that it is a {} is "

@@ -52,7 +52,7 @@ int run_pipe(Shell& shell) {
 Result<Settings> settings_for_lines(const Settings& defaults, std::vector<std::string> words) {
   words.emplace_back("help");
   const auto parsed = parse_line(words);
-  if (!parsed) return tl::unexpected<Error>(parsed.error());
+  if (!parsed) return fail(parsed.error());
   return apply_options(defaults, parsed->arguments);
 }
 

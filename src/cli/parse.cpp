@@ -68,7 +68,7 @@ class Parser {
       words.insert(words.end(), values.begin() + static_cast<std::ptrdiff_t>(room), values.end());
       values.resize(room);
     }
-    if (const auto taken = take_words(std::move(words)); !taken) return tl::unexpected<Error>(taken.error());
+    if (const auto taken = take_words(std::move(words)); !taken) return fail(taken.error());
     for (const auto& value : values)
       if (!take_argument(value)) return one_too_many(value);
     return collect();
@@ -242,7 +242,7 @@ Result<ParsedLine> parse_line(const std::vector<std::string>& words) {
   const auto begin = rest.begin() + static_cast<std::ptrdiff_t>(match.first);
   rest.erase(begin, begin + static_cast<std::ptrdiff_t>(match.used));
   auto arguments = Parser(*match.command).parse(std::move(rest));
-  if (!arguments) return tl::unexpected<Error>(arguments.error());
+  if (!arguments) return fail(arguments.error());
   return ParsedLine{match.command, std::move(*arguments)};
 }
 

@@ -103,7 +103,7 @@ Outcome Shell::help(const std::vector<std::string>& words, Settings settings) {
 }
 
 Result<Value> Shell::execute(Run& run, const command::Arguments& arguments) {
-  if (const auto ready = prepare(run, arguments); !ready) return tl::unexpected<Error>(ready.error());
+  if (const auto ready = prepare(run, arguments); !ready) return fail(ready.error());
   auto& context = run.context;
   context.nodes_typed = run.settings.nodes_typed;
   context.chinese = run.settings.chinese;
@@ -126,10 +126,9 @@ Result<void> Shell::prepare(Run& run, const command::Arguments& arguments) {
   // What is wrong in the line itself is told before a bus is opened.
   if (includes(command.needs, Needs::node) && run.settings.nodes.empty()) return fail(no_node(command));
   if (!run.settings.nodes.empty())
-    if (const auto nodes = parse_nodes(run.settings.nodes); !nodes)
-      return tl::unexpected<Error>(nodes.error());
+    if (const auto nodes = parse_nodes(run.settings.nodes); !nodes) return fail(nodes.error());
   const auto opened = open(run.settings);
-  if (!opened) return tl::unexpected<Error>(opened.error());
+  if (!opened) return fail(opened.error());
   run.context.session = *opened;
   if (const auto possible = check_network(command, **opened); !possible) return possible;
   if (const auto named = prepare_nodes(run); !named) return named;
@@ -139,7 +138,7 @@ Result<void> Shell::prepare(Run& run, const command::Arguments& arguments) {
 Result<void> Shell::prepare_profile(Run& run) {
   if (run.settings.drive.empty()) return ask_for_family(run);
   const auto loaded = profile(run.settings.drive);
-  if (!loaded) return tl::unexpected<Error>(loaded.error());
+  if (!loaded) return fail(loaded.error());
   run.context.profile = *loaded;
   for (const auto& warning : (*loaded)->warnings) run.context.notices.push_back(warning);
   return {};
@@ -178,7 +177,7 @@ tl::unexpected<Error> Shell::ask_for_family(Run& run) {
 Result<void> Shell::name_nodes(Run& run) {
   if (run.settings.nodes.empty()) return {};
   auto nodes = parse_nodes(run.settings.nodes);
-  if (!nodes) return tl::unexpected<Error>(nodes.error());
+  if (!nodes) return fail(nodes.error());
   run.context.nodes = std::move(*nodes);
   return {};
 }
@@ -186,13 +185,13 @@ Result<void> Shell::name_nodes(Run& run) {
 Result<void> Shell::prepare_nodes(Run& run) {
   if (run.settings.nodes.empty()) return {};
   auto nodes = parse_nodes(run.settings.nodes);
-  if (!nodes) return tl::unexpected<Error>(nodes.error());
+  if (!nodes) return fail(nodes.error());
   const bool takes_all = run.command->to_all || !includes(run.command->needs, Needs::node);
   if (nodes->front() == 0 && !takes_all) {
     std::vector<std::uint8_t> every(canopen::kLastNode);
     std::iota(every.begin(), every.end(), canopen::kFirstNode);
     const auto found = session::scan(*run.context.session, every);
-    if (!found) return tl::unexpected<Error>(found.error());
+    if (!found) return fail(found.error());
     nodes->clear();
     for (const auto& node : *found) nodes->push_back(node.node);
     if (nodes->empty())
@@ -207,7 +206,7 @@ Result<const drive::Profile*> Shell::profile(const std::string& family) {
   const auto known = profiles_.find(family);
   if (known != profiles_.end()) return known->second.get();
   auto loaded = drive::load_profile(family, options_.drive_folders);
-  if (!loaded) return tl::unexpected<Error>(loaded.error());
+  if (!loaded) return fail(loaded.error());
   auto& place = profiles_[family];
   place = std::make_unique<drive::Profile>(std::move(*loaded));
   return place.get();

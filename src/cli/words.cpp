@@ -12,7 +12,7 @@ class Splitter {
 
   Result<std::vector<std::string>> split() {
     for (at_ = 0; at_ < line_.size() && !comment_; ++at_)
-      if (const auto taken = take(line_[at_]); !taken) return tl::unexpected<Error>(taken.error());
+      if (const auto taken = take(line_[at_]); !taken) return fail(taken.error());
     if (quote_ == '\0') return std::move(words_);
     return fail(Errc::usage, std::string("the quote ") + quote_ + " is not closed",
                 "close it, or write \\" + std::string(1, quote_));
@@ -43,7 +43,7 @@ class Splitter {
       words_.back() += line_[++at_];
     } else if (c == '$' && quote_ != '\'' && more && line_[at_ + 1] == '{' && *variables_) {
       const auto value = expand_variable(line_, at_, *variables_);
-      if (!value) return tl::unexpected<Error>(value.error());
+      if (!value) return fail(value.error());
       filled_in_ += value->size();
       if (filled_in_ > kLongestLine)
         return fail(Errc::usage,

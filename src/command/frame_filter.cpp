@@ -11,7 +11,7 @@ Result<traffic::FrameFilter> frame_filter(const Context& context, const Argument
     out.services.push_back(*std::find(std::begin(traffic::kServices), std::end(traffic::kServices), service));
   for (const auto& name : arguments.all("--object")) {
     const auto target = drive::resolve(context.profile, name);
-    if (!target) return tl::unexpected<Error>(target.error());
+    if (!target) return fail(target.error());
     out.objects.push_back(target->address);
   }
   return out;

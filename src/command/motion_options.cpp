@@ -47,9 +47,9 @@ Result<motion::MotionOptions> motion_options(const Context& context, const Argum
 
 Result<motion::MotionRequest> motion_request(const Context& context, const Arguments& arguments) {
   const auto node = one_node(context);
-  if (!node) return tl::unexpected<Error>(node.error());
+  if (!node) return fail(node.error());
   auto options = motion_options(context, arguments);
-  if (!options) return tl::unexpected<Error>(options.error());
+  if (!options) return fail(options.error());
   return motion::MotionRequest{*node, std::move(*options), std::string(arguments.text("--csv")),
                                arguments.has("--plot")};
 }

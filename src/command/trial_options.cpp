@@ -26,15 +26,15 @@ Result<trial::JogTrial> parse_jog_test(const Arguments& arguments, std::string_v
   trial::JogTrial out;
   out.speed = speed;
   const auto length = duration_option(arguments, "--for");
-  if (!length) return tl::unexpected<Error>(length.error());
+  if (!length) return fail(length.error());
   out.length = length->value_or(out.length);
   if (out.length < kShortest)
     return fail(Errc::usage, "--for is too short to reach the speed", "at least 1s");
   const auto stop = duration_option(arguments, "--stop-within");
-  if (!stop) return tl::unexpected<Error>(stop.error());
+  if (!stop) return fail(stop.error());
   out.longest_stop = stop->value_or(out.longest_stop);
   const auto tolerance = number_option(arguments, "--tolerance", out.tolerance);
-  if (!tolerance) return tl::unexpected<Error>(tolerance.error());
+  if (!tolerance) return fail(tolerance.error());
   out.tolerance = *tolerance;
   return out;
 }
@@ -43,10 +43,10 @@ Result<trial::HomeTrial> parse_home_test(const Arguments& arguments, std::string
   trial::HomeTrial out;
   out.method = method;
   const auto repeat = count_option(arguments, "--repeat", 1, 1000, out.repeat);
-  if (!repeat) return tl::unexpected<Error>(repeat.error());
+  if (!repeat) return fail(repeat.error());
   out.repeat = *repeat;
   const auto spread = number_option(arguments, "--spread", out.spread);
-  if (!spread) return tl::unexpected<Error>(spread.error());
+  if (!spread) return fail(spread.error());
   out.spread = *spread;
   return out;
 }

@@ -42,7 +42,7 @@ std::string_view name(Fault::Kind kind) {
 
 Result<std::vector<Fault>> parse_faults(std::string_view csv, std::string_view file) {
   const auto table = parse_csv(csv, file);
-  if (!table) return tl::unexpected<Error>(table.error());
+  if (!table) return fail(table.error());
   for (const auto& column : table->columns)
     if (std::find(kColumns.begin(), kColumns.end(), column) == kColumns.end())
       return bad_cell(file, 1, column, column, "a column of a faults table (docs/drive-data.md)");

@@ -148,7 +148,7 @@ Result<const od::Parameter*> resolve_parameter(const Profile& profile, std::stri
 Result<Target> resolve_panel(const Profile& profile, std::string_view text) {
   if (auto target = by_rule(profile, text)) return *target;
   const auto parameter = resolve_parameter(profile, text);
-  if (!parameter) return tl::unexpected<Error>(parameter.error());
+  if (!parameter) return fail(parameter.error());
   return resolve(&profile, (*parameter)->id);
 }
 

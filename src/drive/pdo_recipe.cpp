@@ -35,7 +35,7 @@ bool get(const toml::node& node, PdoPreset& out) {
 }
 
 Result<PdoFile> parse_pdo_file(std::string_view toml, std::string_view file) {
-  if (const auto flat = check_toml_depth(toml, file); !flat) return tl::unexpected<Error>(flat.error());
+  if (const auto flat = check_toml_depth(toml, file); !flat) return fail(flat.error());
   const auto parsed = toml::parse(toml, file);
   if (!parsed) {
     Error error;

@@ -51,9 +51,9 @@ void set_marks(Rules& rules, std::vector<IdentityMark> marks) {
 
 Result<void> add_dictionary(Profile& profile, const fs::path& path) {
   const auto text = read_file(path, od::kMostEdsBytes);
-  if (!text) return tl::unexpected<Error>(text.error());
+  if (!text) return fail(text.error());
   auto file = od::read_eds(*text, path.string());
-  if (!file) return tl::unexpected<Error>(file.error());
+  if (!file) return fail(file.error());
   if (profile.rules.identity.empty()) set_marks(profile.rules, identity_marks(*file));
   if (is_drive(file->dictionary)) od::inherit(file->dictionary, profile.dictionary);
   profile.dictionary = std::move(file->dictionary);
@@ -68,33 +68,33 @@ Result<void> add_dictionary(Profile& profile, const fs::path& path) {
 
 Result<void> add_parameters(Profile& profile, const fs::path& path) {
   const auto text = read_file(path);
-  if (!text) return tl::unexpected<Error>(text.error());
+  if (!text) return fail(text.error());
   auto parameters = od::parse_parameters(*text, path.string());
-  if (!parameters) return tl::unexpected<Error>(parameters.error());
+  if (!parameters) return fail(parameters.error());
   profile.parameters = std::move(*parameters);
   return {};
 }
 
 Result<void> add_object_notes(Profile& profile, const fs::path& path) {
   const auto text = read_file(path);
-  if (!text) return tl::unexpected<Error>(text.error());
+  if (!text) return fail(text.error());
   return od::annotate(profile.dictionary, *text, path.string());
 }
 
 Result<void> add_faults(Profile& profile, const fs::path& path) {
   const auto text = read_file(path);
-  if (!text) return tl::unexpected<Error>(text.error());
+  if (!text) return fail(text.error());
   auto faults = parse_faults(*text, path.string());
-  if (!faults) return tl::unexpected<Error>(faults.error());
+  if (!faults) return fail(faults.error());
   profile.faults = std::move(*faults);
   return {};
 }
 
 Result<void> add_rules(Profile& profile, const fs::path& path) {
   const auto text = read_file(path);
-  if (!text) return tl::unexpected<Error>(text.error());
+  if (!text) return fail(text.error());
   auto rules = parse_rules(*text, path.string(), std::move(profile.rules));
-  if (!rules) return tl::unexpected<Error>(rules.error());
+  if (!rules) return fail(rules.error());
   profile.rules = std::move(*rules);
   return {};
 }
@@ -123,7 +123,7 @@ Result<Profile> load_parent(const Family& family, std::span<const fs::path> fold
   const auto path = with_extension(family.stem, ".toml");
   if (!fs::exists(path, ignored)) return Profile{};
   const auto text = read_file(path);
-  if (!text) return tl::unexpected<Error>(text.error());
+  if (!text) return fail(text.error());
   const auto parent = parent_of(*text);
   if (parent.empty()) return Profile{};
   if (ancestors == kMostAncestors)
@@ -147,7 +147,7 @@ Result<Profile> load_parts(const Family& family, std::span<const fs::path> folde
     const auto path = with_extension(family.stem, part.extension);
     if (!fs::exists(path, ignored)) continue;
     if (part.extension == ".dcf" && fs::exists(with_extension(family.stem, ".eds"), ignored)) continue;
-    if (const auto added = part.add(profile, path); !added) return tl::unexpected<Error>(added.error());
+    if (const auto added = part.add(profile, path); !added) return fail(added.error());
   }
   profile.build_index();
   return profile;
@@ -172,7 +172,7 @@ Result<Profile> load_single_file(const fs::path& path, std::span<const fs::path>
   profile.of_file = true;
   const bool table = lower(path.extension().string()) == ".csv";
   const auto added = table ? add_parameters(profile, path) : add_dictionary(profile, path);
-  if (!added) return tl::unexpected<Error>(added.error());
+  if (!added) return fail(added.error());
   if (!table && !is_drive(profile.dictionary)) profile.faults.clear();
   profile.build_index();
   return profile;
@@ -290,7 +290,7 @@ Result<Profile> load_profile(std::string_view family, std::span<const fs::path> 
 Result<Rules> load_rules(const Family& family) {
   const auto path = with_extension(family.stem, ".toml");
   const auto text = read_file(path);
-  if (!text) return tl::unexpected<Error>(text.error());
+  if (!text) return fail(text.error());
   return parse_rules(*text, path.string());
 }
 

@@ -69,11 +69,11 @@ tl::unexpected<Error> too_large(std::string_view text) {
 /// A number that an object carries encoded; it has fewer digits than the number.
 Result<Quantity> encoded(const Meaning& meaning, double number) {
   const auto value = od::encode_number(meaning.encoding, meaning.type, number);
-  if (!value) return tl::unexpected<Error>(value.error());
+  if (!value) return fail(value.error());
   const double held = od::decode_number(meaning.encoding, *value);
   const auto rounding =
       judge_rounding({number * meaning.scale, held * meaning.scale, 0, std::string(meaning.unit)});
-  if (!rounding) return tl::unexpected<Error>(rounding.error());
+  if (!rounding) return fail(rounding.error());
   return Quantity{*value, *rounding};
 }
 
@@ -95,9 +95,9 @@ Result<Quantity> from_physical(const Meaning& meaning, const NumberWithUnit& giv
                 fmt::format("the nearest value is {} {}", plain_number(tidy(whole * step), 9), given.unit));
   const auto rounding =
       judge_rounding({given.number, tidy(whole * step), std::abs(step), std::string(given.unit)});
-  if (!rounding) return tl::unexpected<Error>(rounding.error());
+  if (!rounding) return fail(rounding.error());
   const auto value = od::parse_value(meaning.type, fmt::format("{:.0f}", whole));
-  if (!value) return tl::unexpected<Error>(value.error());
+  if (!value) return fail(value.error());
   return Quantity{*value, *rounding};
 }
 
@@ -211,7 +211,7 @@ namespace {
 Result<Quantity> read(const Meaning& meaning, std::string_view text, Steps steps) {
   if (const auto* label = find_label(meaning, text)) {
     const auto value = od::parse_value(meaning.type, fmt::format("{}", label->value));
-    if (!value) return tl::unexpected<Error>(value.error());
+    if (!value) return fail(value.error());
     return Quantity{*value, {}};
   }
   if (meaning.encoding != od::Encoding::plain)
@@ -223,15 +223,14 @@ Result<Quantity> read(const Meaning& meaning, std::string_view text, Steps steps
   if (!plain && meaning.labels != nullptr && !parse_integer(text))
     return fail(Errc::usage, fmt::format("'{}' is no value of this object", text),
                 "values: " + labels_text(meaning));
-  if (!plain) return tl::unexpected<Error>(plain.error());
+  if (!plain) return fail(plain.error());
   return Quantity{*plain, {}};
 }
 
 Result<Quantity> read_checked(const Meaning& meaning, std::string_view text, Steps steps) {
   auto quantity = read(meaning, trim(text), steps);
   if (!quantity) return quantity;
-  if (const auto checked = check_limits(meaning, quantity->value); !checked)
-    return tl::unexpected<Error>(checked.error());
+  if (const auto checked = check_limits(meaning, quantity->value); !checked) return fail(checked.error());
   return quantity;
 }
 
@@ -239,7 +238,7 @@ Result<Quantity> read_checked(const Meaning& meaning, std::string_view text, Ste
 
 Result<od::Value> parse_quantity(const Meaning& meaning, std::string_view text) {
   const auto quantity = read_checked(meaning, text, Steps::exact);
-  if (!quantity) return tl::unexpected<Error>(quantity.error());
+  if (!quantity) return fail(quantity.error());
   return quantity->value;
 }
 

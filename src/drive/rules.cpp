@@ -50,8 +50,8 @@ class RulesReader {
                               {"assumed", into(rules_.assumed)},
                               {"contradicted", [&](const auto& n) { return contradicted(n); }},
                           });
-    if (inner_) return tl::unexpected<Error>(*inner_);
-    if (!done) return tl::unexpected<Error>(done.error());
+    if (inner_) return fail(*inner_);
+    if (!done) return fail(done.error());
     if (format == 0 || rules_.family.empty())
       return fail(Errc::file, fmt::format("{}: 'format' or 'family' is missing", file_),
                   "begin the file with format = 1 and family = \"NAME\"");
@@ -157,7 +157,7 @@ bool MotionRules::is_actuated(std::uint32_t inputs_word, unsigned bit) const {
 }
 
 Result<Rules> parse_rules(std::string_view toml, std::string_view file, Rules base) {
-  if (const auto flat = check_toml_depth(toml, file); !flat) return tl::unexpected<Error>(flat.error());
+  if (const auto flat = check_toml_depth(toml, file); !flat) return fail(flat.error());
   const auto parsed = toml::parse(toml, file);
   if (!parsed) {
     const auto& problem = parsed.error();

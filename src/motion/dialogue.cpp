@@ -56,7 +56,7 @@ class DialogueRun {
       next = std::min(next, channel.objects->busy() ? channel.objects->deadline() : channel.pause);
     }
     if (open_ == 0) return {};
-    if (const auto stepped = session_->step(next); !stepped) return tl::unexpected<Error>(stepped.error());
+    if (const auto stepped = session_->step(next); !stepped) return fail(stepped.error());
     return {};
   }
 

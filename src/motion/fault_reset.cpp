@@ -21,7 +21,7 @@ constexpr Duration kPause = std::chrono::milliseconds(20);
 
 Result<DriveState> read_state(session::Session& session, std::uint8_t node) {
   const auto answer = session.upload(node, objects::kStatusword);
-  if (!answer) return tl::unexpected<Error>(answer.error());
+  if (!answer) return fail(answer.error());
   return drive::decode_state(static_cast<std::uint16_t>(load_le(*answer)));
 }
 
@@ -30,11 +30,11 @@ Result<bool> left_fault(session::Session& session, std::uint8_t node) {
   const auto end = session.now() + kPatience;
   for (;;) {
     const auto state = read_state(session, node);
-    if (!state) return tl::unexpected<Error>(state.error());
+    if (!state) return fail(state.error());
     if (*state != DriveState::fault && *state != DriveState::fault_reaction_active) return true;
     if (session.now() >= end) return false;
     if (const auto waited = session.wait([] { return false; }, session.now() + kPause); !waited)
-      return tl::unexpected<Error>(waited.error());
+      return fail(waited.error());
   }
 }
 
@@ -42,10 +42,10 @@ Result<bool> left_fault(session::Session& session, std::uint8_t node) {
 /// command, so neither Ctrl-C nor a lost answer may come between the two.
 Result<bool> by_controlword(session::Session& session, std::uint8_t node) {
   const auto prepared = session.download(node, objects::kControlword, store_le(0, 2));
-  if (!prepared) return tl::unexpected<Error>(prepared.error());
+  if (!prepared) return fail(prepared.error());
   const session::Deaf deaf(session);
   const auto edge = session.download(node, objects::kControlword, store_le(kResetEdge, 2));
-  const auto left = edge ? left_fault(session, node) : tl::unexpected<Error>(edge.error());
+  const auto left = edge ? left_fault(session, node) : fail(edge.error());
   const auto released = session.download(node, objects::kControlword, store_le(0, 2));
   if (left && released) return left;
   auto error = left ? released.error() : left.error();
@@ -59,9 +59,9 @@ Result<bool> by_controlword(session::Session& session, std::uint8_t node) {
 Result<bool> by_settings(session::Session& session, const drive::Profile& profile, std::uint8_t node) {
   for (const auto& setting : profile.rules.fault.reset) {
     const auto write = session::setting_write(profile, node, setting);
-    if (!write) return tl::unexpected<Error>(write.error());
+    if (!write) return fail(write.error());
     if (const auto written = session.download(node, write->object, *write->data); !written)
-      return tl::unexpected<Error>(written.error());
+      return fail(written.error());
     const auto left = left_fault(session, node);
     if (!left || *left) return left;
   }
@@ -71,7 +71,7 @@ Result<bool> by_settings(session::Session& session, const drive::Profile& profil
 /// A drive without fault must be without power as well: another master may hold an enabling controlword.
 Result<FaultReset> check_power(session::Session& session, std::uint8_t node) {
   const auto state = read_state(session, node);
-  if (!state) return tl::unexpected<Error>(state.error());
+  if (!state) return fail(state.error());
   if (!drive::is_energised(*state)) return FaultReset::done;
   return fail(session::drive_error(
       Errc::negative, node,
@@ -82,7 +82,7 @@ Result<FaultReset> check_power(session::Session& session, std::uint8_t node) {
 /// Errc::refused for a drive that has its power and no fault.
 Result<bool> needs_reset(session::Session& session, std::uint8_t node) {
   const auto state = read_state(session, node);
-  if (!state) return tl::unexpected<Error>(state.error());
+  if (!state) return fail(state.error());
   if (*state == DriveState::fault || *state == DriveState::fault_reaction_active) return true;
   if (!drive::is_energised(*state)) return false;
   return fail(session::drive_error(
@@ -101,7 +101,7 @@ Result<std::vector<session::PlannedMessage>> plan_fault_reset(session::Session& 
                                                               const drive::Profile* profile,
                                                               std::uint8_t node) {
   const auto needed = needs_reset(session, node);
-  if (!needed) return tl::unexpected<Error>(needed.error());
+  if (!needed) return fail(needed.error());
   std::vector<session::PlannedMessage> out;
   if (!*needed) return out;
   if (resets_by_controlword(profile))
@@ -110,7 +110,7 @@ Result<std::vector<session::PlannedMessage>> plan_fault_reset(session::Session& 
   if (profile == nullptr) return out;
   for (const auto& setting : profile->rules.fault.reset) {
     const auto write = session::setting_write(*profile, node, setting);
-    if (!write) return tl::unexpected<Error>(write.error());
+    if (!write) return fail(write.error());
     out.push_back(session::planned_write(*write, out.empty() ? "" : "if the fault stays"));
   }
   return out;
@@ -118,12 +118,12 @@ Result<std::vector<session::PlannedMessage>> plan_fault_reset(session::Session& 
 
 Result<FaultReset> reset_fault(session::Session& session, const drive::Profile* profile, std::uint8_t node) {
   const auto needed = needs_reset(session, node);
-  if (!needed) return tl::unexpected<Error>(needed.error());
+  if (!needed) return fail(needed.error());
   if (!*needed) return FaultReset::no_fault;
   Result<bool> left = false;
   if (resets_by_controlword(profile)) left = by_controlword(session, node);
   if (left && !*left && profile != nullptr) left = by_settings(session, *profile, node);
-  if (!left) return tl::unexpected<Error>(left.error());
+  if (!left) return fail(left.error());
   if (*left) return check_power(session, node);
   Error error;
   error.code = Errc::negative;

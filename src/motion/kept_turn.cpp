@@ -113,11 +113,11 @@ Result<std::optional<KeptTurn>> TurnFile::read() const {
   if (path_.empty() || !std::filesystem::exists(std::filesystem::symlink_status(path_, error)))
     return std::optional<KeptTurn>();
   const auto text = read_file(path_, kMostBytes);
-  if (!text) return tl::unexpected<Error>(text.error());
+  if (!text) return fail(text.error());
   const auto document = report::parse_json(*text, path_.string());
   if (!document) return damaged(document.error().message);
   auto turn = parse(*document, path_.string(), node_);
-  if (!turn) return tl::unexpected<Error>(turn.error());
+  if (!turn) return fail(turn.error());
   return std::optional(std::move(*turn));
 }
 

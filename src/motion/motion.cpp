@@ -36,14 +36,14 @@ Motion::Motion(session::Session& session, const drive::Profile& profile, std::ui
       power_(session, profile, node) {}
 
 Result<void> Motion::prepare() {
-  if (const auto alive = power_.statusword(); !alive) return tl::unexpected<Error>(alive.error());
+  if (const auto alive = power_.statusword(); !alive) return fail(alive.error());
   units_ = std::make_unique<MotionUnits>(*session_, *profile_, node_, options_.turn, options_.encoder,
                                          options_.learned);
   monitor_ = std::make_unique<MotionMonitor>(*session_, *units_, node_);
   if (const auto done = read_limits(); !done) return done;
   speed_cap_ = find_speed_cap();
   auto plan = plan_watchdog(*session_, *profile_, node_, options_.producer);
-  if (!plan) return tl::unexpected<Error>(plan.error());
+  if (!plan) return fail(plan.error());
   watchdog_ = std::move(*plan);
   return {};
 }
@@ -90,7 +90,7 @@ Result<void> Motion::add_ramps(double speed, std::initializer_list<ObjectAddress
     if (!units_->has(object)) continue;
     if (!options_.acceleration.empty()) {
       const auto asked = units_->parse(object, options_.acceleration);
-      if (!asked) return tl::unexpected<Error>(asked.error());
+      if (!asked) return fail(asked.error());
       plan.settings.emplace_back(object, asked->data);
       plan.tell(asked->rounding);
       continue;
@@ -120,7 +120,7 @@ Result<void> Motion::look_again() {
   // Answers to other masters that came meanwhile must not be taken for answers to what is asked now.
   if (const auto heard = session_->listen(); !heard) return heard;
   const auto state = power_.state();
-  if (!state) return tl::unexpected<Error>(state.error());
+  if (!state) return fail(state.error());
   if (drive::is_energised(*state)) return fail(enabled_by_others(node_, *state));
   return {};
 }
@@ -161,20 +161,20 @@ Result<void> Motion::make_ready(MotionGuard& guard, std::int8_t mode,
 }
 
 Result<std::vector<session::PlannedMessage>> Motion::rehearse(const MotionPlan& plan) {
-  if (const auto ready = look_again(); !ready) return tl::unexpected<Error>(ready.error());
+  if (const auto ready = look_again(); !ready) return fail(ready.error());
   session::Rehearsal out;
   MotionGuard guard(*session_, *units_, node_);
   guard.rehearse(out);
   if (const auto ready = make_ready(guard, plan.mode, plan.settings, plan.kept_target, out); !ready)
-    return tl::unexpected<Error>(ready.error());
+    return fail(ready.error());
   out.begin_step("enable");
-  if (const auto enabled = guard.enable(); !enabled) return tl::unexpected<Error>(enabled.error());
+  if (const auto enabled = guard.enable(); !enabled) return fail(enabled.error());
   out.begin_step("motion");
   for (const auto& [object, data] : plan.moving) {
     if (object == objects::kControlword)
       out.add(session::planned_write({node_, object, data}));
     else if (const auto done = guard.change(object, data); !done)
-      return tl::unexpected<Error>(done.error());
+      return fail(done.error());
   }
   (void)guard.end();
   return out.messages();
@@ -208,21 +208,21 @@ Result<bool> Motion::supervise(const std::function<Result<bool>(const MotionSamp
   for (;;) {
     const auto sample = monitor_->sample();
     if (!monitor_->samples().empty() && options_.on_sample) options_.on_sample(monitor_->samples().back());
-    if (!sample) return tl::unexpected<Error>(sample.error());
-    if (const auto fits = check_turn(*sample); !fits) return tl::unexpected<Error>(fits.error());
+    if (!sample) return fail(sample.error());
+    if (const auto fits = check_turn(*sample); !fits) return fail(fits.error());
     if (options_.unheard && options_.unheard())
       return fail(error(Errc::interrupted, "nobody reads the output any more; the motion was ended"));
     const auto enough = done(*sample);
     if (!enough || *enough) return enough;
     if (session_->now() >= end) return false;
-    if (const auto waited = monitor_->wait_for_next(); !waited) return tl::unexpected<Error>(waited.error());
+    if (const auto waited = monitor_->wait_for_next(); !waited) return fail(waited.error());
   }
 }
 
 Result<void> Motion::wait_for_rest(Duration longest) {
   const auto rested =
       watch([this](const MotionSample& sample) -> Result<bool> { return stands_still(sample); }, longest);
-  if (!rested) return tl::unexpected<Error>(rested.error());
+  if (!rested) return fail(rested.error());
   if (*rested) return {};
   return fail(error(Errc::negative, "did not come to rest in time; it is stopped now",
                     "look at its deceleration (6084h) and its load"));

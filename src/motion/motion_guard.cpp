@@ -55,7 +55,7 @@ void MotionGuard::hear_write(ObjectAddress object) {
 
 Result<void> MotionGuard::change(ObjectAddress object, const Bytes& data) {
   const auto before = session_->upload(node_, object);
-  if (!before) return tl::unexpected<Error>(before.error());
+  if (!before) return fail(before.error());
   const auto* rehearsed = rehearsal_ != nullptr ? rehearsal_->held(object) : nullptr;
   if ((rehearsed != nullptr ? *rehearsed : *before) == data) return {};
   // Noted first: an answer that is lost may belong to a write that was done.
@@ -74,7 +74,7 @@ Result<void> MotionGuard::write(ObjectAddress object, const Bytes& data) {
 Result<void> MotionGuard::change_mode(std::int8_t mode) {
   // 6061h may show another one: a drive starts in none and has one waiting.
   const auto before = session_->upload(node_, objects::kModeOfOperation);
-  if (!before) return tl::unexpected<Error>(before.error());
+  if (!before) return fail(before.error());
   changed_.push_back({objects::kModeOfOperation, *before});
   if (rehearsal_ != nullptr) {
     const auto planned = mode_write(units_->profile(), node_, mode);
@@ -93,7 +93,7 @@ Result<void> MotionGuard::neutral_targets(std::optional<ObjectAddress> except) {
   }
   if (!units_->has(objects::kTargetPosition) || !units_->has(objects::kPositionActual)) return {};
   const auto here = session_->upload(node_, objects::kPositionActual);
-  if (!here) return tl::unexpected<Error>(here.error());
+  if (!here) return fail(here.error());
   return change(objects::kTargetPosition, *here);
 }
 
@@ -135,7 +135,7 @@ Result<void> MotionGuard::spare_flash() {
   const auto object = units_->object(store.flash_switch);
   if (!object || !store.to_ram) return {};
   const auto data = od::encode(units_->meaning(*object).type, od::Value(*store.to_ram));
-  if (!data) return tl::unexpected<Error>(data.error());
+  if (!data) return fail(data.error());
   return change(*object, *data);
 }
 
@@ -156,7 +156,7 @@ Result<void> MotionGuard::start_node() {
 
 Result<void> MotionGuard::enable() {
   const auto state = power_.state();
-  if (!state) return tl::unexpected<Error>(state.error());
+  if (!state) return fail(state.error());
   if (drive::is_energised(*state)) {
     powered_ = true;
     return fail(enabled_by_others(node_, *state));
@@ -164,7 +164,7 @@ Result<void> MotionGuard::enable() {
   energised_ = true;
   if (rehearsal_ == nullptr) return power_.reach(DriveState::operation_enabled);
   const auto path = power_.path_to(*state, DriveState::operation_enabled);
-  if (!path) return tl::unexpected<Error>(path.error());
+  if (!path) return fail(path.error());
   rehearse_up(*path);
   return {};
 }

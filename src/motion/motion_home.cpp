@@ -34,7 +34,7 @@ class Homing {
 
   Result<void> run() {
     const auto before = motion_->watch([](const MotionSample&) -> Result<bool> { return true; }, {});
-    if (!before) return tl::unexpected<Error>(before.error());
+    if (!before) return fail(before.error());
     // "Homed" may stand there from an earlier run: it counts when it was seen to go.
     const auto word_before = motion_->monitor().samples().back().statusword;
     begun_ = !is_done(word_before);
@@ -43,7 +43,7 @@ class Homing {
     for (const auto word : motion_->rules().start_homing)
       if (const auto written = motion_->command(word); !written) return written;
     const auto ended = motion_->watch([this](const MotionSample& s) { return look(s); }, plan_->longest);
-    if (!ended) return tl::unexpected<Error>(ended.error());
+    if (!ended) return fail(ended.error());
     if (*ended) return {};
     return fail(
         motion_->error(Errc::negative,
@@ -102,7 +102,7 @@ Result<void> add(const Motion& motion, ObjectAddress object, const std::string& 
   if (!motion.units().has(object))
     return fail(motion.error(Errc::usage, fmt::format("this family has no object {}", to_string(object))));
   const auto data = motion.units().parse(object, text);
-  if (!data) return tl::unexpected<Error>(data.error());
+  if (!data) return fail(data.error());
   plan.settings.emplace_back(object, data->data);
   plan.tell(data->rounding);
   return {};
@@ -117,10 +117,10 @@ Result<Bytes> value_of(Motion& motion, ObjectAddress object, const MotionPlan& p
 
 Result<void> check_method(Motion& motion, MotionPlan& plan) {
   const auto method = value_of(motion, objects::kHomingMethod, plan);
-  if (!method) return tl::unexpected<Error>(method.error());
+  if (!method) return fail(method.error());
   const auto meaning = motion.units().meaning(objects::kHomingMethod);
   const auto value = od::decode(meaning.type, *method);
-  if (!value) return tl::unexpected<Error>(value.error());
+  if (!value) return fail(value.error());
   const auto number = static_cast<std::int64_t>(od::to_double(*value));
   const auto& nothing = motion.rules().no_homing;
   if (number == kNoMethod || std::find(nothing.begin(), nothing.end(), number) != nothing.end())
@@ -140,7 +140,7 @@ Result<void> check_method(Motion& motion, MotionPlan& plan) {
 /// One of the two speeds, which must be known and allowed.
 Result<Physical> speed_of(Motion& motion, ObjectAddress object, const MotionPlan& plan) {
   const auto data = value_of(motion, object, plan);
-  if (!data) return tl::unexpected<Error>(data.error());
+  if (!data) return fail(data.error());
   const auto speed = motion.units().physical(object, *data);
   if (!speed || speed->unit != motion.units().unit(objects::kTargetVelocity))
     return fail(motion.error(
@@ -148,8 +148,7 @@ Result<Physical> speed_of(Motion& motion, ObjectAddress object, const MotionPlan
         fmt::format("its homing speed ({}) cannot be compared with its speed limit", to_string(object)),
         motion.is_told_turn() ? ""
                               : "add --turn (increments of 6064h in a turn), if the drive does not tell it"));
-  if (const auto allowed = motion.check_speed(speed->value); !allowed)
-    return tl::unexpected<Error>(allowed.error());
+  if (const auto allowed = motion.check_speed(speed->value); !allowed) return fail(allowed.error());
   if (speed->value > 0 || takes_present_position(plan)) return *speed;
   const bool fast = object == objects::kHomingSpeedSwitch;
   return fail(motion.error(Errc::refused,
@@ -180,15 +179,14 @@ Result<MotionPlan> plan_home(Motion& motion, const Home& home) {
   for (const auto& [object, text] :
        {std::pair(objects::kHomingMethod, &home.method), std::pair(objects::kHomingSpeedSwitch, &home.fast),
         std::pair(objects::kHomingSpeedZero, &home.slow), std::pair(objects::kHomeOffset, &home.offset)})
-    if (const auto added = add(motion, object, *text, plan); !added)
-      return tl::unexpected<Error>(added.error());
-  if (const auto known = check_method(motion, plan); !known) return tl::unexpected<Error>(known.error());
+    if (const auto added = add(motion, object, *text, plan); !added) return fail(added.error());
+  if (const auto known = check_method(motion, plan); !known) return fail(known.error());
   const auto fast = speed_of(motion, objects::kHomingSpeedSwitch, plan);
-  if (!fast) return tl::unexpected<Error>(fast.error());
+  if (!fast) return fail(fast.error());
   auto slow = *fast;
   if (motion.units().has(objects::kHomingSpeedZero)) {
     const auto told = speed_of(motion, objects::kHomingSpeedZero, plan);
-    if (!told) return tl::unexpected<Error>(told.error());
+    if (!told) return fail(told.error());
     slow = *told;
   }
   plan.speed = std::max(fast->value, slow.value);

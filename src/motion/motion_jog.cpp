@@ -29,7 +29,7 @@ class Jogging {
     const auto told_at = motion_->session().now();
     const auto watched =
         motion_->watch([this](const MotionSample& s) { return look(s); }, jog_->length.value_or(longest()));
-    if (!watched) return tl::unexpected<Error>(watched.error());
+    if (!watched) return fail(watched.error());
     if (!*watched && jog_->turns)
       return fail(motion_->error(Errc::negative, "did not turn that far in the time it needs",
                                  "is it blocked, or is its speed limited?"));
@@ -67,7 +67,7 @@ class Jogging {
   }
 
   Result<bool> look(const MotionSample& sample) {
-    if (const auto follows = check_following(sample); !follows) return tl::unexpected<Error>(follows.error());
+    if (const auto follows = check_following(sample); !follows) return fail(follows.error());
     if (jog_->keys) return look_at_keys();
     return jog_->turns && is_far_enough(sample);
   }
@@ -83,7 +83,7 @@ class Jogging {
       return true;
     }
     if (wanted == direction_) return false;
-    if (const auto done = turn(wanted); !done) return tl::unexpected<Error>(done.error());
+    if (const auto done = turn(wanted); !done) return fail(done.error());
     return false;
   }
 
@@ -161,11 +161,10 @@ Result<MotionPlan> plan_jog(Motion& motion, const Jog& jog) {
   MotionPlan plan;
   plan.mode = *mode;
   const auto data = motion.units().parse(objects::kTargetVelocity, jog.speed);
-  if (!data) return tl::unexpected<Error>(data.error());
+  if (!data) return fail(data.error());
   const auto& speed = data->value;
   if (speed.value == 0) return fail(Errc::usage, "a speed of 0 does not move anything", "say how fast");
-  if (const auto allowed = motion.check_speed(speed.value); !allowed)
-    return tl::unexpected<Error>(allowed.error());
+  if (const auto allowed = motion.check_speed(speed.value); !allowed) return fail(allowed.error());
   plan.command = data->data;
   plan.tell(data->rounding);
   plan.value = plan.speed = speed.value;
@@ -173,10 +172,10 @@ Result<MotionPlan> plan_jog(Motion& motion, const Jog& jog) {
   if (const auto ramps =
           motion.add_ramps(speed.value, {objects::kProfileAcceleration, objects::kProfileDeceleration}, plan);
       !ramps)
-    return tl::unexpected<Error>(ramps.error());
+    return fail(ramps.error());
   if (jog.turns) {
     const auto way = way_of(motion, *jog.turns);
-    if (!way) return tl::unexpected<Error>(way.error());
+    if (!way) return fail(way.error());
     plan.way = *way;
   }
   plan.summary = fmt::format("turn at {} {} {}", number_text(speed.value), speed.unit, until_text(jog));

@@ -117,13 +117,13 @@ class Learning {
 
   Result<void> watch(Duration length) {
     const auto watched = motion_->watch([this](const MotionSample& sample) { return look(sample); }, length);
-    if (!watched) return tl::unexpected<Error>(watched.error());
+    if (!watched) return fail(watched.error());
     return {};
   }
 
   Result<bool> look(const MotionSample& sample) {
     const auto rpm = read_monitor();
-    if (!rpm) return tl::unexpected<Error>(rpm.error());
+    if (!rpm) return fail(rpm.error());
     if (std::abs(*rpm) > std::abs(learn_->rpm) * kTooFast + kNoise)
       return fail(motion_->error(
           Errc::negative,
@@ -147,7 +147,7 @@ class Learning {
   Result<double> read_monitor() {
     const session::Hurry hurry(motion_->session(), kPatience, 1);
     const auto answer = motion_->session().upload(motion_->node(), learn_->monitor);
-    if (!answer) return tl::unexpected<Error>(answer.error());
+    if (!answer) return fail(answer.error());
     return rpm_of(*answer, 0);
   }
 
@@ -230,10 +230,9 @@ Result<void> check_units(const Motion& motion, const Learn& learn) {
 Result<MotionPlan> plan_learn(Motion& motion, const Learn& learn) {
   const auto mode = motion.rules().velocity;
   if (!mode) return fail(motion.error(Errc::refused, "this family has no velocity mode"));
-  if (const auto counted = check_units(motion, learn); !counted)
-    return tl::unexpected<Error>(counted.error());
+  if (const auto counted = check_units(motion, learn); !counted) return fail(counted.error());
   if (const auto shown = motion.session().upload(motion.node(), learn.monitor); !shown) {
-    if (shown.error().code != Errc::sdo_abort) return tl::unexpected<Error>(shown.error());
+    if (shown.error().code != Errc::sdo_abort) return fail(shown.error());
     return fail(motion.error(Errc::refused,
                              fmt::format("does not show the speed of its motor: {} ({}) cannot be read",
                                          learn.monitor_name, to_string(learn.monitor)),
@@ -255,7 +254,7 @@ Result<MotionPlan> plan_learn(Motion& motion, const Learn& learn) {
   if (const auto ramps =
           motion.add_ramps(plan.value, {objects::kProfileAcceleration, objects::kProfileDeceleration}, plan);
       !ramps)
-    return tl::unexpected<Error>(ramps.error());
+    return fail(ramps.error());
   plan.summary = fmt::format("turn at {} rpm by {} for {}, about {} turns, found in steps from {} {} on",
                              number_text(learn.rpm), learn.monitor_name, servoctl::to_string(learn.length),
                              turns_of(learn), number_text(std::round(plan.value)), plan.unit);
@@ -284,13 +283,13 @@ LearnReport run_learn(Motion& motion, const Learn& learn, const MotionPlan& plan
     if (measured) out.measured = *measured;
     auto counts =
         measured ? counts_behind(measured->increments / learn.gear, measured->uncertainty, learn.expected)
-                 : Result<TurnCounts>(tl::unexpected<Error>(measured.error()));
+                 : Result<TurnCounts>(fail(measured.error()));
     if (counts)
       out.counts = std::move(*counts);
     else if (measured)
       outcome = fail(motion.error(counts.error().code, counts.error().message, counts.error().hint));
     else
-      outcome = tl::unexpected<Error>(measured.error());
+      outcome = fail(measured.error());
   }
   out.motion = motion.finish(std::move(outcome));
   if (!out.motion.outcome || !out.motion.end.verified) out.counts.reset();

@@ -46,12 +46,12 @@ Result<void> Motion::read_limits() {
                   fmt::format("this family does not tell its {} ({})", name(row.channel), to_string(object)),
                   "leave this limit out");
     const auto value = parse_limit(object, row.option, *row.text);
-    if (!value) return tl::unexpected<Error>(value.error());
+    if (!value) return fail(value.error());
     *row.out = *value;
   }
   if (options_.acceleration.empty()) return {};
   const auto ramp = units_->parse(objects::kProfileAcceleration, options_.acceleration);
-  if (!ramp) return tl::unexpected<Error>(ramp.error());
+  if (!ramp) return fail(ramp.error());
   if (ramp->value.value > 0) return {};
   return fail(Errc::usage, fmt::format("--accel: '{}' is no ramp", options_.acceleration),
               "a ramp is more than 0; it holds either way");
@@ -93,7 +93,7 @@ Result<void> Motion::check_turn(const MotionSample& sample) {
         fmt::format("its counts of a turn were not held against {}, which it refuses to tell", name);
     return {};
   }
-  if (!answer) return tl::unexpected<Error>(answer.error());
+  if (!answer) return fail(answer.error());
   const auto shown = units_->physical(*monitor, *answer);
   if (!shown) return {};
   const double one = std::abs(*speed);
@@ -160,7 +160,7 @@ Result<void> Motion::check_speed(double speed) const {
   if (!options_.max_torque.empty() && !units_->has(objects::kTorqueActual))
     return fail(Errc::usage, "this family does not tell its torque (6077h): nobody would watch --max-torque",
                 "leave this limit out");
-  if (!speed_cap_) return tl::unexpected<Error>(speed_cap_.error());
+  if (!speed_cap_) return fail(speed_cap_.error());
   if (std::abs(speed) <= *speed_cap_ * kRounding) return {};
   const auto unit = units_->unit(objects::kTargetVelocity);
   // What the drive itself does not allow, no option raises.

@@ -80,14 +80,14 @@ Result<MotionSample> MotionMonitor::sample() {
   std::vector<ObjectAddress> wanted{objects::kStatusword};
   for (const auto channel : channels_) wanted.push_back(object_of(channel));
   const auto answers = look(wanted);
-  if (!answers[0]) return tl::unexpected<Error>(answers[0].error());
+  if (!answers[0]) return fail(answers[0].error());
   MotionSample out;
   out.time = session_->now();
   out.statusword = static_cast<std::uint16_t>(load_le(*answers[0]));
   std::vector<Channel> known;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     const auto& answer = answers[i + 1];
-    if (!answer && answer.error().code != Errc::sdo_abort) return tl::unexpected<Error>(answer.error());
+    if (!answer && answer.error().code != Errc::sdo_abort) return fail(answer.error());
     if (!answer) continue;  // The dictionary promises more than the drive has.
     known.push_back(channels_[i]);
     if (const auto number = units_->physical(object_of(channels_[i]), *answer))
@@ -99,7 +99,7 @@ Result<MotionSample> MotionMonitor::sample() {
   samples_.push_back(out);
   for (const auto& done : {session::refuse_duplicate(*session_, node_), check_producer(*session_),
                            check_events(), check_state(out), check_limits(out)})
-    if (!done) return tl::unexpected<Error>(done.error());
+    if (!done) return fail(done.error());
   return out;
 }
 
@@ -118,7 +118,7 @@ void MotionMonitor::follow_zero(const MotionSample& sample) {
 Result<void> MotionMonitor::wait_for_next() {
   const auto due = samples_.empty() ? session_->now() : samples_.back().time + kPeriod;
   const auto waited = session_->wait([] { return false; }, due);
-  if (!waited) return tl::unexpected<Error>(waited.error());
+  if (!waited) return fail(waited.error());
   return {};
 }
 

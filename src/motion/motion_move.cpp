@@ -42,7 +42,7 @@ class Moving {
     const auto longest = motion_->duration(plan_->way, plan_->speed).value_or(kUnknownDuration) * 3 / 2;
     const auto arrived =
         motion_->watch([this](const MotionSample& s) { return is_there(s); }, longest + kSettling);
-    if (!arrived) return tl::unexpected<Error>(arrived.error());
+    if (!arrived) return fail(arrived.error());
     if (*arrived) {
       judgement_.judge_target(*motion_, *plan_, nearness());
       return {};
@@ -64,7 +64,7 @@ class Moving {
     window_ = near(*plan_);
     if (!motion_->units().has(objects::kPositionWindow)) return {};
     const auto answer = motion_->session().upload(motion_->node(), objects::kPositionWindow);
-    if (!answer && answer.error().code != Errc::sdo_abort) return tl::unexpected<Error>(answer.error());
+    if (!answer && answer.error().code != Errc::sdo_abort) return fail(answer.error());
     const auto told = answer ? motion_->units().physical(objects::kPositionWindow, *answer) : std::nullopt;
     if (told && told->unit == plan_->unit) window_ = std::max(window_, told->value);
     if (plan_->way != 0) window_ = std::min(window_, std::abs(plan_->way) * kMostOfWay);
@@ -85,7 +85,7 @@ class Moving {
       if (const auto written = motion_->command(word); !written) return written;
       const bool taken = word == kNewSetpoint;
       const auto answered = wait(taken);
-      if (!answered) return tl::unexpected<Error>(answered.error());
+      if (!answered) return fail(answered.error());
       if (!*answered)
         return fail(
             motion_->error(Errc::negative,
@@ -126,9 +126,9 @@ double step_of(const MotionUnits& units, double place) {
 Result<void> find_target(Motion& motion, const Move& move, MotionPlan& plan) {
   const auto& units = motion.units();
   const auto asked = units.parse_physical(objects::kTargetPosition, move.target);
-  if (!asked) return tl::unexpected<Error>(asked.error());
+  if (!asked) return fail(asked.error());
   const auto answer = motion.session().upload(motion.node(), objects::kPositionActual);
-  if (!answer) return tl::unexpected<Error>(answer.error());
+  if (!answer) return fail(answer.error());
   const auto here = units.physical(objects::kPositionActual, *answer).value_or(Physical{});
   plan.value = asked->value + (move.relative ? here.value : 0);
   plan.unit = asked->unit;
@@ -144,7 +144,7 @@ Result<void> find_target(Motion& motion, const Move& move, MotionPlan& plan) {
   const double from = move.relative ? here.value : 0;
   // What was told must not be lost in a step; the zero it is counted from is one.
   const auto rounding = drive::judge_rounding({asked->value, said->value - from, step, plan.unit});
-  if (!rounding) return tl::unexpected<Error>(rounding.error());
+  if (!rounding) return fail(rounding.error());
   if (*rounding) plan.tell(drive::to_string(**rounding));
   plan.value = said->value;
   plan.way = plan.value - here.value;
@@ -156,7 +156,7 @@ Result<void> find_target(Motion& motion, const Move& move, MotionPlan& plan) {
 Result<void> check_start(Motion& motion, const MotionPlan& plan) {
   if (const auto heard = motion.session().listen(); !heard) return heard;
   const auto answer = motion.session().upload(motion.node(), objects::kPositionActual);
-  if (!answer) return tl::unexpected<Error>(answer.error());
+  if (!answer) return fail(answer.error());
   const auto here = motion.units().physical(objects::kPositionActual, *answer).value_or(Physical{});
   if (!plan.from || std::abs(here.value - *plan.from) <= near(plan)) return {};
   return fail(motion.error(Errc::refused,
@@ -176,28 +176,27 @@ Result<MotionPlan> plan_move(Motion& motion, const Move& move) {
     return fail(motion.error(Errc::refused, "this family tells no object for the speed of a move"));
   MotionPlan plan;
   plan.mode = *mode;
-  if (const auto found = find_target(motion, move, plan); !found) return tl::unexpected<Error>(found.error());
+  if (const auto found = find_target(motion, move, plan); !found) return fail(found.error());
   std::optional<Bytes> speed;
   if (move.speed.empty()) {
     const auto cap = motion.speed_cap();
-    if (!cap) return tl::unexpected<Error>(cap.error());
+    if (!cap) return fail(cap.error());
     speed = units.bytes(*speed_object, *cap * kDefaultPart);
   } else {
     const auto asked = units.parse(*speed_object, move.speed);
-    if (!asked) return tl::unexpected<Error>(asked.error());
+    if (!asked) return fail(asked.error());
     speed = asked->data;
     plan.tell(asked->rounding);
   }
   const auto fast = speed ? units.physical(*speed_object, *speed) : std::nullopt;
   if (!fast || fast->value <= 0)
     return fail(Errc::usage, "a move needs a speed above 0", "add --speed 60rpm");
-  if (const auto allowed = motion.check_speed(fast->value); !allowed)
-    return tl::unexpected<Error>(allowed.error());
+  if (const auto allowed = motion.check_speed(fast->value); !allowed) return fail(allowed.error());
   plan.speed = fast->value;
   if (const auto ramps =
           motion.add_ramps(plan.speed, {objects::kProfileAcceleration, objects::kProfileDeceleration}, plan);
       !ramps)
-    return tl::unexpected<Error>(ramps.error());
+    return fail(ramps.error());
   plan.settings.emplace_back(*speed_object, *speed);
   if (speed_object == objects::kTargetVelocity) plan.kept_target = *speed_object;
   plan.moving = {{objects::kTargetPosition, plan.command}};

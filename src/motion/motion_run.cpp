@@ -61,7 +61,7 @@ report::List planned_step(const show::Desk& desk, const Motion& motion,
 Result<Value> planned(const show::Desk& desk, Motion& motion, const MotionPlan& plan,
                       const std::vector<PreflightItem>& items) {
   const auto messages = motion.rehearse(plan);
-  if (!messages) return tl::unexpected<Error>(messages.error());
+  if (!messages) return fail(messages.error());
   report::Table steps;
   steps.columns = {{"step"}, {"object"}, {"value"}, {"when"}, {"frame"}};
   for (const auto& message : *messages) steps.rows.push_back(planned_step(desk, motion, message));
@@ -89,7 +89,7 @@ Result<void> check_motion(const show::Desk& desk, const MotionRequest& request,
   Motion motion(*desk.session, *desk.profile, request.node, std::move(options));
   auto ready = motion.prepare();
   if (ready)
-    if (const auto planned = plan(motion); !planned) ready = tl::unexpected<Error>(planned.error());
+    if (const auto planned = plan(motion); !planned) ready = fail(planned.error());
   const bool of_the_question =
       !ready && (ready.error().code == Errc::usage || ready.error().code == Errc::refused);
   return of_the_question ? ready : Result<void>{};
@@ -100,7 +100,7 @@ Result<Value> run_motion(show::Desk& desk, const MotionRequest& request, const M
   const auto& csv = request.csv;
   auto options = request.options;
   if (!csv.empty() && !desk.dry_run)
-    if (const auto possible = check_writable(csv); !possible) return tl::unexpected<Error>(possible.error());
+    if (const auto possible = check_writable(csv); !possible) return fail(possible.error());
   if (run.in_counts) options.turn.reset();
   const auto known = options.turn || run.in_counts ? KnownTurn{} : find_turn(desk, node);
   options.learned = known.counts;
@@ -108,13 +108,13 @@ Result<Value> run_motion(show::Desk& desk, const MotionRequest& request, const M
   options.on_sample = [&display](const MotionSample& sample) { display(sample); };
   Motion motion(*desk.session, *desk.profile, node, std::move(options));
   display = Display(desk, motion);
-  if (const auto ready = motion.prepare(); !ready) return tl::unexpected<Error>(ready.error());
+  if (const auto ready = motion.prepare(); !ready) return fail(ready.error());
   auto notes = turn_notes(motion.units(), known);
   for (const auto& note : notes) desk.notices.push_back(fmt::format("node {}: {}", node, note));
   const auto plan = run.plan(motion);
-  if (!plan) return tl::unexpected<Error>(plan.error());
+  if (!plan) return fail(plan.error());
   const auto items = motion.look(desk.chinese);
-  if (!items) return tl::unexpected<Error>(items.error());
+  if (!items) return fail(items.error());
   for (const auto& note : plan->notes) desk.notices.push_back(fmt::format("node {}: {}", node, note));
   notes.insert(notes.end(), plan->notes.begin(), plan->notes.end());
   auto possible = check_preflight(*items, node);
@@ -124,11 +124,10 @@ Result<Value> run_motion(show::Desk& desk, const MotionRequest& request, const M
     desk.errors.push_back(possible.error());
     return Value(Record{{"node", node}, {"motion", plan->summary}, {"preflight", preflight_table(*items)}});
   }
-  if (!possible) return tl::unexpected<Error>(possible.error());
-  if (const auto answer = ask(desk, node, *plan, *items, notes); !answer)
-    return tl::unexpected<Error>(answer.error());
+  if (!possible) return fail(possible.error());
+  if (const auto answer = ask(desk, node, *plan, *items, notes); !answer) return fail(answer.error());
   const auto done = run.run(motion, *plan);
-  if (!done.begun && !done.outcome) return tl::unexpected<Error>(done.outcome.error());
+  if (!done.begun && !done.outcome) return fail(done.outcome.error());
   auto result = motion_result(desk, node, *plan, *items, done, request.plot);
   if (!csv.empty())
     if (const auto written = write_csv(csv, done.samples, motion.units()); !written)

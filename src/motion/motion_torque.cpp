@@ -59,7 +59,7 @@ void soften(const Motion& motion, double torque, MotionPlan& plan) {
 Result<void> check_torque(const Motion& motion, const Physical& torque) {
   if (torque.value == 0) return fail(Errc::usage, "a torque of 0 does nothing", "say how much");
   const auto cap = motion.torque_cap();
-  if (!cap) return tl::unexpected<Error>(cap.error());
+  if (!cap) return fail(cap.error());
   if (std::abs(torque.value) <= *cap * kRounding) return {};
   const auto numbers = told_apart(std::abs(torque.value), *cap);
   return fail(motion.error(
@@ -76,13 +76,12 @@ Result<MotionPlan> plan_torque(Motion& motion, const Torque& torque) {
   const auto mode = motion.rules().torque;
   if (!mode) return fail(motion.error(Errc::refused, "this family has no torque mode"));
   const auto cap = motion.speed_cap();
-  if (!cap) return tl::unexpected<Error>(cap.error());
+  if (!cap) return fail(cap.error());
   if (*cap <= 0) return fail(Errc::usage, "a speed limit of 0 lets nothing move", "give --limit a speed");
   const auto data = motion.units().parse(objects::kTargetTorque, torque.torque);
-  if (!data) return tl::unexpected<Error>(data.error());
+  if (!data) return fail(data.error());
   const auto& value = data->value;
-  if (const auto allowed = check_torque(motion, value); !allowed)
-    return tl::unexpected<Error>(allowed.error());
+  if (const auto allowed = check_torque(motion, value); !allowed) return fail(allowed.error());
   MotionPlan plan;
   plan.mode = *mode;
   plan.command = data->data;
@@ -91,8 +90,7 @@ Result<MotionPlan> plan_torque(Motion& motion, const Torque& torque) {
   plan.value = value.value;
   plan.unit = value.unit;
   plan.speed = *cap;
-  if (const auto limited = limit_speed(motion, *cap, plan); !limited)
-    return tl::unexpected<Error>(limited.error());
+  if (const auto limited = limit_speed(motion, *cap, plan); !limited) return fail(limited.error());
   soften(motion, value.value, plan);
   if (!motion.supervise_speed(*cap * kOvershoot))
     return fail(motion.error(
@@ -114,7 +112,7 @@ MotionReport run_torque(Motion& motion, const Torque& torque, const MotionPlan& 
     const auto told_at = motion.session().now();
     const auto watched =
         motion.watch([](const MotionSample&) -> Result<bool> { return false; }, torque.length);
-    if (!watched) done = tl::unexpected<Error>(watched.error());
+    if (!watched) done = fail(watched.error());
     judgement.judge_torque(motion, plan, told_at, motion.session().now());
   }
   return judgement.into(motion.finish(std::move(done)));

@@ -66,7 +66,7 @@ Result<Setpoint> MotionUnits::parse(ObjectAddress object, std::string_view text)
   const auto quantity = drive::nearest_quantity(what, text);
   if (!quantity) return fail(unknown_turn(object, quantity.error()));
   auto data = od::encode(what.type, quantity->value);
-  if (!data) return tl::unexpected<Error>(data.error());
+  if (!data) return fail(data.error());
   Setpoint out{std::move(*data), {}, quantity->rounding ? drive::to_string(*quantity->rounding) : ""};
   out.value = physical(object, out.data).value_or(Physical{});
   return out;
@@ -109,7 +109,7 @@ std::optional<Bytes> MotionUnits::bytes(ObjectAddress object, double value) cons
   if (plain && std::abs(raw) > kMostSteps) return std::nullopt;
   const auto number = plain ? Result<od::Value>(od::Value(static_cast<std::int64_t>(std::llround(raw))))
                             : od::encode_number(what.encoding, what.type, raw);
-  const auto data = number ? od::encode(what.type, *number) : tl::unexpected<Error>(number.error());
+  const auto data = number ? od::encode(what.type, *number) : fail(number.error());
   return data ? std::optional(*data) : std::nullopt;
 }
 

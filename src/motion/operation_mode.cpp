@@ -30,7 +30,7 @@ std::string mode_text(const drive::Profile& profile, std::int8_t mode, bool chin
 
 Result<std::int8_t> read_mode(session::Session& session, std::uint8_t node) {
   const auto answer = session.upload(node, objects::kModeDisplay);
-  if (!answer) return tl::unexpected<Error>(answer.error());
+  if (!answer) return fail(answer.error());
   return static_cast<std::int8_t>(load_le(*answer));
 }
 
@@ -42,8 +42,7 @@ Result<void> check_mode(session::Session& session, const drive::Profile& profile
                                      "modes: " + known_modes(meaning)));
   if (mode < 1 || mode > 32 || profile.dictionary.find(objects::kSupportedModes) == nullptr) return {};
   const auto supported = session.upload(node, objects::kSupportedModes);
-  if (!supported && supported.error().code != Errc::sdo_abort)
-    return tl::unexpected<Error>(supported.error());
+  if (!supported && supported.error().code != Errc::sdo_abort) return fail(supported.error());
   const auto bits = supported ? load_le(*supported) : 0;
   if (bits == 0 || (bits >> static_cast<unsigned>(mode - 1) & 1U) != 0) return {};
   return fail(session::drive_error(
@@ -66,7 +65,7 @@ Result<void> set_mode(session::Session& session, const drive::Profile& profile, 
   const auto end = session.now() + kPatience;
   for (;;) {
     const auto now_in = read_mode(session, node);
-    if (!now_in) return tl::unexpected<Error>(now_in.error());
+    if (!now_in) return fail(now_in.error());
     if (*now_in == mode) return {};
     if (session.now() >= end)
       return fail(

@@ -25,20 +25,20 @@ Error enabled_by_others(std::uint8_t node, DriveState state) {
 
 Result<void> pause(session::Session& session, Duration time) {
   const auto waited = session.wait([] { return false; }, session.now() + time);
-  if (!waited) return tl::unexpected<Error>(waited.error());
+  if (!waited) return fail(waited.error());
   return {};
 }
 
 Result<std::uint16_t> Power::statusword() {
   const auto answer = session_->upload(node_, objects::kStatusword);
-  if (!answer) return tl::unexpected<Error>(answer.error());
+  if (!answer) return fail(answer.error());
   statusword_ = static_cast<std::uint16_t>(load_le(*answer));
   return statusword_;
 }
 
 Result<DriveState> Power::state() {
   const auto word = statusword();
-  if (!word) return tl::unexpected<Error>(word.error());
+  if (!word) return fail(word.error());
   const auto out = drive::decode_state(*word);
   if (!drive::is_energised(out) && session_->energised().contains(node_) && !says_go())
     session_->energised().erase(node_);
@@ -75,10 +75,10 @@ Result<bool> Power::wait_for(DriveState wanted) {
   const auto end = session_->now() + kPatience;
   for (;;) {
     const auto now_in = state();
-    if (!now_in) return tl::unexpected<Error>(now_in.error());
+    if (!now_in) return fail(now_in.error());
     if (*now_in == wanted) return true;
     if (session_->now() >= end) return false;
-    if (const auto paused = pause(*session_, kPause); !paused) return tl::unexpected<Error>(paused.error());
+    if (const auto paused = pause(*session_, kPause); !paused) return fail(paused.error());
   }
 }
 
@@ -106,7 +106,7 @@ Result<void> Power::step(DriveState from, const drive::PowerStep& next) {
   const auto end = session_->now() + kPatience;
   for (;;) {
     const auto now_in = state();
-    if (!now_in) return tl::unexpected<Error>(now_in.error());
+    if (!now_in) return fail(now_in.error());
     if (*now_in == next.reached) return {};
     // Some pass through a state faster than it can be read.
     if (*now_in != from && *now_in != DriveState::fault_reaction_active && *now_in != DriveState::unknown)
@@ -131,10 +131,10 @@ Result<std::vector<drive::PowerStep>> Power::path_to(DriveState from, DriveState
 Result<void> Power::reach(DriveState goal) {
   for (int i = 0; i < kMostSteps; ++i) {
     const auto from = state();
-    if (!from) return tl::unexpected<Error>(from.error());
+    if (!from) return fail(from.error());
     if (*from == goal) return {};
     const auto path = path_to(*from, goal);
-    if (!path) return tl::unexpected<Error>(path.error());
+    if (!path) return fail(path.error());
     if (const auto done = step(*from, path->front()); !done) return done;
   }
   return fail(session::drive_error(

@@ -61,7 +61,7 @@ void PowerDown::on_end(const Error& error) {
   result_.statusword.reset();
   result_.written = false;
   result_.silent = true;
-  finish(tl::unexpected<Error>(error));
+  finish(fail(error));
 }
 
 session::SdoRequest PowerDown::command(std::uint16_t controlword) const {
@@ -162,7 +162,7 @@ void PowerDown::on_silence(const Error& error, TimePoint now) {
     result_.written = false;
     unread_ = error;
     result_.statusword.reset();
-    return finish(tl::unexpected<Error>(error));
+    return finish(fail(error));
   }
   if (std::exchange(woken_, true)) {
     if (cutting || plan_.aim != PowerAim::stop) enter(State::cut, now);

@@ -188,7 +188,7 @@ std::optional<double> PowerDown::speed_in(const Result<Bytes>& answer) {
 }
 
 void PowerDown::end_stop() {
-  if (unread_) return finish(tl::unexpected<Error>(*unread_));
+  if (unread_) return finish(fail(*unread_));
   const auto state = seen_;
   if (!drive::is_energised(state) && !result_.written) {
     return finish(fail(session::drive_error(
@@ -208,7 +208,7 @@ void PowerDown::end_stop() {
 }
 
 void PowerDown::end_cut() {
-  if (unread_) return finish(tl::unexpected<Error>(*unread_));
+  if (unread_) return finish(fail(*unread_));
   const auto state = seen_;
   if (is_without_power(state) && result_.written) return finish({});
   if (is_without_power(state))

@@ -35,9 +35,9 @@ class Preflight {
       : session_(&session), units_(&units), node_(node), chinese_(chinese) {}
 
   Result<std::vector<PreflightItem>> run(const WatchdogPlan& watchdog) {
-    if (const auto done = look_at_state(); !done) return tl::unexpected<Error>(done.error());
-    if (const auto done = look_at_objects(); !done) return tl::unexpected<Error>(done.error());
-    if (const auto done = look_at_cautions(); !done) return tl::unexpected<Error>(done.error());
+    if (const auto done = look_at_state(); !done) return fail(done.error());
+    if (const auto done = look_at_objects(); !done) return fail(done.error());
+    if (const auto done = look_at_cautions(); !done) return fail(done.error());
     const bool sure = watchdog.kind != WatchdogPlan::Kind::none && !watchdog.assumed;
     add(sure ? Weight::good : Weight::caution, "watchdog", to_string(watchdog));
     return std::move(items_);
@@ -51,7 +51,7 @@ class Preflight {
   Result<void> look_at_state() {
     Power power(*session_, units_->profile(), node_);
     const auto word = power.statusword();
-    if (!word) return tl::unexpected<Error>(word.error());
+    if (!word) return fail(word.error());
     const auto state = drive::decode_state(*word);
     const bool fault = state == drive::DriveState::fault || state == drive::DriveState::fault_reaction_active;
     const bool bad =
@@ -67,7 +67,7 @@ class Preflight {
     if (power.tells(kRemote) && (*word & kRemote) == 0)
       add(Weight::stop, "remote", "bit 9 of the statusword is low: the drive obeys its panel, not the bus");
     const auto mode = read_mode(*session_, node_);
-    if (!mode) return tl::unexpected<Error>(mode.error());
+    if (!mode) return fail(mode.error());
     add(Weight::good, "mode", mode_text(units_->profile(), *mode, chinese_));
     return {};
   }
@@ -84,8 +84,7 @@ class Preflight {
     for (const auto& shown : kShown) ask(shown.object, shown.what);
     const auto answers = session_->transfer(requests);
     for (std::size_t i = 0; i < answers.size(); ++i) {
-      if (!answers[i] && answers[i].error().code != Errc::sdo_abort)
-        return tl::unexpected<Error>(answers[i].error());
+      if (!answers[i] && answers[i].error().code != Errc::sdo_abort) return fail(answers[i].error());
       if (!answers[i]) continue;
       if (requests[i].object == objects::kDigitalInputs) {
         add_inputs(static_cast<std::uint32_t>(load_le(*answers[i])));
@@ -120,7 +119,7 @@ class Preflight {
     const auto object = units_->object(name);
     if (!object) return std::optional<std::int64_t>();
     const auto answer = session_->upload(node_, *object);
-    if (!answer && answer.error().code != Errc::sdo_abort) return tl::unexpected<Error>(answer.error());
+    if (!answer && answer.error().code != Errc::sdo_abort) return fail(answer.error());
     if (!answer || answer->empty()) return std::optional<std::int64_t>();
     const auto meaning = drive::fitted(units_->meaning(*object), answer->size());
     const auto value = od::decode(meaning.type, *answer);
@@ -135,7 +134,7 @@ class Preflight {
       std::string unread;
       if (caution.is_conditional()) {
         const auto now = number(caution.name);
-        if (!now) return tl::unexpected<Error>(now.error());
+        if (!now) return fail(now.error());
         if (*now && !caution.holds(**now)) continue;
         if (!*now)
           unread = chinese_ ? fmt::format("{} 无法读取，请在面板上查看：", caution.name)

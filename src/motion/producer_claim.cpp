@@ -31,9 +31,9 @@ Result<bool> claim(session::Session& session, session::CanNetwork& can, std::uin
   const auto heard = [&] { return session.watch().state(id).has_value(); };
   const auto before = session.wait(heard, begin + back_off);
   if (!before || *before) return before.map([](bool found) { return !found; });
-  if (const auto all = session.listen(); !all) return tl::unexpected<Error>(all.error());
+  if (const auto all = session.listen(); !all) return fail(all.error());
   if (heard()) return false;
-  if (const auto sent = can.send_heartbeat(id); !sent) return tl::unexpected<Error>(sent.error());
+  if (const auto sent = can.send_heartbeat(id); !sent) return fail(sent.error());
   return session.wait(heard, begin + kClaiming).map([](bool found) { return !found; });
 }
 
@@ -46,11 +46,11 @@ Result<void> claim_producer(session::Session& session, std::uint8_t node, std::o
   for (unsigned round = 0; round < kMostRounds; ++round) {
     const auto slot = (session.options().claim_seed >> (kSlotBits * round)) % kSlots;
     const auto own = claim(session, *can, plan.producer, kSlot * slot);
-    if (!own) return tl::unexpected<Error>(own.error());
+    if (!own) return fail(own.error());
     if (*own) return {};
     if (named) break;
     const auto next = next_producer(session, node, plan.watched);
-    if (!next) return tl::unexpected<Error>(next.error());
+    if (!next) return fail(next.error());
     if (!*next) break;
     plan.producer = **next;
   }

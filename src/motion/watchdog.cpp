@@ -36,13 +36,13 @@ bool answers(session::Session& session, std::uint8_t node) {
 /// Takes in what all send, until the bus has been listened to for long enough.
 Result<void> hear_others(session::Session& session) {
   const auto waited = session.wait([] { return false; }, session.opened_at() + kListening);
-  if (!waited) return tl::unexpected<Error>(waited.error());
+  if (!waited) return fail(waited.error());
   return session.listen();
 }
 
 Result<std::optional<std::uint8_t>> free_producer(session::Session& session, std::uint8_t node,
                                                   const std::set<std::uint8_t>& watched) {
-  if (const auto heard = hear_others(session); !heard) return tl::unexpected<Error>(heard.error());
+  if (const auto heard = hear_others(session); !heard) return fail(heard.error());
   return next_producer(session, node, watched);
 }
 
@@ -57,8 +57,7 @@ Result<WatchdogPlan> plan_heartbeat(session::Session& session, const drive::Prof
   std::uint8_t own = 0;
   WatchdogPlan plan;
   for (std::size_t i = 0; i < answers.size(); ++i) {
-    if (!answers[i] && answers[i].error().code != Errc::sdo_abort)
-      return tl::unexpected<Error>(answers[i].error());
+    if (!answers[i] && answers[i].error().code != Errc::sdo_abort) return fail(answers[i].error());
     if (!answers[i]) continue;
     any = true;
     const auto entry = load_le(*answers[i]);
@@ -75,7 +74,7 @@ Result<WatchdogPlan> plan_heartbeat(session::Session& session, const drive::Prof
   }
   const auto id =
       producer ? Result<std::optional<std::uint8_t>>(producer) : free_producer(session, node, plan.watched);
-  if (!id) return tl::unexpected<Error>(id.error());
+  if (!id) return fail(id.error());
   if (!*id) {
     plan.remark = "no node-ID is free for the heartbeat of servoctl";
     return plan;
@@ -90,7 +89,7 @@ Result<WatchdogPlan> plan_heartbeat(session::Session& session, const drive::Prof
 Result<std::optional<std::uint64_t>> number(session::Session& session, std::uint8_t node,
                                             ObjectAddress object) {
   const auto value = session.upload(node, object);
-  if (!value && value.error().code != Errc::sdo_abort) return tl::unexpected<Error>(value.error());
+  if (!value && value.error().code != Errc::sdo_abort) return fail(value.error());
   return value ? std::optional(load_le(*value)) : std::nullopt;
 }
 
@@ -99,21 +98,21 @@ Result<std::string> against_guarding(session::Session& session, const drive::Pro
                                      std::uint8_t node) {
   for (const auto object : {objects::kGuardTime, objects::kLifeTimeFactor}) {
     const auto there = number(session, node, object);
-    if (!there) return tl::unexpected<Error>(there.error());
+    if (!there) return fail(there.error());
     if (!*there) return "it has no " + to_string(object);
   }
   if (has(profile, objects::kProducerHeartbeat)) {
     const auto period = number(session, node, objects::kProducerHeartbeat);
-    if (!period) return tl::unexpected<Error>(period.error());
+    if (!period) return fail(period.error());
     // CiA 301, 7.2.8.2.2: one of the two protocols.
     if (period->value_or(0) != 0) return "it sends heartbeats (1017h), so it does not answer node guarding";
   }
   const auto& name = profile.rules.nmt.guarding_alarm;
   if (name.empty()) return {};
   const auto alarm = drive::resolve(&profile, name);
-  if (!alarm) return tl::unexpected<Error>(alarm.error());
+  if (!alarm) return fail(alarm.error());
   const auto on = number(session, node, alarm->address);
-  if (!on) return tl::unexpected<Error>(on.error());
+  if (!on) return fail(on.error());
   if (on->value_or(0) != 0) return {};
   const bool at_restart = drive::meaning(*alarm, node).effect == od::Effect::restart;
   return fmt::format("the end of life guarding is no alarm while {} is {}{}", name,
@@ -125,7 +124,7 @@ Result<std::string> against_guarding(session::Session& session, const drive::Pro
 Result<void> plan_guarding(session::Session& session, const drive::Profile& profile, std::uint8_t node,
                            WatchdogPlan& plan) {
   const auto why_not = against_guarding(session, profile, node);
-  if (!why_not) return tl::unexpected<Error>(why_not.error());
+  if (!why_not) return fail(why_not.error());
   if (!why_not->empty()) {
     plan.remark += (plan.remark.empty() ? "" : ", and ") + *why_not;
     return {};
@@ -160,8 +159,7 @@ Result<WatchdogPlan> plan_watchdog(session::Session& session, const drive::Profi
   if (!plan) return plan;
   if (plan->kind == WatchdogPlan::Kind::none && has(profile, objects::kGuardTime) &&
       has(profile, objects::kLifeTimeFactor)) {
-    if (const auto done = plan_guarding(session, profile, node, *plan); !done)
-      return tl::unexpected<Error>(done.error());
+    if (const auto done = plan_guarding(session, profile, node, *plan); !done) return fail(done.error());
   }
   plan->assumed = profile.rules.is_assumed("watchdog");
   plan->alarms = profile.rules.nmt.lost_alarms;

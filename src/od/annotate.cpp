@@ -73,9 +73,9 @@ void read_row(TableRow& row, Entry& entry) {
 
 Result<void> annotate(Dictionary& dictionary, std::string_view csv, std::string_view file) {
   const auto table = parse_csv(csv, file);
-  if (!table) return tl::unexpected<Error>(table.error());
+  if (!table) return fail(table.error());
   const auto columns = TableColumns::find(*table, kColumns, file);
-  if (!columns) return tl::unexpected<Error>(columns.error());
+  if (!columns) return fail(columns.error());
   for (const auto& cells : table->rows) {
     TableRow row(cells, *columns, kColumns, file);
     const auto address = row.object(kObject);
@@ -84,7 +84,7 @@ Result<void> annotate(Dictionary& dictionary, std::string_view csv, std::string_
       row.refuse(kObject, "an object of the dictionary");
     else
       read_row(row, *entry);
-    if (row.error()) return tl::unexpected<Error>(*row.error());
+    if (row.error()) return fail(*row.error());
   }
   return {};
 }

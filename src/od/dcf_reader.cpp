@@ -160,7 +160,7 @@ class Reader {
 
 Result<Dcf> read_dcf(std::string_view text, std::string_view file) {
   const auto eds = read_eds(text, file);
-  if (!eds) return tl::unexpected<Error>(eds.error());
+  if (!eds) return fail(eds.error());
   const auto decoded = to_utf8(text);
   return Reader(decoded.text(text), *eds, file).read();
 }

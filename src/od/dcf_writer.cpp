@@ -112,7 +112,7 @@ class Writer {
 
 Result<std::string> write_dcf(std::string_view eds, const DcfSettings& settings) {
   const auto file = read_eds(eds, "the data sheet");
-  if (!file) return tl::unexpected<Error>(file.error());
+  if (!file) return fail(file.error());
   const auto decoded = to_utf8(eds);
   return Writer(decoded.text(eds), *file, settings).write();
 }

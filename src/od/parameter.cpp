@@ -103,9 +103,9 @@ Parameter read_row(TableRow& row) {
 
 Result<std::vector<Parameter>> parse_parameters(std::string_view csv, std::string_view file) {
   const auto table = parse_csv(csv, file);
-  if (!table) return tl::unexpected<Error>(table.error());
+  if (!table) return fail(table.error());
   const auto columns = TableColumns::find(*table, kColumns, file);
-  if (!columns) return tl::unexpected<Error>(columns.error());
+  if (!columns) return fail(columns.error());
   std::vector<Parameter> out;
   out.reserve(table->rows.size());
   std::unordered_set<std::string> ids;
@@ -119,7 +119,7 @@ Result<std::vector<Parameter>> parse_parameters(std::string_view csv, std::strin
     if (parameter.object && !objects.insert(*parameter.object).second)
       row.refuse(fmt::format("{}: object {} belongs to another parameter as well", parameter.id,
                              to_string(*parameter.object)));
-    if (row.error()) return tl::unexpected<Error>(*row.error());
+    if (row.error()) return fail(*row.error());
     out.push_back(std::move(parameter));
   }
   return out;

@@ -48,17 +48,17 @@ class Changing {
       : desk_(&desk), edit_(&edit), how_(how) {}
 
   Result<Value> run() {
-    if (const auto known = take_up_record(); !known) return tl::unexpected<Error>(known.error());
-    if (const auto planned = plan_all(); !planned) return tl::unexpected<Error>(planned.error());
+    if (const auto known = take_up_record(); !known) return fail(known.error());
+    if (const auto planned = plan_all(); !planned) return fail(planned.error());
     const bool any =
         undone_ || std::any_of(jobs_.begin(), jobs_.end(), [](const Job& job) { return !job.plan.empty(); });
     if (any)
-      if (const auto quiet = check_quiet(); !quiet) return tl::unexpected<Error>(quiet.error());
+      if (const auto quiet = check_quiet(); !quiet) return fail(quiet.error());
     if (desk_->dry_run) return frames();
     if (any) {
-      if (const auto yes = desk_->confirm(question()); !yes) return tl::unexpected<Error>(yes.error());
+      if (const auto yes = desk_->confirm(question()); !yes) return fail(yes.error());
       // It may have taken long to answer.
-      if (const auto quiet = check_quiet(); !quiet) return tl::unexpected<Error>(quiet.error());
+      if (const auto quiet = check_quiet(); !quiet) return fail(quiet.error());
     }
     List out;
     for (const auto& job : jobs_) {
@@ -74,7 +74,7 @@ class Changing {
     if (desk_->nodes.size() == 1 && !how_.file.empty()) {
       PdoRecord record(*desk_, desk_->nodes.front());
       const auto journal = record.take_up(how_.file);
-      if (!journal) return tl::unexpected<Error>(journal.error());
+      if (!journal) return fail(journal.error());
       if (*journal) {
         undone_ = Undone{std::move(record), **journal};
         how_.keep = how_.keep || undone_->journal.keep;
@@ -89,10 +89,10 @@ class Changing {
   Result<void> plan_all() {
     const auto read = session::read_pdo_values(*desk_->session, desk_->profile, desk_->nodes);
     for (std::size_t i = 0; i < read.size(); ++i) {
-      if (!read[i]) return tl::unexpected<Error>(read[i].error());
+      if (!read[i]) return fail(read[i].error());
       Job job{{desk_->nodes[i], *read[i], session::pdos_of(*read[i])}, {}, {}, {}};
       const auto wanted = (*edit_)(job.present);
-      if (!wanted) return tl::unexpected<Error>(wanted.error());
+      if (!wanted) return fail(wanted.error());
       job.wanted = *wanted;
       if (const auto fits = check(job); !fits) {
         auto error = fits.error();
@@ -174,7 +174,7 @@ class Changing {
       storage.rehearse(out);
       if (pause) state(session::NodeState::pre_operational, "if it is operational");
       if (const auto opened = storage.open(how_.keep, how_.unlock, true); !opened)
-        return tl::unexpected<Error>(opened.error());
+        return fail(opened.error());
       for (const auto& step : job.plan) out.add(session::planned_write({node, step.object, step.data}));
       (void)storage.close(true, job.plan.size());
       if (pause) state(session::NodeState::operational, "if it was operational");

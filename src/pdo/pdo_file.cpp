@@ -59,7 +59,7 @@ std::optional<std::string> read_recipe(const Value& record, const std::string& w
 
 Result<PdoFile> read_json(std::string_view text, const std::string& file) {
   const auto root = report::parse_json(text, file);
-  if (!root) return tl::unexpected<Error>(root.error());
+  if (!root) return fail(root.error());
   show::FieldReader reader(*root, file);
   PdoFile out;
   out.family = reader.text("family");
@@ -83,7 +83,7 @@ Result<PdoFile> parse_pdo_file(std::string_view text, const std::filesystem::pat
 
 Result<PdoFile> read_pdo_file(const std::filesystem::path& file) {
   const auto text = read_file(file);
-  if (!text) return tl::unexpected<Error>(text.error());
+  if (!text) return fail(text.error());
   return parse_pdo_file(*text, file);
 }
 

@@ -71,7 +71,7 @@ class Neighbours {
                                               [&](const auto& n) { return n.node == owner->node; });
     if (!owner || changes) return {};
     const auto has = ask(*owner);
-    if (!has) return tl::unexpected<Error>(has.error());
+    if (!has) return fail(has.error());
     return *has ? judge(node, pdo, owner->node, owner->pdo) : Result<void>();
   }
 
@@ -80,7 +80,7 @@ class Neighbours {
     const session::Hurry hurry(*desk_->session, kPatience, 0);
     const auto answer = desk_->session->upload(owner.node, {owner.pdo.communication_index(), 1});
     if (!answer && (answer.error().code == Errc::bus || answer.error().code == Errc::interrupted))
-      return tl::unexpected<Error>(answer.error());
+      return fail(answer.error());
     if (!answer) return false;
     const auto wanted = (owner.pdo.number - 1U) * 0x100 +
                         (owner.pdo.direction == PdoDirection::transmit ? 0x180U : 0x200U) + owner.node;

@@ -17,7 +17,7 @@ using drive::PdoRecipe;
 tl::unexpected<Error> of(const PdoRecipe& recipe, Error error) {
   if (error.message.find(recipe.pdo) == std::string::npos) error.message = recipe.pdo + ": " + error.message;
   if (recipe.line != 0) error.line = recipe.line;
-  return tl::unexpected<Error>(std::move(error));
+  return fail(std::move(error));
 }
 
 Result<void> set_times(const PdoRecipe& recipe, Pdo& pdo) {
@@ -37,7 +37,7 @@ Result<void> set_mapping(const drive::Profile& profile, const PdoRecipe& recipe,
   pdo.entries.clear();
   for (const auto& word : *recipe.map) {
     const auto entry = parse_mapped(profile, word);
-    if (!entry) return tl::unexpected<Error>(entry.error());
+    if (!entry) return fail(entry.error());
     pdo.entries.push_back(*entry);
   }
   return {};
@@ -47,7 +47,7 @@ Result<void> set_cob_id(const PdoRecipe& recipe, const PresentPdos& present, Pdo
   if (!recipe.cob_id.empty()) {
     const auto can_id = recipe.valid.value_or(false) ? parse_pdo_can_id(recipe.cob_id, present.node)
                                                      : parse_can_id(recipe.cob_id, present.node);
-    if (!can_id) return tl::unexpected<Error>(can_id.error());
+    if (!can_id) return fail(can_id.error());
     pdo.set_can_id(*can_id);
   }
   if (!recipe.valid) return {};
@@ -120,8 +120,7 @@ Result<WantedPdos> follow(const drive::Profile& profile, const PresentPdos& pres
     out.pdos.push_back(std::move(*pdo));
   }
   if (fixed)
-    if (const auto done = assign_all(profile, present, recipes, out); !done)
-      return tl::unexpected<Error>(done.error());
+    if (const auto done = assign_all(profile, present, recipes, out); !done) return fail(done.error());
   return out;
 }
 

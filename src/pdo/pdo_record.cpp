@@ -69,7 +69,7 @@ std::vector<fs::path> PdoRecord::found() const {
 Result<void> PdoRecord::begin(const session::Values& present, bool keep, bool unlock) {
   if (desk_->state_folder.empty()) return {};
   auto drive = session::read_identity(*desk_->session, node_);
-  if (!drive) return tl::unexpected<Error>(drive.error());
+  if (!drive) return fail(drive.error());
   for (const auto& older : found())
     if (const auto backup = settings::read_backup(older); backup && !is_other_drive(backup->identity, *drive))
       return {};
@@ -92,9 +92,9 @@ Result<std::optional<settings::RestoreJournal>> PdoRecord::take_up(const fs::pat
   for (const auto& record : found()) {
     if (!fs::equivalent(file, record, none)) continue;
     const auto backup = settings::read_backup(record);
-    if (!backup) return tl::unexpected<Error>(backup.error());
+    if (!backup) return fail(backup.error());
     const auto drive = session::read_identity(*desk_->session, node_);
-    if (!drive) return tl::unexpected<Error>(drive.error());
+    if (!drive) return fail(drive.error());
     if (is_other_drive(backup->identity, *drive))
       return fail(Errc::refused,
                   fmt::format("node {} is another drive ({}) than the one whose change was cut off ({})",

@@ -8,7 +8,7 @@ namespace servoctl::pdo {
 
 Result<std::vector<show::PdoView>> read_views(show::Desk& desk, std::uint8_t node) {
   auto pdos = session::read_pdos(*desk.session, desk.profile, node);
-  if (!pdos) return tl::unexpected<Error>(pdos.error());
+  if (!pdos) return fail(pdos.error());
   std::vector<show::PdoView> out;
   for (auto& pdo : *pdos) out.push_back(show::make_view(desk.profile, desk.chinese, node, std::move(pdo)));
   return out;
@@ -19,7 +19,7 @@ Result<const show::PdoView*> find_view(std::span<const show::PdoView> views, std
   PresentPdos present{node, {}, {}};
   for (const auto& view : views) present.pdos.push_back(view.pdo);
   const auto pdo = find_pdo(present, name);
-  if (!pdo) return tl::unexpected<Error>(pdo.error());
+  if (!pdo) return fail(pdo.error());
   return &*std::find_if(views.begin(), views.end(), [&](const show::PdoView& view) {
     return view.pdo.direction == pdo->direction && view.pdo.number == pdo->number;
   });

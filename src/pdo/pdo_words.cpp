@@ -38,7 +38,7 @@ Result<PdoEntry> parse_mapped(const drive::Profile& profile, std::string_view te
   }
   const auto slash = text.rfind('/');
   const auto target = drive::resolve(&profile, text.substr(0, slash));
-  if (!target) return tl::unexpected<Error>(target.error());
+  if (!target) return fail(target.error());
   if (slash != std::string_view::npos) {
     const auto bits = parse_digits(text.substr(slash + 1), 10);
     if (!bits || *bits == 0 || *bits > 64)
@@ -74,7 +74,7 @@ Result<std::uint32_t> parse_pdo_can_id(std::string_view text, std::uint8_t node)
   if (const auto free =
           session::check_cob_id(nullptr, {Pdo{}.communication_index(), 1}, store_le(*can_id, 4), 0);
       !free)
-    return tl::unexpected<Error>(free.error());
+    return fail(free.error());
   return can_id;
 }
 

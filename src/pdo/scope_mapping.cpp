@@ -35,7 +35,7 @@ Result<Pdo> ScopeMapping::choose(std::span<const std::string> objects, Duration 
   Pdo out;
   for (const auto& object : objects) {
     const auto entry = parse_mapped(*desk_->profile, object);
-    if (!entry) return tl::unexpected<Error>(entry.error());
+    if (!entry) return fail(entry.error());
     out.entries.push_back(*entry);
   }
   const auto ms = std::chrono::ceil<std::chrono::milliseconds>(period).count();
@@ -55,7 +55,7 @@ Result<Pdo> ScopeMapping::choose(std::span<const std::string> objects, Duration 
     if (fits) fits = show::check_communication(*desk_->profile, spare, wanted, all);
     if (fits) return wanted;
   }
-  return tl::unexpected<Error>(fits.error());
+  return fail(fits.error());
 }
 
 Result<void> ScopeMapping::check_still(const std::vector<session::PlannedWrite>& plan) const {
@@ -66,7 +66,7 @@ Result<void> ScopeMapping::check_still(const std::vector<session::PlannedWrite>&
 
 Result<void> ScopeMapping::check_state(const std::vector<session::PlannedWrite>& plan) const {
   const auto state = session::ask_state(*desk_->session, node_);
-  if (!state) return tl::unexpected<Error>(state.error());
+  if (!state) return fail(state.error());
   if (*state != session::NodeState::operational)
     return fail(Errc::negative, "it is not known to be operational, and sends TPDOs only then",
                 fmt::format("`nmt start -n {}`", node_));
@@ -79,17 +79,17 @@ Result<void> ScopeMapping::change(const session::Values& present, const session:
   for (auto& notice : outcome.notices) desk_->notices.push_back(std::move(notice));
   if (!outcome.failure) return {};
   changed_ = !outcome.rolled_back;
-  return tl::unexpected<Error>(*outcome.failure);
+  return fail(*outcome.failure);
 }
 
 Result<void> ScopeMapping::begin(std::span<const std::string> objects, Duration period) {
   if (desk_->profile == nullptr) return fail(Errc::usage, "mapping needs the drive family", "-d FAMILY");
   const std::uint8_t nodes[] = {node_};
   auto read = std::move(session::read_pdo_values(*desk_->session, desk_->profile, nodes).front());
-  if (!read) return tl::unexpected<Error>(read.error());
+  if (!read) return fail(read.error());
   before_ = std::move(*read);
   const auto wanted = choose(objects, period, session::pdos_of(before_));
-  if (!wanted) return tl::unexpected<Error>(wanted.error());
+  if (!wanted) return fail(wanted.error());
   pdo_ = *wanted;
   auto present = before_;
   const auto mapped = session::values_of(*wanted, present);

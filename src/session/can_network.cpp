@@ -80,13 +80,13 @@ std::optional<NodeState> CanNetwork::Records::state(std::uint8_t node) const {
 Result<bool> CanNetwork::step(TimePoint deadline) {
   frame_.reset();
   while (const auto question = guard_.take_frame())
-    if (const auto sent = bus_->send(*question); !sent) return tl::unexpected<Error>(sent.error());
+    if (const auto sent = bus_->send(*question); !sent) return fail(sent.error());
   const auto heartbeat = send_heartbeat();
-  if (!heartbeat) return tl::unexpected<Error>(heartbeat.error());
+  if (!heartbeat) return fail(heartbeat.error());
   const auto sync = send_sync();
-  if (!sync) return tl::unexpected<Error>(sync.error());
+  if (!sync) return fail(sync.error());
   auto frame = bus_->receive(std::min({deadline, watch_.deadline(), guard_.deadline(), *heartbeat, *sync}));
-  if (!frame) return tl::unexpected<Error>(std::move(frame.error()));
+  if (!frame) return fail(std::move(frame.error()));
   frame_ = *frame;
   stepped_at_ = frame_ ? std::max(stepped_at_, bus_->arrived()) : now();
   if (frame_) hear(*frame_);
@@ -94,7 +94,7 @@ Result<bool> CanNetwork::step(TimePoint deadline) {
   guard_.on_time(stepped_at_);
   if (!frame_) return false;
   if (const auto report = can::parse_report(*frame_))
-    if (const auto alive = on_report(*report); !alive) return tl::unexpected<Error>(alive.error());
+    if (const auto alive = on_report(*report); !alive) return fail(alive.error());
   dispatch(*frame_);
   return true;
 }
@@ -124,7 +124,7 @@ Result<TimePoint> CanNetwork::send_heartbeat() {
   if (time < heartbeat_->next) return heartbeat_->next;
   heartbeat_->next = time + heartbeat_->period;
   if (const auto sent = bus_->send(canopen::heartbeat_frame(heartbeat_->node, NmtState::operational)); !sent)
-    return tl::unexpected<Error>(sent.error());
+    return fail(sent.error());
   return heartbeat_->next;
 }
 
@@ -132,7 +132,7 @@ Result<TimePoint> CanNetwork::send_sync() {
   if (!sync_) return kNever;
   sync_->producer.on_time(now());
   if (const auto frame = sync_->producer.take_frame()) {
-    if (const auto sent = bus_->send(*frame); !sent) return tl::unexpected<Error>(sent.error());
+    if (const auto sent = bus_->send(*frame); !sent) return fail(sent.error());
     sync_->rhythm.add(now());
   }
   return sync_->producer.deadline();

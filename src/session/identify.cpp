@@ -18,7 +18,7 @@ bool tells(const Result<Bytes>& answer) {
 
 Result<void> listen_for(Session& session, Duration time) {
   const auto waited = session.wait([] { return false; }, session.now() + time);
-  if (!waited) return tl::unexpected<Error>(waited.error());
+  if (!waited) return fail(waited.error());
   return {};
 }
 
@@ -56,7 +56,7 @@ std::vector<Result<Identity>> identify(Session& session, std::span<const std::ui
     at += static_cast<std::ptrdiff_t>(objects.size());
     const auto silent = std::find_if(here.begin(), here.end(), [](const auto& a) { return !tells(a); });
     if (silent != here.end()) {
-      out.emplace_back(tl::unexpected<Error>(silent->error()));
+      out.emplace_back(fail(silent->error()));
       continue;
     }
     Identity identity;
@@ -88,7 +88,7 @@ Result<Identity> read_identity(Session& session, std::uint8_t node) {
                                                   &out.revision, &out.serial};
   for (std::size_t i = 0; i < answers.size(); ++i) {
     const auto& answer = answers[i];
-    if (!answer && answer.error().code != Errc::sdo_abort) return tl::unexpected<Error>(answer.error());
+    if (!answer && answer.error().code != Errc::sdo_abort) return fail(answer.error());
     if (i < std::size(places))
       *places[i] = u32_in(answer);
     else

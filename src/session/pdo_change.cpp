@@ -179,7 +179,7 @@ Result<void> complete(Session& session, std::uint8_t node, Values& present, cons
     const auto object = questions[i].object;
     const bool entry = is_pdo_mapping(object.index) && object.sub > 0;
     if (!answers[i] && !(entry && answers[i].error().code == Errc::sdo_abort))
-      return tl::unexpected<Error>(answers[i].error());
+      return fail(answers[i].error());
     present.emplace(object, answers[i] ? *answers[i] : Bytes(wanted.at(object).size(), 0));
   }
   return {};
@@ -187,7 +187,7 @@ Result<void> complete(Session& session, std::uint8_t node, Values& present, cons
 
 Result<void> check_not_energised(Session& session, std::uint8_t node) {
   const auto word = session.upload(node, objects::kStatusword);
-  if (!word && word.error().code != Errc::sdo_abort) return tl::unexpected<Error>(word.error());
+  if (!word && word.error().code != Errc::sdo_abort) return fail(word.error());
   if (!word || !drive::is_energised(drive::decode_state(static_cast<std::uint16_t>(load_le(*word)))))
     return {};
   Error error;

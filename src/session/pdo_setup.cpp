@@ -72,7 +72,7 @@ class Reading {
       if (answers[k])
         values->insert_or_assign(requests[k].object, *answers[k]);
       else if (answers[k].error().code != Errc::sdo_abort)
-        values = tl::unexpected<Error>(answers[k].error());
+        values = fail(answers[k].error());
     }
   }
 

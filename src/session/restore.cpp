@@ -67,7 +67,7 @@ class Run {
     for (const auto& step : plan) {
       const SdoRequest request{node_, step.object, step.data};
       const auto written = write_all(*session_, std::span(&request, 1), true).front();
-      if (!written) return tl::unexpected<Error>(written.error());
+      if (!written) return fail(written.error());
       ++count;
     }
     return {};
@@ -78,7 +78,7 @@ class Run {
     for (const auto object : touched_) {
       if (wanted_->count(object) == 0) continue;
       const auto found = session_->upload(node_, object);
-      if (!found) return tl::unexpected<Error>(found.error());
+      if (!found) return fail(found.error());
       if (*found == wanted_->at(object)) continue;
       Error error;
       error.code = Errc::negative;

@@ -28,7 +28,7 @@ Result<std::vector<Identity>> find_nodes(Session& session, std::span<const std::
   std::vector<Identity> found;
   for (std::size_t i = 0; i < answers.size(); ++i) {
     if (!answers[i] && (answers[i].error().code == Errc::bus || answers[i].error().code == Errc::interrupted))
-      return tl::unexpected<Error>(answers[i].error());
+      return fail(answers[i].error());
     if (!answers[i] && answers[i].error().code == Errc::timeout) continue;
     Identity identity;
     identity.node = nodes[i];
@@ -69,8 +69,7 @@ Result<std::vector<Identity>> scan(Session& session, std::span<const std::uint8_
   const auto least = found->size() < nodes.size() ? kBriefly : kThoroughly;
   std::vector<std::uint8_t> there;
   for (const auto& identity : *found) there.push_back(identity.node);
-  if (const auto settled = settle_duplicates(session, there, least); !settled)
-    return tl::unexpected<Error>(settled.error());
+  if (const auto settled = settle_duplicates(session, there, least); !settled) return fail(settled.error());
   return found;
 }
 

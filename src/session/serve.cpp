@@ -39,7 +39,7 @@ Result<void> serve(Session& session, sim::Cell& cell) {
     if (const auto sent = flush(bus, cell); !sent) return sent;
     if (cancelled && cancelled()) return {};
     const auto frame = bus.receive(next);
-    if (!frame) return tl::unexpected<Error>(frame.error());
+    if (!frame) return fail(frame.error());
     if (!*frame) continue;
     for (const auto& drive : cell.drives) drive->on_frame(**frame, bus.now());
   }

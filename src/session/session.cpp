@@ -36,7 +36,7 @@ Result<Bytes> Session::upload(std::uint8_t node, ObjectAddress object) {
 Result<void> Session::download(std::uint8_t node, ObjectAddress object, Bytes data) {
   const SdoRequest request{node, object, std::move(data)};
   const auto result = std::move(transfer(std::span(&request, 1)).front());
-  if (!result) return tl::unexpected<Error>(result.error());
+  if (!result) return fail(result.error());
   return {};
 }
 
@@ -55,7 +55,7 @@ Result<bool> Session::step(TimePoint deadline) {
 Result<bool> Session::wait(const std::function<bool()>& done, TimePoint deadline) {
   while (!done()) {
     if (now() >= deadline) return false;
-    if (const auto stepped = step(deadline); !stepped) return tl::unexpected<Error>(stepped.error());
+    if (const auto stepped = step(deadline); !stepped) return fail(stepped.error());
   }
   return true;
 }
@@ -63,7 +63,7 @@ Result<bool> Session::wait(const std::function<bool()>& done, TimePoint deadline
 Result<void> Session::listen() {
   for (;;) {
     const auto stepped = step(now());
-    if (!stepped) return tl::unexpected<Error>(stepped.error());
+    if (!stepped) return fail(stepped.error());
     if (!*stepped) return {};
   }
 }

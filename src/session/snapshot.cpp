@@ -18,7 +18,7 @@ Result<void> take_answer(const Result<Bytes>& answer, SnapshotEntry& entry) {
     entry.bytes = *answer;
     return {};
   }
-  if (answer.error().code != Errc::sdo_abort) return tl::unexpected<Error>(answer.error());
+  if (answer.error().code != Errc::sdo_abort) return fail(answer.error());
   entry.left_out = fmt::format("refused: {}", canopen::sdo_abort_text(answer.error().abort_code.value_or(0)));
   return {};
 }
@@ -49,7 +49,7 @@ std::vector<Result<Snapshot>> take_snapshots(Session& session, const drive::Prof
     for (const auto& setting : settings) {
       SnapshotEntry entry{setting.entry->address, {}, std::string(setting.left_out)};
       const auto taken = setting.left_out.empty() ? take_answer(answers[next++], entry) : Result<void>{};
-      if (!taken && snapshot) snapshot = tl::unexpected<Error>(taken.error());
+      if (!taken && snapshot) snapshot = fail(taken.error());
       if (snapshot) snapshot->entries.push_back(std::move(entry));
     }
     out.push_back(std::move(snapshot));
@@ -65,8 +65,7 @@ Result<std::vector<SnapshotEntry>> read_objects(Session& session, std::uint8_t n
   std::vector<SnapshotEntry> out;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     out.push_back({objects[i], {}, {}});
-    if (const auto taken = take_answer(answers[i], out.back()); !taken)
-      return tl::unexpected<Error>(taken.error());
+    if (const auto taken = take_answer(answers[i], out.back()); !taken) return fail(taken.error());
   }
   return out;
 }

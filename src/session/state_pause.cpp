@@ -26,26 +26,25 @@ Result<std::optional<NodeState>> ask_state(Session& session, std::uint8_t node, 
                                   {.node = node, .object = objects::kLifeTimeFactor, .size = 1}};
   const auto answers = session.transfer(questions);
   for (const auto& answer : answers)
-    if (!answer && answer.error().code != Errc::sdo_abort) return tl::unexpected<Error>(answer.error());
+    if (!answer && answer.error().code != Errc::sdo_abort) return fail(answer.error());
   const auto period = std::chrono::milliseconds(number_in(answers[0]).value_or(0) & 0xFFFFU);
   auto patience = std::min<Duration>(period * 3 / 2, kMostPatience);
   const auto heard = session.watch().heartbeats(node);
   if (period == Duration::zero()) {
     const bool is_guarded = number_in(answers[1]).value_or(0) != 0 && number_in(answers[2]).value_or(0) != 0;
     if (!by_question || is_guarded) return std::nullopt;
-    if (const auto sent = session.network().ask_state(node); !sent)
-      return tl::unexpected<Error>(sent.error());
+    if (const auto sent = session.network().ask_state(node); !sent) return fail(sent.error());
     patience = session.options().timeout;
   }
   const auto waited =
       session.wait([&] { return session.watch().heartbeats(node) > heard; }, session.now() + patience);
-  if (!waited) return tl::unexpected<Error>(waited.error());
+  if (!waited) return fail(waited.error());
   return *waited ? session.watch().state(node) : std::nullopt;
 }
 
 Result<void> StatePause::enter() {
   const auto state = ask_state(*session_, node_);
-  if (!state) return tl::unexpected<Error>(state.error());
+  if (!state) return fail(state.error());
   before_ = *state;
   if (before_ == NodeState::pre_operational) return {};
   entered_ = true;

@@ -18,7 +18,7 @@ Result<std::vector<SdoRequest>> writes_of(const drive::Profile& profile, std::ui
   std::vector<SdoRequest> out;
   for (const auto& setting : settings) {
     auto write = setting_write(profile, node, setting);
-    if (!write) return tl::unexpected<Error>(write.error());
+    if (!write) return fail(write.error());
     out.push_back(*std::move(write));
   }
   return out;
@@ -26,7 +26,7 @@ Result<std::vector<SdoRequest>> writes_of(const drive::Profile& profile, std::ui
 
 /// One after the other, each when the one before is done.
 Result<void> carry_out(Session& session, const Result<std::vector<SdoRequest>>& writes) {
-  if (!writes) return tl::unexpected<Error>(writes.error());
+  if (!writes) return fail(writes.error());
   const OptionScope patience(session, &Options::timeout, std::max(session.options().timeout, kStorePatience));
   for (const auto& write : *writes)
     if (const auto done = session.download(write.node, write.object, *write.data); !done) return done;
@@ -86,9 +86,9 @@ Result<void> restore_defaults(Session& session, const drive::Profile* profile, s
 
 Result<void> StorageScope::set(const std::string& name, std::int64_t value, std::optional<Changed>& out) {
   const auto request = setting_write(*profile_, node_, {name, value});
-  if (!request) return tl::unexpected<Error>(request.error());
+  if (!request) return fail(request.error());
   const auto before = session_->upload(node_, request->object);
-  if (!before) return tl::unexpected<Error>(before.error());
+  if (!before) return fail(before.error());
   if (*before == *request->data) return {};
   // Noted first: an answer that is lost may belong to a write that was done.
   out = Changed{request->object, *before, *request->data};
@@ -105,7 +105,7 @@ Result<void> StorageScope::write(ObjectAddress object, const Bytes& data) {
 Result<void> StorageScope::store_all() {
   if (rehearsal_ == nullptr) return store_parameters(*session_, profile_, node_, ParameterGroup::all);
   const auto writes = store_writes(profile_, node_, ParameterGroup::all);
-  if (!writes) return tl::unexpected<Error>(writes.error());
+  if (!writes) return fail(writes.error());
   for (const auto& each : *writes) rehearsal_->add(planned_write(each));
   return {};
 }

@@ -140,7 +140,7 @@ void TransferRun::skip_rest(Channel& channel, const Error& reason, bool reads_to
     error.message = fmt::format("node {}, object {}: not tried after {} failed", requests_[index].node,
                                 to_string(requests_[index].object),
                                 reason.object ? to_string(*reason.object) : "an object");
-    results_[index] = tl::unexpected<Error>(std::move(error));
+    results_[index] = fail(std::move(error));
     --open_;
   }
   channel.waiting = std::move(kept);
@@ -150,8 +150,8 @@ void TransferRun::skip_rest(Channel& channel, const Error& reason, bool reads_to
 /// abort may be what was not sent. The channels begin anew.
 void TransferRun::fail_all(const Error& error) {
   for (auto& channel : channels_) {
-    if (channel.asked) results_[channel.current] = tl::unexpected<Error>(error);
-    for (const auto index : channel.waiting) results_[index] = tl::unexpected<Error>(error);
+    if (channel.asked) results_[channel.current] = fail(error);
+    for (const auto index : channel.waiting) results_[index] = fail(error);
     channel.asked = false;
     channel.waiting.clear();
     channel.objects = session_->network().object_channel(channel.node, session_->options().timeout);

@@ -72,7 +72,7 @@ std::vector<Result<Written>> write_all(Session& session, std::span<const SdoRequ
     if (answers[i])
       out.emplace_back(Written{});
     else
-      out.emplace_back(tl::unexpected<Error>(answers[i].error()));
+      out.emplace_back(fail(answers[i].error()));
     const bool lost = !answers[i] && answer_lost(answers[i].error(), requests[i]);
     if (!lost && !(answers[i] && read_back)) continue;
     questions.push_back(

@@ -55,8 +55,7 @@ class Reader {
     if (drive::needs_bridge(meaning, text))
       return refuse(fmt::format("what '{}' is only the drive itself can tell", text), "write the raw number");
     const auto value = drive::parse_quantity(meaning, text);
-    const auto bytes =
-        value ? od::encode(meaning.type, *value) : Result<Bytes>(tl::unexpected<Error>(value.error()));
+    const auto bytes = value ? od::encode(meaning.type, *value) : Result<Bytes>(fail(value.error()));
     if (!bytes)
       return refuse(fmt::format("{}: {}", name_of(*target), bytes.error().message), bytes.error().hint);
     Backup::Entry entry;
@@ -87,10 +86,10 @@ class Reader {
 Result<Backup> read_batch_backup(LineReader& lines_of, std::string_view text, const std::string& file,
                                  const drive::Profile& profile, std::uint8_t node) {
   const auto lines = lines_of.setting_lines(text, file);
-  if (!lines) return tl::unexpected<Error>(lines.error());
+  if (!lines) return fail(lines.error());
   Reader reader(file, profile, node);
   for (const auto& line : *lines)
-    if (const auto taken = reader.take(line); !taken) return tl::unexpected<Error>(taken.error());
+    if (const auto taken = reader.take(line); !taken) return fail(taken.error());
   auto backup = reader.take_backup();
   if (backup.entries.empty())
     return fail(Errc::file, fmt::format("{}: no line in it writes a value", file),

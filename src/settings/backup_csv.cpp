@@ -64,9 +64,9 @@ class Reader {
       row_ = &row;
       Backup::Entry entry;
       entry.line = row.line;
-      if (const auto same = take_node(out.identity.node); !same) return tl::unexpected<Error>(same.error());
+      if (const auto same = take_node(out.identity.node); !same) return fail(same.error());
       if (cell("raw").empty() && cell("value").empty() && !cell("left_out").empty()) continue;
-      if (const auto read = read_row(entry); !read) return tl::unexpected<Error>(read.error());
+      if (const auto read = read_row(entry); !read) return fail(read.error());
       out.entries.push_back(std::move(entry));
     }
     return out;
@@ -121,7 +121,7 @@ class Reader {
 
   Result<Bytes> bytes_of(const drive::Meaning& meaning) const {
     const auto value = drive::parse_quantity(meaning, quantity());
-    if (!value) return tl::unexpected<Error>(value.error());
+    if (!value) return fail(value.error());
     return od::encode(meaning.type, *value);
   }
 
@@ -177,7 +177,7 @@ std::string csv_text(const drive::Profile& profile, const Backup& backup) {
 Result<Backup> read_csv_backup(std::string_view text, const std::string& file, const drive::Profile& profile,
                                std::uint8_t node) {
   const auto table = parse_csv(text, file);
-  if (!table) return tl::unexpected<Error>(table.error());
+  if (!table) return fail(table.error());
   return Reader(*table, file, profile, node).read();
 }
 

@@ -75,7 +75,7 @@ Result<std::string> dcf_text(const drive::Profile& profile, const Backup& backup
     return fail(Errc::usage, fmt::format("{} has no data sheet (EDS) to make a DCF of", profile.family),
                 "take --format json, csv or batch");
   const auto eds = read_file(profile.data_sheet, od::kMostEdsBytes);
-  if (!eds) return tl::unexpected<Error>(eds.error());
+  if (!eds) return fail(eds.error());
   od::DcfSettings settings;
   settings.file_name = file_name;
   settings.node_id = backup.identity.node;
@@ -108,7 +108,7 @@ Result<std::string> dcf_text(const drive::Profile& profile, const Backup& backup
 
 Result<Backup> read_dcf_backup(std::string_view text, const std::string& file, std::uint8_t node) {
   auto dcf = od::read_dcf(text, file);
-  if (!dcf) return tl::unexpected<Error>(dcf.error());
+  if (!dcf) return fail(dcf.error());
   Backup out;
   out.identity.node = dcf->node_id;
   if (dcf->vendor_number != 0) out.identity.vendor_id = dcf->vendor_number;

@@ -212,7 +212,7 @@ Result<std::string> backup_text(show::Desk& desk, const Backup& backup, BackupFo
 
 Result<BackupSource> open_backup(const std::filesystem::path& file, LineReader* lines) {
   const auto bytes = read_file(file);
-  if (!bytes) return tl::unexpected<Error>(bytes.error());
+  if (!bytes) return fail(bytes.error());
   // Spreadsheets save tables in whatever encoding their system has.
   const auto decoded = od::to_utf8(*bytes);
   const auto text = decoded.text(*bytes);
@@ -248,8 +248,7 @@ Result<Backup> read_backup(show::Desk& desk, const BackupSource& source, const d
   forget_soft_marks(*profile, backup->identity);
   const bool procedure = source.format == BackupFormat::batch || source.format == BackupFormat::concise_dcf;
   settle(*backup, source.file, *profile, procedure);
-  if (const auto usable = judge_unusable(desk, *backup, skip_invalid); !usable)
-    return tl::unexpected<Error>(usable.error());
+  if (const auto usable = judge_unusable(desk, *backup, skip_invalid); !usable) return fail(usable.error());
   tell(desk, source, *backup);
   return backup;
 }
@@ -257,13 +256,13 @@ Result<Backup> read_backup(show::Desk& desk, const BackupSource& source, const d
 Result<Backup> read_backup(show::Desk& desk, const std::filesystem::path& file, LineReader* lines,
                            std::uint8_t node, bool skip_invalid) {
   const auto source = open_backup(file, lines);
-  if (!source) return tl::unexpected<Error>(source.error());
+  if (!source) return fail(source.error());
   return read_backup(desk, *source, desk.profile, node, skip_invalid);
 }
 
 Result<Backup> read_backup(const std::filesystem::path& file) {
   const auto text = read_file(file);
-  if (!text) return tl::unexpected<Error>(text.error());
+  if (!text) return fail(text.error());
   return read_json_backup(*text, file.string());
 }
 

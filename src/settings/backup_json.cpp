@@ -87,7 +87,7 @@ Result<void> read_entries(const Value& document, std::uint32_t line, std::string
   std::unordered_set<ObjectAddress> seen;
   for (const auto& record : *entries) {
     auto entry = read_entry(record, line++, file);
-    if (!entry) return tl::unexpected<Error>(entry.error());
+    if (!entry) return fail(entry.error());
     if (!seen.insert(entry->object).second)
       return fail(Errc::file,
                   fmt::format("{}:{}: {} stands here twice", file, entry->line, to_string(entry->object)));
@@ -127,7 +127,7 @@ std::string json_text(const drive::Profile* profile, const Backup& backup) {
 
 Result<Backup> read_json_backup(std::string_view text, const std::string& file) {
   const auto document = report::parse_json(text, file);
-  if (!document) return tl::unexpected<Error>(document.error());
+  if (!document) return fail(document.error());
   show::FieldReader fields(*document, file);
   const auto version = fields.number("servoctl_backup", true);
   if (!version) return fail(Errc::file, fmt::format("{}: this is no backup of servoctl", file));
@@ -147,7 +147,7 @@ Result<Backup> read_json_backup(std::string_view text, const std::string& file) 
   const auto sum = fields.text("checksum", true);
   if (fields.error()) return fail(Errc::file, *fields.error(), "take the backup anew");
   if (const auto read = read_entries(*document, first_entry_line(text), file, out); !read)
-    return tl::unexpected<Error>(read.error());
+    return fail(read.error());
   if (sum != checksum(out))
     return fail(Errc::file,
                 fmt::format("{}: its checksum does not fit: the file was changed after it was written", file),

@@ -30,7 +30,7 @@ Result<drive::Meaning> learn_size(show::Desk& desk, std::uint8_t node, const dri
     error.hint = desk.profile == nullptr ? "say the type: --type i32, or the drive family: -d FAMILY"
                  : absent ? fmt::format("`objects -d {}` lists the objects it has", desk.profile->family)
                           : std::string("say the type: --type i32");
-    return tl::unexpected<Error>(std::move(error));
+    return fail(std::move(error));
   }
   auto learned = drive::fitted(meaning, bytes->size());
   if (!meaning.type_known) learned.type = show::type_of({node, target, {}, *bytes}, *bytes);
@@ -83,7 +83,7 @@ void add_bridge(show::Desk& desk, std::uint8_t node, const drive::Target& target
 tl::unexpected<Error> named(Error error, std::uint8_t node, const drive::Target& target,
                             std::string_view separator = ": ") {
   error.message = name_of(target) + std::string(separator) + error.message;
-  return tl::unexpected<Error>(show::located(std::move(error), node, target.address));
+  return fail(show::located(std::move(error), node, target.address));
 }
 
 Result<drive::Meaning> writable_meaning(std::uint8_t node, const drive::Target& target,
@@ -207,10 +207,10 @@ std::string name_of(const drive::Target& target) {
 Result<Change> make_change(show::Desk& desk, std::uint8_t node, const drive::Target& target,
                            std::string_view value, std::optional<od::DataType> type) {
   auto meaning = writable_meaning(node, target, type);
-  if (!meaning) return tl::unexpected<Error>(meaning.error());
+  if (!meaning) return fail(meaning.error());
   if (!type && (!meaning->type_known || !meaning->size_known)) {
     meaning = learn_size(desk, node, target, *meaning);
-    if (!meaning) return tl::unexpected<Error>(meaning.error());
+    if (!meaning) return fail(meaning.error());
   }
   add_bridge(desk, node, target, value, *meaning);
   return change_to(desk.profile, node, target, *meaning, value);
@@ -219,11 +219,11 @@ Result<Change> make_change(show::Desk& desk, std::uint8_t node, const drive::Tar
 Result<void> check_change(const show::Desk& desk, std::uint8_t node, const drive::Target& target,
                           std::string_view value, std::optional<od::DataType> type) {
   const auto meaning = writable_meaning(node, target, type);
-  if (!meaning) return tl::unexpected<Error>(meaning.error());
+  if (!meaning) return fail(meaning.error());
   const bool asks_size = !type && (!meaning->type_known || !meaning->size_known);
   if (asks_size || asks_measure(desk, *meaning, value)) return {};
   if (const auto change = change_to(desk.profile, node, target, *meaning, value); !change)
-    return tl::unexpected<Error>(change.error());
+    return fail(change.error());
   return {};
 }
 
@@ -242,7 +242,7 @@ Result<Value> write_changes(show::Desk& desk, std::span<const Change> changes, c
   for (const auto& change : changes)
     requests.push_back({change.node, change.target.address, change.data, change.transfer});
   KeepingNodes keeping(desk, changes);
-  if (const auto opened = keeping.open(options); !opened) return tl::unexpected<Error>(opened.error());
+  if (const auto opened = keeping.open(options); !opened) return fail(opened.error());
   const bool energises = std::any_of(changes.begin(), changes.end(), enables);
   const auto hold = desk.session->protect(energises ? session::Care::energised : session::Care::none);
   const auto written = session::write_all(*desk.session, requests, options.read_back || options.keep);

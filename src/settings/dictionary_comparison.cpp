@@ -106,9 +106,9 @@ bool are_data_sheets(const BackupSource& a, const BackupSource& b) {
 
 Result<Value> compare_data_sheets(show::Desk& desk, const BackupSource& a, const BackupSource& b) {
   const auto left = od::read_eds(a.text, a.file);
-  if (!left) return tl::unexpected<Error>(left.error());
+  if (!left) return fail(left.error());
   const auto right = od::read_eds(b.text, b.file);
-  if (!right) return tl::unexpected<Error>(right.error());
+  if (!right) return fail(right.error());
   for (const auto& [source, file] : {std::pair(&a, &*left), std::pair(&b, &*right)})
     if (file->error_count() > 0)
       desk.notices.push_back(fmt::format("{0}: {1} errors; `eds check {0}` lists what is not compared",

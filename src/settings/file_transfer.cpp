@@ -51,9 +51,9 @@ Result<Value> read_to_file(show::Desk& desk, std::uint8_t node, const drive::Tar
   const session::SdoRequest request{node, target.address, {}, transfer};
   const auto answers = desk.session->transfer(std::span(&request, 1));
   const auto& data = answers.front();
-  if (!data) return tl::unexpected<Error>(data.error());
+  if (!data) return fail(data.error());
   const auto written = write_file_atomically(file, std::string(data->begin(), data->end()));
-  if (!written) return tl::unexpected<Error>(written.error());
+  if (!written) return fail(written.error());
   auto table = new_table(false);
   table.rows.push_back(row(node, target, data->size(), file, "read", {}));
   return Value(std::move(table));
@@ -65,7 +65,7 @@ Result<Change> change_from_file(const drive::Profile* profile, std::uint8_t node
   if (!od::writable(meaning.access))
     return fail(Errc::usage, fmt::format("{} is read-only", name_of(target)), "it can be read, not written");
   const auto content = read_file(file, canopen::kMaxSdoDownload);
-  if (!content) return tl::unexpected<Error>(content.error());
+  if (!content) return fail(content.error());
   const auto size = meaning.type_known ? od::size_of(meaning.type) : std::nullopt;
   if (size && content->size() != *size)
     return fail(Errc::usage, fmt::format("{} holds {} bytes, and {} has {}", name_of(target), *size,
@@ -85,7 +85,7 @@ Result<Value> write_from_file(show::Desk& desk, std::span<const Change> changes,
   for (const auto& change : changes)
     requests.push_back({change.node, change.target.address, change.data, change.transfer});
   KeepingNodes keeping(desk, changes);
-  if (const auto opened = keeping.open(options); !opened) return tl::unexpected<Error>(opened.error());
+  if (const auto opened = keeping.open(options); !opened) return fail(opened.error());
   const bool readable = std::all_of(changes.begin(), changes.end(), [](const Change& c) {
     return od::readable(drive::meaning(c.target, c.node).access);
   });

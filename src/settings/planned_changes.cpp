@@ -32,7 +32,7 @@ Result<Value> planned_changes(show::Desk& desk, std::span<const Change> changes,
   session::Rehearsal rehearsal;
   KeepingNodes keeping(desk, changes);
   keeping.rehearse(rehearsal);
-  if (const auto opened = keeping.open(options); !opened) return tl::unexpected<Error>(opened.error());
+  if (const auto opened = keeping.open(options); !opened) return fail(opened.error());
   add_writes(changes, rehearsal);
   const std::vector<Result<session::Written>> written(changes.size(), session::Written{});
   keeping.close(written);

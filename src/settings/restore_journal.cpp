@@ -96,7 +96,7 @@ Result<void> check_mean(const drive::Profile& profile, std::uint8_t node, Object
                                         to_string(object), profile.family));
   const auto meaning = drive::fitted(drive::meaning(drive::target_at(&profile, object), node), bytes.size());
   const auto value = od::decode(meaning.type, bytes);
-  if (!value) return tl::unexpected<Error>(value.error());
+  if (!value) return fail(value.error());
   return drive::check_limits(meaning, *value);
 }
 
@@ -122,13 +122,12 @@ Result<std::optional<RestoreJournal>> read_journal(const show::Desk& desk,
   std::error_code error;
   if (!std::filesystem::exists(path, error)) return std::optional<RestoreJournal>();
   const auto text = read_file(path, kMostBytes);
-  if (!text) return tl::unexpected<Error>(text.error());
+  if (!text) return fail(text.error());
   const auto document = report::parse_json(*text, path.string());
   if (!document) return no_journal(document.error().message);
   auto journal = parse_journal(*document, path.string());
-  if (!journal) return tl::unexpected<Error>(journal.error());
-  if (const auto fits = check_means(*desk.profile, *journal, path.string()); !fits)
-    return tl::unexpected<Error>(fits.error());
+  if (!journal) return fail(journal.error());
+  if (const auto fits = check_means(*desk.profile, *journal, path.string()); !fits) return fail(fits.error());
   return std::optional(std::move(*journal));
 }
 
@@ -144,7 +143,7 @@ Result<void> note_before(const show::Desk& desk, const std::filesystem::path& be
     for (const auto& mean : drive::means_of_writing(*desk.profile)) {
       const auto value = desk.session->upload(journal.node, mean.first);
       if (value) journal.means.emplace_back(mean.first, *value);
-      if (!value && value.error().code != Errc::sdo_abort) return tl::unexpected<Error>(value.error());
+      if (!value && value.error().code != Errc::sdo_abort) return fail(value.error());
     }
   const auto saved = write_file_atomically(before, backup_text(desk, make_backup(desk, snapshot)));
   return saved ? write_journal(journal_of(before), journal) : saved;
@@ -153,7 +152,7 @@ Result<void> note_before(const show::Desk& desk, const std::filesystem::path& be
 Result<void> put_means_back(session::Session& session, const RestoreJournal& journal) {
   for (const auto& [object, bytes] : journal.means) {
     const auto present = session.upload(journal.node, object);
-    if (!present) return tl::unexpected<Error>(present.error());
+    if (!present) return fail(present.error());
     if (*present == bytes) continue;
     if (const auto written = session.download(journal.node, object, bytes); !written) return written;
   }

@@ -46,7 +46,7 @@ Result<void> RestoreTarget::check_identity() {
                 "--force restores what fits all the same");
   const std::uint8_t nodes[] = {node_};
   const auto found = session::scan(*desk_->session, nodes);
-  if (!found) return tl::unexpected<Error>(found.error());
+  if (!found) return fail(found.error());
   if (found->empty())
     return fail(Errc::timeout, fmt::format("node {} does not answer", node_), "`scan` shows who does");
   identity_ = found->front();
@@ -66,7 +66,7 @@ Result<void> RestoreTarget::check_identity() {
 /// Gains and limits are no things to change under a drive that holds a load.
 Result<void> RestoreTarget::check_standstill() const {
   const auto word = desk_->session->upload(node_, objects::kStatusword);
-  if (!word && word.error().code != Errc::sdo_abort) return tl::unexpected<Error>(word.error());
+  if (!word && word.error().code != Errc::sdo_abort) return fail(word.error());
   if (!word || !drive::is_energised(drive::decode_state(static_cast<std::uint16_t>(load_le(*word)))))
     return {};
   return fail(Errc::refused, fmt::format("node {} is energised, its settings are not changed now", node_),
@@ -113,7 +113,7 @@ Result<void> RestoreTarget::read_present() {
   std::vector<ObjectAddress> objects;
   for (const auto& value : wanted_) objects.push_back(value.first);
   const auto read = session::read_objects(*desk_->session, node_, objects);
-  if (!read) return tl::unexpected<Error>(read.error());
+  if (!read) return fail(read.error());
   for (const auto& entry : *read) {
     if (entry.bytes && same_length(entry.object, *entry.bytes)) {
       present_.emplace(entry.object, *entry.bytes);
@@ -198,7 +198,7 @@ Result<void> RestoreTarget::check_pdos() {
   if (std::none_of(wanted_.begin(), wanted_.end(), changes)) return {};
   const std::uint8_t nodes[] = {node_};
   auto values = std::move(session::read_pdo_values(*desk_->session, desk_->profile, nodes).front());
-  if (!values) return tl::unexpected<Error>(values.error());
+  if (!values) return fail(values.error());
   const auto present = session::pdos_of(*values);
   for (const auto& [object, data] : wanted_)
     if (pdo_at(object.index)) values->insert_or_assign(object, data);

@@ -30,10 +30,10 @@ class Restoring {
 
   Result<Restored> run() {
     const auto locked = lock();
-    if (!locked) return tl::unexpected<Error>(locked.error());
+    if (!locked) return fail(locked.error());
     const auto errors = desk_->errors.size();
     auto answer = carry_through();
-    if (!answer) return tl::unexpected<Error>(answer.error());
+    if (!answer) return fail(answer.error());
     const bool failed = desk_->errors.size() > errors;
     desk_->errors.insert(desk_->errors.end(), left_over_.begin(), left_over_.end());
     return Restored{std::move(*answer), failed};
@@ -47,7 +47,7 @@ class Restoring {
     for (const auto& file : {journal(), undoes_}) {
       if (file.empty() || (!out.empty() && file == journal())) continue;
       auto taken = FileLock::take(file.string() + ".lock");
-      if (!taken) return tl::unexpected<Error>(taken.error());
+      if (!taken) return fail(taken.error());
       if (!*taken)
         return fail(Errc::refused,
                     fmt::format("another servoctl is restoring {} into node {}", title_, node_),
@@ -58,9 +58,9 @@ class Restoring {
   }
 
   Result<Value> carry_through() {
-    if (const auto known = take_up_journals(); !known) return tl::unexpected<Error>(known.error());
+    if (const auto known = take_up_journals(); !known) return fail(known.error());
     RestoreTarget target(*desk_, *backup_, title_, node_, options_.choice);
-    if (const auto fits = target.prepare(); !fits) return tl::unexpected<Error>(fits.error());
+    if (const auto fits = target.prepare(); !fits) return fail(fits.error());
     auto comparison = compare(desk_->profile, {fmt::format("node {}", node_), node_, target.present()},
                               {title_, node_, target.wanted()}, true, desk_->chinese);
     left_over_ = target.left();
@@ -68,10 +68,9 @@ class Restoring {
     if (idle) return take_away_journals(result(std::move(comparison.record), said("nothing differs"), {}));
     if (desk_->dry_run) return planned(target);
     if (const auto answer = desk_->confirm(question(comparison.different)); !answer)
-      return tl::unexpected<Error>(answer.error());
-    if (const auto noted = note(target); !noted) return tl::unexpected<Error>(noted.error());
-    if (const auto back = put_means_back(*desk_->session, left_); !back)
-      return tl::unexpected<Error>(back.error());
+      return fail(answer.error());
+    if (const auto noted = note(target); !noted) return fail(noted.error());
+    if (const auto back = put_means_back(*desk_->session, left_); !back) return fail(back.error());
     return carry_out(target, std::move(comparison.record));
   }
 
@@ -81,7 +80,7 @@ class Restoring {
   /// its file, and must not be replaced by what it holds now.
   Result<void> take_up_journals() {
     const auto found = read_journal(*desk_, journal());
-    if (!found) return tl::unexpected<Error>(found.error());
+    if (!found) return fail(found.error());
     if (*found && !options_.resume)
       return fail(Errc::refused,
                   fmt::format("a restore of {} into node {} was cut off before its end", title_, node_),
@@ -94,7 +93,7 @@ class Restoring {
     if (options_.resume) return resume(**found);
     if (undoes_.empty()) return {};
     const auto undone = read_journal(*desk_, undoes_);
-    if (!undone) return tl::unexpected<Error>(undone.error());
+    if (!undone) return fail(undone.error());
     if (!*undone || (*undone)->node != node_) return {};
     left_ = **undone;
     // What went to the flash has to go there again.

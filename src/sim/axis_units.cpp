@@ -35,7 +35,7 @@ void Axis::write(ObjectAddress object, double number) {
                        ? Result<od::Value>(od::Value(static_cast<std::int64_t>(
                              std::llround(std::clamp(number / meaning.scale, -kMostSteps, kMostSteps)))))
                        : od::encode_number(meaning.encoding, meaning.type, number);
-  const auto bytes = raw ? od::encode(meaning.type, *raw) : tl::unexpected<Error>(raw.error());
+  const auto bytes = raw ? od::encode(meaning.type, *raw) : fail(raw.error());
   if (bytes) values_->set(object, *bytes);
 }
 

@@ -42,7 +42,7 @@ Result<const drive::Profile*> profile_of(Cell& cell, const std::string& family,
   for (const auto& known : cell.profiles)
     if (known->family == family) return known.get();
   auto loaded = drive::load_profile(family, folders);
-  if (!loaded) return tl::unexpected<Error>(loaded.error());
+  if (!loaded) return fail(loaded.error());
   cell.profiles.push_back(std::make_unique<drive::Profile>(std::move(*loaded)));
   return cell.profiles.back().get();
 }
@@ -117,7 +117,7 @@ Result<std::unique_ptr<Memory>> open_memory(std::span<const std::string_view> op
   for (const auto option : options) {
     if (!option.starts_with("state=")) continue;
     auto memory = Memory::open(std::string(option.substr(6)));
-    if (!memory) return tl::unexpected<Error>(memory.error());
+    if (!memory) return fail(memory.error());
     return std::make_unique<Memory>(std::move(*memory));
   }
   return std::make_unique<Memory>();
@@ -150,13 +150,13 @@ Result<Cell> build_cell(std::string_view spec, std::span<const std::filesystem::
   if (places.empty()) return bad_spec("no simulated drive is named");
   Cell cell;
   auto memory = open_memory(options);
-  if (!memory) return tl::unexpected<Error>(memory.error());
+  if (!memory) return fail(memory.error());
   cell.memory = std::move(*memory);
   for (const auto text : places) {
     const auto place = parse_place(text);
-    if (!place) return tl::unexpected<Error>(place.error());
+    if (!place) return fail(place.error());
     const auto profile = profile_of(cell, place->family, folders);
-    if (!profile) return tl::unexpected<Error>(profile.error());
+    if (!profile) return fail(profile.error());
     for (const auto& other : cell.drives)
       if (other->node() == place->node)
         return bad_spec(fmt::format("node-ID {} is given twice", place->node));
@@ -164,8 +164,7 @@ Result<Cell> build_cell(std::string_view spec, std::span<const std::filesystem::
     cell.drives.push_back(std::make_unique<SimDrive>(**profile, place->node, *cell.memory, key));
   }
   for (const auto option : options)
-    if (const auto applied = apply_option(cell, option, now); !applied)
-      return tl::unexpected<Error>(applied.error());
+    if (const auto applied = apply_option(cell, option, now); !applied) return fail(applied.error());
   return cell;
 }
 
@@ -174,7 +173,7 @@ Result<std::unique_ptr<can::Bus>> open_sim(std::string_view spec,
                                            SimBus::Clock clock) {
   const auto now = SimBus(clock).now();
   auto cell = build_cell(spec, folders, now);
-  if (!cell) return tl::unexpected<Error>(cell.error());
+  if (!cell) return fail(cell.error());
   return std::make_unique<CellBus>(std::move(*cell), clock);
 }
 

@@ -18,12 +18,12 @@ Result<Memory> Memory::open(const std::filesystem::path& file) {
   memory.file_ = file;
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) {
-    if (const auto saved = memory.save(); !saved) return tl::unexpected<Error>(saved.error());
+    if (const auto saved = memory.save(); !saved) return fail(saved.error());
     return memory;
   }
   const auto text = read_file(file);
-  if (!text) return tl::unexpected<Error>(text.error());
-  if (const auto parsed = memory.parse(*text); !parsed) return tl::unexpected<Error>(parsed.error());
+  if (!text) return fail(text.error());
+  if (const auto parsed = memory.parse(*text); !parsed) return fail(parsed.error());
   return memory;
 }
 

@@ -19,7 +19,7 @@ Result<void> listen(session::Session& session, std::optional<Duration> length, c
     const auto due = listener.next ? listener.next() : kNever;
     const auto stepped = session.step(std::min({end, due, shown + kSlice}));
     if (!stepped && stepped.error().code == Errc::interrupted) break;
-    if (!stepped) return tl::unexpected<Error>(stepped.error());
+    if (!stepped) return fail(stepped.error());
     const auto* network = session.can();
     const auto frame = network == nullptr ? std::optional<can::Frame>() : network->frame();
     const auto now = session.received_at();

@@ -202,14 +202,14 @@ Result<ReplayDrives> find_drives(show::Desk& desk, std::string_view recording) {
   std::vector<std::uint8_t> present;
   for (std::size_t i = 0; i < answers.size(); ++i) {
     const auto code = answers[i] ? Errc::sdo_abort : answers[i].error().code;
-    if (code == Errc::bus || code == Errc::interrupted) return tl::unexpected<Error>(answers[i].error());
+    if (code == Errc::bus || code == Errc::interrupted) return fail(answers[i].error());
     if (code == Errc::sdo_abort) present.push_back(questions[i].node);
   }
   out.present.insert(present.begin(), present.end());
   const auto read = session::read_pdo_values(*desk.session, desk.profile, present);
   for (std::size_t i = 0; i < read.size(); ++i) {
     if (!read[i] && (read[i].error().code == Errc::bus || read[i].error().code == Errc::interrupted))
-      return tl::unexpected<Error>(read[i].error());
+      return fail(read[i].error());
     if (!read[i]) continue;
     out.pdos.emplace(present[i], *read[i]);
     for (const auto& pdo : session::pdos_of(*read[i]))

@@ -38,7 +38,7 @@ Result<void> ReplayRun::run(std::span<const can::LogFrame> frames, double speed)
   if (done) {
     const auto waited =
         session_->wait([this] { return !is_waiting(); }, session_->now() + session_->options().timeout);
-    if (!waited) done = tl::unexpected<Error>(waited.error());
+    if (!waited) done = fail(waited.error());
   }
   close();
   return done;
@@ -48,7 +48,7 @@ Result<void> ReplayRun::send_all(std::span<const can::LogFrame> frames, double s
   auto due = session_->now();
   while (sent_ < frames.size()) {
     const auto waited = session_->wait([] { return false; }, due);
-    if (!waited) return tl::unexpected<Error>(waited.error());
+    if (!waited) return fail(waited.error());
     if (const auto done = session_->can()->send(frames[sent_].frame); !done) return done;
     on_sent(frames[sent_].frame);
     ++sent_;

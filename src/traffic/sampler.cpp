@@ -69,7 +69,7 @@ Result<Sampler> Sampler::make(show::Desk& desk, std::span<const std::string> nam
   for (const auto node : desk.nodes)
     for (const auto& name : names) {
       const auto target = drive::resolve(desk.profile, name);
-      if (!target) return tl::unexpected<Error>(target.error());
+      if (!target) return fail(target.error());
       auto label = desk.chinese ? target->label_zh() : target->label();
       if (label.empty()) label = to_string(target->address);
       out.channels_.push_back({node, *target, std::move(label), desk.nodes.size() > 1});

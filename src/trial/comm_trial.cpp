@@ -40,9 +40,9 @@ class Communication {
     take_notices();
     emergencies_ = reports_ = 0;
     boots_ = session_->watch().boots(node_);
-    if (const auto done = read_often(); !done) return tl::unexpected<Error>(done.error());
+    if (const auto done = read_often(); !done) return fail(done.error());
     judge_round_trips();
-    if (const auto done = judge_heartbeat(); !done) return tl::unexpected<Error>(done.error());
+    if (const auto done = judge_heartbeat(); !done) return fail(done.error());
     judge_bus();
     out_.seconds = seconds_of(session_->now() - begin);
     return std::move(out_);
@@ -61,7 +61,7 @@ class Communication {
       const auto begin = session_->now();
       const auto answer = session_->upload(node_, objects::kDeviceType);
       const auto code = answer ? Errc::negative : answer.error().code;
-      if (code == Errc::bus || code == Errc::interrupted) return tl::unexpected<Error>(answer.error());
+      if (code == Errc::bus || code == Errc::interrupted) return fail(answer.error());
       silent = code == Errc::timeout ? silent + 1 : 0;
       lost_ += code == Errc::timeout;
       wrong_ += code == Errc::protocol;
@@ -99,7 +99,7 @@ class Communication {
     const auto name = say("heartbeat", "心跳");
     const auto period = session_->upload(node_, objects::kProducerHeartbeat);
     if (!period && period.error().code != Errc::sdo_abort && period.error().code != Errc::timeout)
-      return tl::unexpected<Error>(period.error());
+      return fail(period.error());
     const auto milliseconds = period ? load_le(*period) & 0xFFFFU : 0;
     if (milliseconds == 0) {
       out_.criteria.push_back(report::skipped(
@@ -119,7 +119,7 @@ class Communication {
       const auto before = watch.heartbeats(node_);
       const auto waited =
           session_->wait([&] { return watch.heartbeats(node_) > before; }, session_->now() + patience);
-      if (!waited) return tl::unexpected<Error>(waited.error());
+      if (!waited) return fail(waited.error());
       if (!*waited) break;
       heard.push_back(session_->now());
     }

@@ -122,20 +122,18 @@ Error other_drive(const TestResult& test, const std::string& what) {
 
 Result<std::vector<TestResult>> read_tests(const std::filesystem::path& file) {
   const auto content = read_file(file);
-  if (!content) return tl::unexpected<Error>(content.error());
+  if (!content) return fail(content.error());
   std::vector<TestResult> out;
   const auto whole = report::parse_json(*content, file.string());
   if (whole) {
-    if (const auto added = add_tests(*whole, file.string(), out); !added)
-      return tl::unexpected<Error>(added.error());
+    if (const auto added = add_tests(*whole, file.string(), out); !added) return fail(added.error());
     return out;
   }
   for (const auto line : split(std::string_view(*content), '\n')) {
     if (trim(line).empty()) continue;
     const auto document = report::parse_json(line, file.string());
-    if (!document) return tl::unexpected<Error>(whole.error());
-    if (const auto added = add_tests(*document, file.string(), out); !added)
-      return tl::unexpected<Error>(added.error());
+    if (!document) return fail(whole.error());
+    if (const auto added = add_tests(*document, file.string(), out); !added) return fail(added.error());
   }
   if (out.empty()) return no_tests(file.string());
   return out;
@@ -148,7 +146,7 @@ Result<void> check_tested(show::Desk& desk, const std::vector<TestResult>& tests
       nodes.push_back(node);
   if (nodes.empty()) return {};
   const auto found = session::scan(*desk.session, nodes);
-  if (!found) return tl::unexpected<Error>(found.error());
+  if (!found) return fail(found.error());
   for (const auto& drive : *found)
     for (const auto& test : tests) {
       if (test.node != drive.node) continue;

@@ -76,11 +76,11 @@ class InputWatch {
     while (session_->now() < end && !is_complete()) {
       const auto levels = read();
       if (!levels && levels.error().code == Errc::interrupted) break;
-      if (!levels) return tl::unexpected<Error>(levels.error());
+      if (!levels) return fail(levels.error());
       take(before, *levels, session_->now() - begin);
       before = *levels;
       const auto waited = session_->wait([] { return false; }, session_->now() + kEvery);
-      if (!waited && waited.error().code != Errc::interrupted) return tl::unexpected<Error>(waited.error());
+      if (!waited && waited.error().code != Errc::interrupted) return fail(waited.error());
     }
     return result(session_->now() - begin);
   }
@@ -176,7 +176,7 @@ Result<std::vector<unsigned>> parse_inputs(const show::Desk& desk, std::string_v
   std::vector<unsigned> out;
   for (const auto word : split(text, ',')) {
     const auto bit = names.parse(trim(word));
-    if (!bit) return tl::unexpected<Error>(bit.error());
+    if (!bit) return fail(bit.error());
     if (std::find(out.begin(), out.end(), *bit) == out.end()) out.push_back(*bit);
   }
   return out;

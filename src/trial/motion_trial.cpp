@@ -23,7 +23,7 @@ Result<MotionTrial> run_test_motion(
     return done;
   };
   auto answer = motion::run_motion(desk, request, motion);
-  if (!answer) return tl::unexpected<Error>(answer.error());
+  if (!answer) return fail(answer.error());
   if (!out.result) out.plan = std::move(*answer);
   return out;
 }

@@ -33,7 +33,7 @@ class LearnBench : public MotionBench {
     Motion motion(*session, profile(), 1, options);
     auto ready = motion.prepare();
     const auto plan = plan_learn(motion, how);
-    if (!plan) ready = tl::unexpected<Error>(plan.error());
+    if (!plan) ready = fail(plan.error());
     if (!ready) {
       out.motion.outcome = ready;
       return out;

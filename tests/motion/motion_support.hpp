@@ -159,7 +159,7 @@ class MotionBench {
  private:
   static MotionReport failed(const Error& error) {
     MotionReport out;
-    out.outcome = tl::unexpected<Error>(error);
+    out.outcome = fail(error);
     return out;
   }
 };

@@ -55,7 +55,7 @@ class TwoMasters {
         if (plan)
           report = run_jog(motion, kind, *plan);
         else
-          report.outcome = tl::unexpected<Error>(plan.error());
+          report.outcome = fail(plan.error());
       }
     }
     sessions[i].reset();  // It leaves the bus, so that the other goes on.

@@ -34,13 +34,13 @@ class Check {
  private:
   Result<void> check(const std::vector<std::string>& words) {
     auto next = chosen(*shell_, settings_, words);
-    if (!next) return tl::unexpected<Error>(next.error());
+    if (!next) return fail(next.error());
     settings_ = std::move(*next);
     if (is_choice(words) || asks_for_help(words)) return {};
     const auto parsed = parse_line(words);
-    if (!parsed) return tl::unexpected<Error>(parsed.error());
+    if (!parsed) return fail(parsed.error());
     const auto settings = apply_options(settings_, parsed->arguments);
-    if (!settings) return tl::unexpected<Error>(settings.error());
+    if (!settings) return fail(settings.error());
     command::Context context;
     if (const auto ready = prepare(*parsed, *settings, context); !ready) return ready;
     if (parsed->command->check == nullptr) return {};
@@ -53,7 +53,7 @@ class Check {
     if (includes(command.needs, Needs::node) && settings.nodes.empty()) return fail(no_node(command));
     if (!settings.nodes.empty()) {
       auto nodes = parse_nodes(settings.nodes);
-      if (!nodes) return tl::unexpected<Error>(nodes.error());
+      if (!nodes) return fail(nodes.error());
       context.nodes = std::move(*nodes);
     }
     context.chinese = settings.chinese;
@@ -64,7 +64,7 @@ class Check {
                   "add -d FAMILY, or a line `drive FAMILY` before it; `drives` lists families");
     }
     const auto profile = shell_->profile(settings.drive);
-    if (!profile) return tl::unexpected<Error>(profile.error());
+    if (!profile) return fail(profile.error());
     context.profile = *profile;
     return {};
   }

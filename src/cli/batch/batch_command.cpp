@@ -44,7 +44,7 @@ Result<Variables> variables_of(const command::Arguments& arguments) {
     if (const auto fixed = out.fix(assignment); !fixed) {
       auto error = fixed.error();
       error.message = "--var: " + error.message;
-      return tl::unexpected<Error>(std::move(error));
+      return fail(std::move(error));
     }
   return out;
 }

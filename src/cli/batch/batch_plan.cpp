@@ -71,7 +71,7 @@ class Planner {
     auto words = split_words(statement.text, lookup());
     std::size_t size = 0;
     for (const auto& word : words ? *words : std::vector<std::string>()) size += word.size() + 1;
-    if (const auto room = count_text(size); !room) return tl::unexpected<Error>(room.error());
+    if (const auto room = count_text(size); !room) return fail(room.error());
     return words;
   }
 
@@ -91,16 +91,16 @@ class Planner {
 
   Result<void> command(const Statement& statement) {
     auto words = words_of(statement);
-    if (!words) return tl::unexpected<Error>(words.error());
+    if (!words) return fail(words.error());
     if (auto translated = from_gateway_line(*words)) words = std::move(*translated);
-    if (!words) return tl::unexpected<Error>(words.error());
+    if (!words) return fail(words.error());
     if (!words->empty()) add(statement, Step::Kind::command, join_words(*words)).words = std::move(*words);
     return {};
   }
 
   Result<void> set(const Statement& statement) {
     const auto words = words_of(statement);
-    if (!words) return tl::unexpected<Error>(words.error());
+    if (!words) return fail(words.error());
     if (words->empty()) return fail(Errc::usage, "'set' needs NAME=VALUE", "set GAIN=45Hz");
     for (const auto& word : *words)
       if (const auto done = variables_.set(word); !done) return done;
@@ -109,9 +109,9 @@ class Planner {
 
   Result<void> loop(const Statement& statement) {
     const auto words = words_of(statement);
-    if (!words) return tl::unexpected<Error>(words.error());
+    if (!words) return fail(words.error());
     const auto items = items_of(*words);
-    if (!items) return tl::unexpected<Error>(items.error());
+    if (!items) return fail(items.error());
     for (const auto& item : *items) {
       if (full_) break;
       // A round is its lines; one without any still takes its time.
@@ -134,7 +134,7 @@ class Planner {
   Result<void> expectation(const Statement& statement) {
     auto expression = parse_expression(statement.text, lookup());
     if (const auto room = count_text(expression ? to_string(*expression).size() : 0); !room) return room;
-    if (!expression) return tl::unexpected<Error>(expression.error());
+    if (!expression) return fail(expression.error());
     add(statement, Step::Kind::expect, "expect " + to_string(*expression)).expression =
         std::move(*expression);
     return {};
@@ -142,14 +142,14 @@ class Planner {
 
   Result<void> pause(const Statement& statement) {
     auto words = words_of(statement);
-    if (!words) return tl::unexpected<Error>(words.error());
+    if (!words) return fail(words.error());
     add(statement, Step::Kind::pause, "pause " + join_words(*words)).words = std::move(*words);
     return {};
   }
 
   Result<void> wait(const Statement& statement) {
     const auto words = words_of(statement);
-    if (!words) return tl::unexpected<Error>(words.error());
+    if (!words) return fail(words.error());
     if (words->size() != 1) return fail(Errc::usage, "'wait' takes a time", "wait 500ms, wait 2s");
     const auto time = read_duration(words->front());
     if (!time) return fail(Errc::usage, "wait: " + time.error().message, time.error().hint);
@@ -159,7 +159,7 @@ class Planner {
 
   Result<void> on_error(const Statement& statement) {
     const auto words = words_of(statement);
-    if (!words) return tl::unexpected<Error>(words.error());
+    if (!words) return fail(words.error());
     if (words->size() != 1 || (words->front() != "stop" && words->front() != "continue"))
       return fail(Errc::usage, "'on-error' takes one word", "write stop or continue");
     goes_on_ = words->front() == "continue";

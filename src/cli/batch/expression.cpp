@@ -55,7 +55,7 @@ class Lexer {
   Result<void> take(std::string& out) {
     if (text_.substr(at_).starts_with("${") && *variables_) {
       const auto value = expand_variable(text_, at_, *variables_);
-      if (!value) return tl::unexpected<Error>(value.error());
+      if (!value) return fail(value.error());
       filled_in_ += value->size();
       if (filled_in_ > kLongestLine)
         return fail(Errc::usage,
@@ -76,7 +76,7 @@ class Lexer {
         if (text_[at_] == '\\' && quote == '"' && at_ + 1 < text_.size()) ++at_;
         out.text += text_[at_++];
       } else if (const auto taken = take(out.text); !taken) {
-        return tl::unexpected<Error>(taken.error());
+        return fail(taken.error());
       }
     }
     if (at_ == text_.size()) return fail(Errc::usage, std::string("the quote ") + quote + " is not closed");
@@ -87,7 +87,7 @@ class Lexer {
   Result<Token> word() {
     Token out{Token::Kind::word, {}};
     while (at_ < text_.size() && std::string_view(" \t\"'=!<>~").find(text_[at_]) == std::string_view::npos)
-      if (const auto taken = take(out.text); !taken) return tl::unexpected<Error>(taken.error());
+      if (const auto taken = take(out.text); !taken) return fail(taken.error());
     // A lone `!` would never be passed.
     if (out.text.empty())
       return fail(Errc::usage, fmt::format("'{}' compares nothing", text_[at_]), std::string(kExample));
@@ -105,7 +105,7 @@ Result<Operand> operand(const Token& token) {
   if (token.kind != Token::Kind::word || token.text == "and")
     return fail(Errc::usage, "a value is missing in the expression", std::string(kExample));
   const auto checked = [](Operand::Kind kind, std::string path) -> Result<Operand> {
-    if (const auto steps = parse_path(path); !steps) return tl::unexpected<Error>(steps.error());
+    if (const auto steps = parse_path(path); !steps) return fail(steps.error());
     return Operand{kind, std::move(path)};
   };
   const std::string_view text = token.text;
@@ -145,7 +145,7 @@ Result<std::vector<Side>> sides(const Operand& operand, const report::Value& res
   if (operand.kind == Operand::Kind::word || operand.kind == Operand::Kind::quoted)
     return std::vector<Side>{{{}, operand.text, operand.kind == Operand::Kind::word}};
   auto found = follow(result, operand.text);
-  if (!found) return tl::unexpected<Error>(found.error());
+  if (!found) return fail(found.error());
   std::vector<Side> out;
   for (auto& part : *found) {
     if (operand.kind == Operand::Kind::path) {
@@ -231,21 +231,21 @@ Result<Expression> parse_expression(std::string_view text, const VariableLookup&
   Expression out;
   for (;;) {
     auto token = lexer.next();
-    if (!token) return tl::unexpected<Error>(token.error());
+    if (!token) return fail(token.error());
     auto left = operand(*token);
-    if (!left) return tl::unexpected<Error>(left.error());
+    if (!left) return fail(left.error());
     out.push_back({std::move(*left)});
     token = lexer.next();
     if (token && token->kind == Token::Kind::comparator) {
       out.back().comparator = comparator_of(*token);
       const auto right_token = lexer.next();
-      if (!right_token) return tl::unexpected<Error>(right_token.error());
+      if (!right_token) return fail(right_token.error());
       auto right = operand(*right_token);
-      if (!right) return tl::unexpected<Error>(right.error());
+      if (!right) return fail(right.error());
       out.back().right = std::move(*right);
       token = lexer.next();
     }
-    if (!token) return tl::unexpected<Error>(token.error());
+    if (!token) return fail(token.error());
     if (token->kind == Token::Kind::end) return out;
     if (token->kind != Token::Kind::word || token->text != "and")
       return fail(Errc::usage, fmt::format("'{}' does not belong here", token->text),
@@ -266,13 +266,13 @@ std::string to_string(const Expression& expression) {
 Result<void> expect(const Expression& expression, const report::Value& result) {
   for (const auto& comparison : expression) {
     const auto left = sides(comparison.left, result);
-    if (!left) return tl::unexpected<Error>(left.error());
+    if (!left) return fail(left.error());
     const auto right = sides(comparison.right, result);
-    if (!right) return tl::unexpected<Error>(right.error());
+    if (!right) return fail(right.error());
     for (const auto& a : *left)
       for (const auto& b : *right) {
         const auto answer = compare(a, comparison.comparator, b);
-        if (!answer) return tl::unexpected<Error>(answer.error());
+        if (!answer) return fail(answer.error());
         if (!*answer) return refuted(a, comparison.comparator, b);
       }
   }

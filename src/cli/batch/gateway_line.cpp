@@ -76,7 +76,7 @@ Result<Words> transfer(const GatewayLine& line) {
   if (reads ? words.size() < 3 || words.size() > 4 : words.size() != 5)
     return wrong(reads ? "a read takes INDEX SUB [TYPE]" : "a write takes INDEX SUB TYPE VALUE");
   const auto object = address(line);
-  if (!object) return tl::unexpected<Error>(object.error());
+  if (!object) return fail(object.error());
   Words out{reads ? "read" : "write", *object};
   const bool option =
       !reads && words[4].starts_with('-') && !parse_real(words[4]) && !parse_integer(words[4]);

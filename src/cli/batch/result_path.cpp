@@ -70,7 +70,7 @@ Result<std::vector<Part>> take_step(const std::vector<Part>& from, const PathSte
     const auto several = list ? *list : std::vector<Value>{part.value};
     for (std::size_t i = 0; i < several.size(); ++i) {
       auto field = take_field({list ? element_path(part.where, i) : part.where, several[i]}, step.field);
-      if (!field) return tl::unexpected<Error>(field.error());
+      if (!field) return fail(field.error());
       out.push_back(std::move(*field));
     }
   }
@@ -104,7 +104,7 @@ Result<std::vector<PathStep>> parse_path(std::string_view path) {
 
 Result<std::vector<Part>> follow(const Value& result, std::string_view path) {
   const auto steps = parse_path(path);
-  if (!steps) return tl::unexpected<Error>(steps.error());
+  if (!steps) return fail(steps.error());
   std::vector<Part> parts{{".", opened(result)}};
   for (const auto& step : *steps) {
     auto next = take_step(parts, step);

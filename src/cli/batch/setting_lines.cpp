@@ -18,9 +18,9 @@ tl::unexpected<Error> in_line(const std::string& file, std::uint32_t line, Error
 
 Result<settings::SettingLine> line_of(const Settings& base, const std::vector<std::string>& words) {
   auto parsed = parse_line(words);
-  if (!parsed) return tl::unexpected<Error>(parsed.error());
+  if (!parsed) return fail(parsed.error());
   const auto chosen = apply_options(base, parsed->arguments);
-  if (!chosen) return tl::unexpected<Error>(chosen.error());
+  if (!chosen) return fail(chosen.error());
   const auto& command = *parsed->command;
   settings::SettingLine out{.line = 0,
                             .nodes = {},
@@ -29,7 +29,7 @@ Result<settings::SettingLine> line_of(const Settings& base, const std::vector<st
                                                                   : settings::writes_no_value(command.path)};
   if (chosen->nodes.empty()) return out;
   auto nodes = parse_nodes(chosen->nodes);
-  if (!nodes) return tl::unexpected<Error>(nodes.error());
+  if (!nodes) return fail(nodes.error());
   out.nodes = std::move(*nodes);
   return out;
 }

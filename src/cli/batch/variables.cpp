@@ -75,9 +75,9 @@ Result<void> add_word(std::vector<LoopItem>& out, const std::string& word) {
 
 Result<std::vector<LoopItem>> rows(const std::string& file, const std::filesystem::path& folder) {
   const auto text = read_file(folder / file);
-  if (!text) return tl::unexpected<Error>(text.error());
+  if (!text) return fail(text.error());
   const auto table = parse_csv(*text, file);
-  if (!table) return tl::unexpected<Error>(table.error());
+  if (!table) return fail(table.error());
   if (table->rows.empty())
     return fail(Errc::file, file + " has no line below its heading", "one line for each round of the loop");
   std::vector<LoopItem> out;
@@ -96,7 +96,7 @@ bool names_csv(std::string_view word) { return word.size() > 4 && lower(word).en
 
 Result<void> Variables::fix(std::string_view assignment) {
   auto read = parse_assignment(assignment);
-  if (!read) return tl::unexpected<Error>(read.error());
+  if (!read) return fail(read.error());
   fixed_[read->name] = read->value;
   values_[read->name] = std::move(read->value);
   return {};
@@ -104,7 +104,7 @@ Result<void> Variables::fix(std::string_view assignment) {
 
 Result<void> Variables::set(std::string_view assignment) {
   auto read = parse_assignment(assignment);
-  if (!read) return tl::unexpected<Error>(read.error());
+  if (!read) return fail(read.error());
   if (!fixed_.contains(read->name)) values_[read->name] = std::move(read->value);
   return {};
 }
@@ -128,7 +128,7 @@ Result<std::vector<LoopItem>> loop_items(std::span<const std::string> words,
   std::vector<LoopItem> out;
   for (const auto& word : words) {
     if (names_csv(word)) return fail(Errc::usage, "a CSV file is the only word of its list");
-    if (const auto added = add_word(out, word); !added) return tl::unexpected<Error>(added.error());
+    if (const auto added = add_word(out, word); !added) return fail(added.error());
   }
   if (out.empty()) return fail(Errc::usage, "the list of the loop is empty", "for NODE in 1-8");
   return out;

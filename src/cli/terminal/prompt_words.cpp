@@ -41,10 +41,10 @@ Result<Settings> chosen(Shell& shell, Settings defaults, const std::vector<std::
     return fail(Errc::usage, fmt::format("'{}' takes one word", word->name),
                 fmt::format("{} {}: {}", word->name, word->argument, word->help));
   if (word->name == "use") {
-    if (const auto parsed = parse_nodes(words[1]); !parsed) return tl::unexpected<Error>(parsed.error());
+    if (const auto parsed = parse_nodes(words[1]); !parsed) return fail(parsed.error());
     defaults.nodes = words[1];
   } else if (word->name == "drive") {
-    if (const auto loaded = shell.profile(words[1]); !loaded) return tl::unexpected<Error>(loaded.error());
+    if (const auto loaded = shell.profile(words[1]); !loaded) return fail(loaded.error());
     defaults.drive = words[1];
   } else {
     defaults.bus = words[1];
