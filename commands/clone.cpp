@@ -87,10 +87,8 @@ const Command kClone{
     .summary = "Put the settings of one drive into others",
     .details =
         "As backup and restore in one, with the same care: each target is checked, what differs is shown and "
-        "asked, "
-        "what it held goes into before-clone-node-N.json in the present folder, and a failure puts "
-        "everything back and "
-        "ends the work. Node-ID and bitrate stay; COB-IDs follow the node they go to.",
+        "asked, what it held goes into before-clone-node-N.json in the present folder, and a failure puts "
+        "everything back and ends the work. Node-ID and bitrate stay; COB-IDs follow the node they go to.",
     .parameters = kParameters,
     .needs = Needs::bus | Needs::dictionary,
     .effect = Effect::stores,

@@ -53,10 +53,8 @@ const Command kCompletion{
     .summary = "Print the completion script of a shell",
     .details =
         "bash: put `source <(servoctl completion bash)` into ~/.bashrc. zsh: `servoctl completion zsh > "
-        "_servoctl` in a folder of "
-        "$fpath. fish: `servoctl completion fish > ~/.config/fish/completions/servoctl.fish`. An installed "
-        "servoctl brings all "
-        "three.",
+        "_servoctl` in a folder of $fpath. fish: `servoctl completion fish > "
+        "~/.config/fish/completions/servoctl.fish`. An installed servoctl brings all three.",
     .parameters = kParameters,
     .needs = Needs::nothing,
     .effect = Effect::none,

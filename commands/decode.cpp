@@ -52,17 +52,11 @@ const Command kDecode{
     .summary = "Explain a recording: PDO and SDO with names and values, NMT, EMCY",
     .details =
         "Reads what --trace or candump wrote (-L, -l, or as on a terminal, -ta -tz -tA -x -a), and .asc "
-        "logs. With -d the objects have "
-        "their "
-        "names, units "
-        "and labels; with -n only these nodes (and frames of the whole bus) are shown, with --service and "
-        "--object "
-        "only such frames. PDOs are shown by the mapping that was read or written in the recording itself, "
-        "else "
-        "by the "
-        "one the family leaves the factory with. `-o jsonl` gives one document a frame. A recording in the "
-        "form of "
-        "candump answers commands again as a bus: --bus replay:FILE.",
+        "logs. With -d the objects have their names, units and labels; with -n only these nodes (and frames "
+        "of the whole bus) are shown, with --service and --object only such frames. PDOs are shown by the "
+        "mapping that was read or written in the recording itself, else by the one the family leaves the "
+        "factory with. `-o jsonl` gives one document a frame. A recording in the form of candump answers "
+        "commands again as a bus: --bus replay:FILE.",
     .parameters = kParameters,
     .needs = Needs::nothing,
     .effect = Effect::none,

@@ -199,18 +199,13 @@ const Command kDiff{
     .summary = "Compare backups, drives, factory values and data sheets",
     .details =
         "Two of: a file (any format `restore` takes), node:N for a drive on the bus, `factory` for the "
-        "defaults of "
-        "the family's data. Shows every value that differs, with unit and label; exit code 1 when there is "
-        "one. "
-        "COB-IDs and the node-ID are compared as each node's own. Values whose default the manual does not "
-        "state are "
-        "not compared with `factory`. --batch prints the command lines that turn A into B instead: `diff "
-        "factory "
-        "node:1 --batch` is all that was set on a drive. Two data sheets (EDS; or an EDS and a DCF) are "
-        "compared "
-        "entry by entry: name, type, access, mapping, default and limits. A file of another form with an "
-        "entry that "
-        "cannot be used is refused; --skip-invalid compares the rest.",
+        "defaults of the family's data. Shows every value that differs, with unit and label; exit code 1 "
+        "when there is one. COB-IDs and the node-ID are compared as each node's own. Values whose default "
+        "the manual does not state are not compared with `factory`. --batch prints the command lines that "
+        "turn A into B instead: `diff factory node:1 --batch` is all that was set on a drive. Two data "
+        "sheets (EDS; or an EDS and a DCF) are compared entry by entry: name, type, access, mapping, default "
+        "and limits. A file of another form with an entry that cannot be used is refused; --skip-invalid "
+        "compares the rest.",
     .parameters = kParameters,
     .needs = Needs::nothing,
     .effect = Effect::reads,

@@ -74,12 +74,9 @@ const Command kDisable{
     .summary = "Take the power of a motor away",
     .details =
         "Controlwords 07h and 00h to all nodes at the same time; asks nothing. 00h is written in every "
-        "state, also in "
-        "a fault. A motor that turns coasts, or ramps down where the drive does that by 605Ch; `quick-stop` "
-        "stops it "
-        "first. A drive that does not obey or does not answer is tried by NMT as well (pre-operational). The "
-        "answer "
-        "is the state read afterwards.",
+        "state, also in a fault. A motor that turns coasts, or ramps down where the drive does that by "
+        "605Ch; `quick-stop` stops it first. A drive that does not obey or does not answer is tried by NMT "
+        "as well (pre-operational). The answer is the state read afterwards.",
     .parameters = {},
     .needs = Needs::node,
     .effect = Effect::writes,
@@ -93,8 +90,7 @@ const Command kQuickStopCommand{
     .summary = "Stop a motor as fast as it can",
     .details =
         "Controlword 02h to all nodes before any answer is waited for; asks nothing. What a drive does after "
-        "it has "
-        "stopped is set by 605Ah: some stay energised, and the answer says so.",
+        "it has stopped is set by 605Ah: some stay energised, and the answer says so.",
     .parameters = {},
     .needs = Needs::node,
     .effect = Effect::writes,

@@ -120,11 +120,9 @@ const Command kEdsCheck{
     .summary = "Check EDS and DCF files against CiA 306",
     .details =
         "Every finding has line, section, key, rule and remedy, and says what is taken. Exit code 1 when "
-        "there "
-        "are errors; warnings alone are fine. A file that cannot be read stands in the list with its error; "
-        "of "
-        "several files the worst makes the exit code. `-` reads standard input to its end: in a pipe of "
-        "command lines, what follows the line.",
+        "there are errors; warnings alone are fine. A file that cannot be read stands in the list with its "
+        "error; of several files the worst makes the exit code. `-` reads standard input to its end: in a "
+        "pipe of command lines, what follows the line.",
     .parameters = kParameters,
     .needs = Needs::nothing,
     .effect = Effect::none,

@@ -100,12 +100,9 @@ const Command kEnable{
     .summary = "Energise a drive and leave it enabled",
     .details =
         "Shows what there is to know before, asks, sets the targets so that nothing moves (60FFh and 6071h "
-        "to 0, 607Ah "
-        "to where it stands), and goes to \"operation enabled\" by controlwords 06h, 07h, 0Fh, waiting in "
-        "every state. "
-        "The drive stays energised when servoctl ends: `disable` takes the power away. `jog` and `move` "
-        "enable and "
-        "disable by themselves.",
+        "to 0, 607Ah to where it stands), and goes to \"operation enabled\" by controlwords 06h, 07h, 0Fh, "
+        "waiting in every state. The drive stays energised when servoctl ends: `disable` takes the power "
+        "away. `jog` and `move` enable and disable by themselves.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,

@@ -45,8 +45,7 @@ const Command kFaultList{
     .summary = "List the faults and warnings of a drive family",
     .details =
         "Works without a bus. The code is the one of object 603Fh and of emergency messages. `?` marks what "
-        "the "
-        "manual does not state, `!` what it states in more than one way; --json names the lines.",
+        "the manual does not state, `!` what it states in more than one way; --json names the lines.",
     .parameters = kParameters,
     .needs = Needs::dictionary,
     .effect = Effect::none,

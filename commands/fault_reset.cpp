@@ -97,8 +97,7 @@ const Command kFaultReset{
     .summary = "Reset the fault of a drive",
     .details =
         "Writes to a drive in fault only: controlword 0000h, 0080h, 0000h, none of which can enable it, and "
-        "where "
-        "the family has another way, that one after it. Exit code 1 when the fault stays.",
+        "where the family has another way, that one after it. Exit code 1 when the fault stays.",
     .parameters = {},
     .needs = Needs::node,
     .effect = Effect::resets,

@@ -196,8 +196,7 @@ const Command kFaultShow{
     .details =
         "Reads error code (603Fh), error register (1001h), history (1003h) and the family's own alarm "
         "parameter, and adds the emergencies heard in this session. Where several alarms share a code, all "
-        "are "
-        "shown.",
+        "are shown.",
     .parameters = {},
     .needs = Needs::node,
     .effect = Effect::reads,

@@ -39,11 +39,9 @@ const Command kHome{
     .summary = "Find the home position",
     .details =
         "Homing mode with the family's own start sequence, watched and ended like `jog`. A drive that says "
-        "\"homed\" "
-        "from an earlier run is not believed: the bits must go and come back. Method, speeds and offset are "
-        "put back "
-        "afterwards; the home position stays. Example: `home 35 -n 1`, `home 1 --speed 30rpm --search 6rpm "
-        "-n 1`.",
+        "\"homed\" from an earlier run is not believed: the bits must go and come back. Method, speeds and "
+        "offset are put back afterwards; the home position stays. Example: `home 35 -n 1`, `home 1 --speed "
+        "30rpm --search 6rpm -n 1`.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,

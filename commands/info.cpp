@@ -116,9 +116,8 @@ const Command kInfo{
     .summary = "Show the identity of a node",
     .details =
         "Reads device type, name, versions, identity, error register, heartbeat time and supported modes. "
-        "Where "
-        "they contradict the family that is named with -d, it says so with exit code 8 and names those that "
-        "fit.",
+        "Where they contradict the family that is named with -d, it says so with exit code 8 and names those "
+        "that fit.",
     .parameters = {},
     .needs = Needs::node,
     .effect = Effect::reads,

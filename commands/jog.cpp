@@ -112,20 +112,14 @@ const Command kJog{
     .summary = "Turn a motor at a speed, for a time, some turns, or while a key is held",
     .details =
         "Looks at the drive first and shows what there is to know, asks, then enables the drive in its "
-        "velocity "
-        "mode, turns, stops and disables it, and puts everything back that it changed; on every way out, "
-        "Ctrl-C "
-        "and lost connections among them. Above 300 rpm, or the rated speed where that is less (or a tenth "
-        "of the drive's own limit, where its unit is not known), --limit is needed. Ramps take half a second "
-        "unless --accel says otherwise. It ends at "
-        "once "
-        "when the drive reports an emergency, does not answer, turns the wrong way or not at all, or passes "
-        "a "
-        "limit given. Where the drive has a heartbeat consumer (1016h), it watches servoctl meanwhile and "
-        "stops by "
-        "itself 0.5 s after the last heartbeat. Positions, speeds, torques are shown on the way; -o jsonl "
-        "has every "
-        "sample. Examples: `jog 60rpm --for 2s -n 1`, `jog -30rpm --turns 3 -n 1 --yes`.",
+        "velocity mode, turns, stops and disables it, and puts everything back that it changed; on every way "
+        "out, Ctrl-C and lost connections among them. Above 300 rpm, or the rated speed where that is less "
+        "(or a tenth of the drive's own limit, where its unit is not known), --limit is needed. Ramps take "
+        "half a second unless --accel says otherwise. It ends at once when the drive reports an emergency, "
+        "does not answer, turns the wrong way or not at all, or passes a limit given. Where the drive has a "
+        "heartbeat consumer (1016h), it watches servoctl meanwhile and stops by itself 0.5 s after the last "
+        "heartbeat. Positions, speeds, torques are shown on the way; -o jsonl has every sample. Examples: "
+        "`jog 60rpm --for 2s -n 1`, `jog -30rpm --turns 3 -n 1 --yes`.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,

@@ -115,8 +115,8 @@ const Command kMode{
     .summary = "Show or set the mode of operation (6060h)",
     .details =
         "Names are the family's own: `mode pv`, `mode \"Profile velocity\"`, `mode 3`. Refused when the "
-        "family or the "
-        "drive (6502h) does not have the mode, and while the drive is energised. Waits until 6061h follows.",
+        "family or the drive (6502h) does not have the mode, and while the drive is energised. Waits until "
+        "6061h follows.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::writes,

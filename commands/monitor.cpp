@@ -157,14 +157,11 @@ const Command kMonitor{
     .summary = "Show everything on the bus as it happens, with names and values",
     .details =
         "One line a frame: NMT, SYNC, TIME, EMCY in the family's words, PDOs with the objects they carry, "
-        "SDO "
-        "with names, values and aborts, heartbeats, boot-ups, node guarding; and an ALARM when a node's "
+        "SDO with names, values and aborts, heartbeats, boot-ups, node guarding; and an ALARM when a node's "
         "heartbeat ends. It sends nothing unless told to: with --ask the PDO mapping of the nodes given by "
-        "-n "
-        "is read first, else PDOs are shown by the mapping that is written or read on the bus meanwhile, or "
-        "by "
-        "the one the family (-d) leaves the factory with. At the end (--for, or Ctrl-C) it tells how many "
-        "frames there were, and the load of the bus where the interface or --bitrate tells the bitrate. "
+        "-n is read first, else PDOs are shown by the mapping that is written or read on the bus meanwhile, "
+        "or by the one the family (-d) leaves the factory with. At the end (--for, or Ctrl-C) it tells how "
+        "many frames there were, and the load of the bus where the interface or --bitrate tells the bitrate. "
         "`-o jsonl` gives one document a frame.",
     .parameters = kParameters,
     .needs = Needs::can,

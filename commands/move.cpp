@@ -37,10 +37,9 @@ const Command kMove{
     .summary = "Go to a position",
     .details =
         "Profile position with the set-point handshake, watched and ended like `jog`. The motion counts as "
-        "done when the drive reports the target reached, stands still, and is where it was sent; a way "
-        "that the drive's counts cannot say to 1 % is refused. "
-        "Afterwards it is without power and holds nothing. Example: "
-        "`move 90deg --speed 30rpm -n 1`.",
+        "done when the drive reports the target reached, stands still, and is where it was sent; a way that "
+        "the drive's counts cannot say to 1 % is refused. Afterwards it is without power and holds nothing. "
+        "Example: `move 90deg --speed 30rpm -n 1`.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,

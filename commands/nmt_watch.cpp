@@ -258,19 +258,13 @@ const Command kNmtWatch{
     .summary = "Watch whether nodes are alive: heartbeat or node guarding",
     .details =
         "Tells boot-ups, changes of state, emergencies, and nodes that are lost or back, as they happen; at "
-        "the end "
-        "(--for, or Ctrl-C) what became of each node. A lost node is one that was silent for three of its "
-        "heartbeat periods (100 ms more than one at the least), or with --guard did not answer in its life "
-        "time. Emergencies are found under "
-        "the "
-        "CAN-ID of 1014h, which is read first, and under 080h + node-ID, the only one that is known of a "
-        "node "
-        "which "
-        "did not answer and with --guard. Guarding sends frames that start a "
-        "drive's "
-        "own watch over its master: --read-only refuses it. Exit code 1 when a node was lost, never "
-        "heard, or "
-        "sends no heartbeat. Do not guard nodes that send heartbeats: CiA 301 allows one of the two.",
+        "the end (--for, or Ctrl-C) what became of each node. A lost node is one that was silent for three "
+        "of its heartbeat periods (100 ms more than one at the least), or with --guard did not answer in its "
+        "life time. Emergencies are found under the CAN-ID of 1014h, which is read first, and under 080h + "
+        "node-ID, the only one that is known of a node which did not answer and with --guard. Guarding sends "
+        "frames that start a drive's own watch over its master: --read-only refuses it. Exit code 1 when a "
+        "node was lost, never heard, or sends no heartbeat. Do not guard nodes that send heartbeats: CiA 301 "
+        "allows one of the two.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::can,
     .effect = Effect::writes,

@@ -185,9 +185,8 @@ const Command kObjects{
     .details =
         "Works without a bus. The pattern is part of a name in English or Chinese, an index, or a form with "
         "`*`; of an index, what the values stand for is listed as well. Of a DCF, value and denotation are "
-        "what it gives each entry (ParameterValue, Denotation). "
-        "`?` marks what the manual does not state, `!` what it states in more than one way; --json names the "
-        "lines.",
+        "what it gives each entry (ParameterValue, Denotation). `?` marks what the manual does not state, "
+        "`!` what it states in more than one way; --json names the lines.",
     .parameters = kParameters,
     .needs = Needs::dictionary,
     .effect = Effect::none,

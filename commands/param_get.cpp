@@ -69,8 +69,8 @@ const Command kParamGet{
     .summary = "Read panel parameters of a drive",
     .details =
         "`Pn02*` reads all that fit. The value is the number the panel shows; where one step is not one "
-        "unit, the value in "
-        "units stands behind it. In JSON `raw` is the panel's number and `value` is in `unit`.",
+        "unit, the value in units stands behind it. In JSON `raw` is the panel's number and `value` is in "
+        "`unit`.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::reads,

@@ -38,10 +38,8 @@ const Command kParamList{
     .summary = "List the panel parameters of a drive family",
     .details =
         "Works without a bus. Range and default are the numbers the panel shows; one step of them is what "
-        "the unit column "
-        "says. `?` marks what the manual does not state, `!` what it states in more than one way; `param "
-        "explain` "
-        "tells which, with its lines.",
+        "the unit column says. `?` marks what the manual does not state, `!` what it states in more than one "
+        "way; `param explain` tells which, with its lines.",
     .parameters = kParameters,
     .needs = Needs::dictionary,
     .effect = Effect::none,

@@ -124,10 +124,8 @@ const Command kPdoApply{
     .summary = "Put the PDOs of a file into a drive",
     .details =
         "All PDOs of the file are changed as a whole, or none. It may be a file of `pdo save`, a backup of a "
-        "drive "
-        "of the family, or an EDS or DCF. CAN-IDs that contain the node-ID follow the node. PDOs the file "
-        "does not "
-        "name stay as they are.",
+        "drive of the family, or an EDS or DCF. CAN-IDs that contain the node-ID follow the node. PDOs the "
+        "file does not name stay as they are.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::stores,

@@ -198,10 +198,8 @@ const Command kPdoMap{
     .summary = "Say what a PDO carries, and when",
     .details =
         "Everything is checked before the first frame; then the PDO is switched off, mapped, switched on and "
-        "read "
-        "back, by the family's own procedure. When the drive refuses a step, the PDO is put back as it was. "
-        "What is "
-        "not said stays as it is. Not while the drive is energised. --dry-run shows the frames.",
+        "read back, by the family's own procedure. When the drive refuses a step, the PDO is put back as it "
+        "was. What is not said stays as it is. Not while the drive is energised. --dry-run shows the frames.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::stores,

@@ -54,8 +54,7 @@ const Command kPdoPreset{
     .summary = "Map the PDOs as the manual recommends for a mode",
     .details =
         "What the family's manual prints for profile position (pp), profile velocity (pv), torque (pt), "
-        "homing "
-        "(home) and the others; PDOs it does not name stay as they are. As safe as `pdo map`.",
+        "homing (home) and the others; PDOs it does not name stay as they are. As safe as `pdo map`.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::stores,

@@ -51,8 +51,7 @@ const Command kPdoSave{
     .summary = "Write the PDOs of a drive into a file",
     .details =
         "TOML, to be read and edited, or JSON, by the extension. CAN-IDs that contain the node-ID are "
-        "written with "
-        "$NODEID, so that the file fits other nodes. `pdo apply` puts it into a drive.",
+        "written with $NODEID, so that the file fits other nodes. `pdo apply` puts it into a drive.",
     .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::reads,

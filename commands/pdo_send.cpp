@@ -141,11 +141,9 @@ const Command kPdoSend{
     .summary = "Send an RPDO with these values once; asks first",
     .details =
         "Reads the mapping of the node and puts the values, one for each mapped object, where they belong: "
-        "`pdo send "
-        "RPDO1 0x0F 1000rpm`. Types, limits and units are checked as for `write`. Refused when the PDO is "
-        "not in "
-        "use or "
-        "the node is not operational. PDOs are not answered: `status` or `pdo watch` tell what became of it.",
+        "`pdo send RPDO1 0x0F 1000rpm`. Types, limits and units are checked as for `write`. Refused when the "
+        "PDO is not in use or the node is not operational. PDOs are not answered: `status` or `pdo watch` "
+        "tell what became of it.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::can,
     .effect = Effect::moves,

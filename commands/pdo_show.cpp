@@ -164,9 +164,8 @@ const Command kPdoShow{
     .summary = "Show what a drive sends and receives as PDOs",
     .details =
         "All RPDOs (the drive receives) and TPDOs (it sends): COB-ID, transmission type, times, mapped "
-        "objects; what "
-        "is not as it left the factory, where -d names the family. With -n all: TPDOs of two drives on one "
-        "COB-ID.",
+        "objects; what is not as it left the factory, where -d names the family. With -n all: TPDOs of two "
+        "drives on one COB-ID.",
     .parameters = {},
     .needs = Needs::node,
     .effect = Effect::reads,

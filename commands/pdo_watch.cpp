@@ -109,8 +109,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   if (silent)
     context.notices.emplace_back(
         "no PDO came: nodes send them when operational (`nmt start`), synchronous ones at SYNC (`sync "
-        "start`), "
-        "others when a value changes or by their event timer");
+        "start`), others when a value changes or by their event timer");
   const bool on_request = std::any_of(watched->begin(), watched->end(), [](const Watched& entry) {
     const auto& pdo = entry.view.pdo;
     return pdo.direction == canopen::PdoDirection::transmit && (pdo.type == 252 || pdo.type == 253) &&
@@ -119,8 +118,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   if (on_request)
     context.notices.emplace_back(
         "TPDOs of transmission types 252 and 253 come when somebody asks for them by a remote frame; "
-        "servoctl "
-        "does not");
+        "servoctl does not");
   if (!context.keeps_samples) return Value(summary(*watched));
   return Value(report::Record{{"pdos", summary(*watched)}, {"samples", writer.take_kept()}});
 }
@@ -133,12 +131,8 @@ const Command kPdoWatch{
     .summary = "Show PDOs as they come, by the mapping the drive has now",
     .details =
         "Reads the mapping of the nodes and then listens: one line a PDO, with the names, values and units "
-        "of what "
-        "it "
-        "carries. At the end (--for, or Ctrl-C) it tells how often each came, and the periods measured: "
-        "mean, "
-        "shortest, "
-        "longest, standard deviation. RPDOs are shown when a master sends them.",
+        "of what it carries. At the end (--for, or Ctrl-C) it tells how often each came, and the periods "
+        "measured: mean, shortest, longest, standard deviation. RPDOs are shown when a master sends them.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::can,
     .effect = Effect::reads,

@@ -83,8 +83,7 @@ const Command kRead{
     .details =
         "Without --drive only addresses are understood, and the value is shown as an unsigned number of its "
         "length. Index and sub-index are hexadecimal. With --to the bytes of one object of any size go into "
-        "a "
-        "file; block transfer is tried first where the drive may know it.",
+        "a file; block transfer is tried first where the drive may know it.",
     .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::reads,

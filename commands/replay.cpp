@@ -219,8 +219,7 @@ const Command kReplay{
         "chooses services. Before, it asks the drives of the recording for their PDOs; then it asks you, and "
         "says how many of the frames can move a motor (NMT start, SYNC, RPDOs, writes of objects from 2000h "
         "on) and which store, restart or re-address a drive; --dry-run only counts. After Ctrl-C and after "
-        "an "
-        "error the drives are stopped and disabled; one that the whole replay leaves energised is named. "
+        "an error the drives are stopped and disabled; one that the whole replay leaves energised is named. "
         "Exit code 1 when a drive refused an SDO request or did not answer it. To have commands answered by "
         "a recording instead, use --bus replay:FILE.",
     .parameters = kParameters,

@@ -260,9 +260,8 @@ const Command kReport{
         "Identity and firmware, state, faults and their history, settings that differ from the factory's, "
         "PDOs, who else is on the bus, and a test of the communication; with --tests also the results and "
         "plots of tests made before, refused where they are of another drive. The page needs no network and "
-        "prints on A4; --lang zh makes it Chinese. "
-        "Moves nothing and changes nothing. The file is written whole or not at all; exit code 1 when a test "
-        "in it failed.",
+        "prints on A4; --lang zh makes it Chinese. Moves nothing and changes nothing. The file is written "
+        "whole or not at all; exit code 1 when a test in it failed.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::reads,

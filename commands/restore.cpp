@@ -79,8 +79,8 @@ const Command kRestore{
         "that file: after a pulled cable or a crash --resume goes on, and restoring FILE.before-node-N.json "
         "takes everything back. A COB-ID that CiA 301 keeps for another service is refused. A value of a "
         "backup of ours outside of the limits is named and left as it is (exit code 1), the rest restored; "
-        "entries of another tool's file that "
-        "cannot be used, or not by this drive, are refused, and with --skip-invalid named and left out.",
+        "entries of another tool's file that cannot be used, or not by this drive, are refused, and with "
+        "--skip-invalid named and left out.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::stores,

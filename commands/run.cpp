@@ -28,18 +28,14 @@ const Command kRun{
     .summary = "Run the command lines of a file",
     .details =
         "One command line a line, as at the prompt (use, drive and bus too); `#` begins a comment, `\\` at "
-        "the "
-        "end of a line continues it. Also: `set NAME=VALUE` and ${NAME}; `for NODE in 1-8` … `end`, also "
-        "over "
-        "words or over `axes.csv`, whose columns are ${ROW.column}; `expect [0].value == 400` asks the "
-        "result "
-        "of the line before; `wait 2s`; `pause \"TEXT\"` on a terminal; `on-error continue` or `stop`. Lines "
-        "in the form of CiA 309-3 (`4 r 0x1017 0 u16`) are understood. Options given here hold for all "
-        "lines. What is wrong in any line is told before the first one is run; --dry-run shows all lines "
-        "with "
-        "their variables filled in and sends nothing; with --frames every line that changes a drive is gone "
-        "through as with its own --dry-run, against the drives as they are before the first line, and shows "
-        "its frames or why it would be refused. `servoctl -` reads standard input.",
+        "the end of a line continues it. Also: `set NAME=VALUE` and ${NAME}; `for NODE in 1-8` … `end`, also "
+        "over words or over `axes.csv`, whose columns are ${ROW.column}; `expect [0].value == 400` asks the "
+        "result of the line before; `wait 2s`; `pause \"TEXT\"` on a terminal; `on-error continue` or "
+        "`stop`. Lines in the form of CiA 309-3 (`4 r 0x1017 0 u16`) are understood. Options given here hold "
+        "for all lines. What is wrong in any line is told before the first one is run; --dry-run shows all "
+        "lines with their variables filled in and sends nothing; with --frames every line that changes a "
+        "drive is gone through as with its own --dry-run, against the drives as they are before the first "
+        "line, and shows its frames or why it would be refused. `servoctl -` reads standard input.",
     .parameters = kParameters,
     .of_front_end = true,
 };

@@ -26,8 +26,7 @@ Result<report::Value> run(Context& context, const Arguments&) {
     error.message = "no node answered on " + context.session->url();
     error.hint =
         "check power, cable, 120 ohm at both ends, and that the interface runs at the drives' bitrate; a "
-        "stopped node "
-        "does not answer: `nmt preop -n all`";
+        "stopped node does not answer: `nmt preop -n all`";
     context.errors.push_back(std::move(error));
   }
   const auto families = drive::find_families(context.drive_folders);
@@ -43,12 +42,10 @@ const Command kScan{
     .summary = "Find the nodes on the bus and what they are",
     .details =
         "Asks the nodes 1 to 127, or those of a --node in the line itself, for object 1000h at the same "
-        "time: the answer takes "
-        "one timeout "
-        "however many there are. Families are guessed from the identity and, where it leaves them open, by "
-        "reading "
-        "two or three objects that only they have; `?` marks a guess that proves nothing. cia402 fits every "
-        "drive of that profile: it is named where nothing else fits, and always by `info` and in JSON.",
+        "time: the answer takes one timeout however many there are. Families are guessed from the identity "
+        "and, where it leaves them open, by reading two or three objects that only they have; `?` marks a "
+        "guess that proves nothing. cia402 fits every drive of that profile: it is named where nothing else "
+        "fits, and always by `info` and in JSON.",
     .parameters = {},
     .needs = Needs::bus,
     .effect = Effect::reads,

@@ -142,8 +142,7 @@ const Command kStatus{
     .summary = "Show the state of a drive: NMT, CiA 402, mode, fault",
     .details =
         "Reads statusword, mode, error code and error register. The NMT state is told by heartbeats; where "
-        "the node sends "
-        "some, status waits for one.",
+        "the node sends some, status waits for one.",
     .parameters = {},
     .needs = Needs::node,
     .effect = Effect::reads,

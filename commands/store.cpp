@@ -88,8 +88,7 @@ const Command kStore{
     .summary = "Make a drive keep its present values",
     .details =
         "1010h with the signature \"save\", or the family's own way. Waits up to 10 s for the drive. Where "
-        "values are "
-        "kept only while they are written, `param set … --keep` is the way, and store says so.",
+        "values are kept only while they are written, `param set … --keep` is the way, and store says so.",
     .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::stores,

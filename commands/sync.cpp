@@ -143,8 +143,7 @@ const Command kSyncOnce{
     .summary = "Send one SYNC; asks first",
     .details =
         "Synchronous RPDOs that came before take effect, synchronous TPDOs are sent. It asks, because a "
-        "drive "
-        "may move.",
+        "drive may move.",
     .parameters = {},
     .needs = Needs::can,
     .effect = Effect::moves,
@@ -159,9 +158,8 @@ const Command kSyncStart{
     .details =
         "At the prompt and in a batch file it goes on while other lines run, until `sync stop` or the end of "
         "them; alone it lasts until Ctrl-C, with --for so long, and then tells the periods that were "
-        "measured: "
-        "mean, shortest, longest, standard deviation, and how many SYNCs were missed because the computer "
-        "was late. There must be no other producer of SYNC on the bus.",
+        "measured: mean, shortest, longest, standard deviation, and how many SYNCs were missed because the "
+        "computer was late. There must be no other producer of SYNC on the bus.",
     .parameters = kStartParameters,
     .needs = Needs::can,
     .effect = Effect::moves,

@@ -138,8 +138,8 @@ const Command kTestAll{
     .details =
         "Runs `test comm`, `test io` where --expect names inputs, `test jog` and, where the family homes and "
         "--no-home is not given, `test home` by the drive's present method. What a limit or an option would "
-        "refuse of any of them is refused before the first one moves. After a failure nothing more is "
-        "moved. Each motion shows what is known and asks, as it would alone. Exit code 1 when a test fails. "
+        "refuse of any of them is refused before the first one moves. After a failure nothing more is moved. "
+        "Each motion shows what is known and asks, as it would alone. Exit code 1 when a test fails. "
         "Example: `test all 60rpm -n 1 -d gsd600 --yes --json >axis-1.json`, then `report axis-1.html "
         "--tests axis-1.json -n 1 -d gsd600`.",
     .parameters = kParameters,

@@ -40,10 +40,9 @@ const Command kTestHome{
     .details =
         "Looks, asks, moves and ends as `home` does, --repeat times. Passes when each found home, and when "
         "neither the position at rest nor home against the encoder's own count (6063h, or what the family "
-        "has) "
-        "spreads by more than --spread. Where the drive does not tell how many counts its encoder has in a "
-        "turn, --encoder does; one that sets that count to zero as well shows no spread there. Exit code 1 "
-        "when it fails. Example: `test home 33 --repeat 5 --spread 0.5 -n 1 -d gsd600 --yes`.",
+        "has) spreads by more than --spread. Where the drive does not tell how many counts its encoder has "
+        "in a turn, --encoder does; one that sets that count to zero as well shows no spread there. Exit "
+        "code 1 when it fails. Example: `test home 33 --repeat 5 --spread 0.5 -n 1 -d gsd600 --yes`.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,

@@ -38,8 +38,7 @@ const Command kTorque{
         "Torque mode, watched and ended like `jog`. --limit is the speed the motor must not exceed: it goes "
         "to the drive where the family has a limit for this mode, and servoctl stops the motor that turns "
         "faster than 1.2 times that in any case. More than the rated torque needs --max-torque; more than "
-        "6072h is refused. Example: "
-        "`torque 5% --limit 60rpm --for 1s -n 1`.",
+        "6072h is refused. Example: `torque 5% --limit 60rpm --for 1s -n 1`.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,

@@ -40,8 +40,7 @@ const Command kUnitsForget{
     .summary = "Drop the counts of a turn that `units learn` kept",
     .details =
         "Of these nodes on this bus, whatever drive stands there now. Nothing is read from the drive and "
-        "nothing "
-        "changed in it. Example: `units forget -n 1`.",
+        "nothing changed in it. Example: `units forget -n 1`.",
     .parameters = {},
     .needs = Needs::node,
     .effect = Effect::none,

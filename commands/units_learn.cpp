@@ -252,19 +252,15 @@ const Command kUnitsLearn{
     .path = "units learn",
     .summary = "Turn a motor slowly to measure how many counts a turn has, and keep that",
     .details =
-        "For drives that do not tell it. Looks, asks, moves and ends as `jog` does: "
-        "faster and faster until the drive's own monitor shows 30 rpm, then 6 s at that speed, about 4 turns "
-        "in "
-        "all. The way of 6064h over the integral of the monitor is the measurement, 606Ch has to agree; the "
-        "gear "
-        "6091h is taken out. It is refused when it may be more than 1 % off, and when the monitor shows "
-        "nothing or does not go with the way. Taken is the power of two within 1 %, else a round decimal "
-        "number (not where the manual prints two scales for the monitor: then --nameplate COUNTS "
-        "is held against the measurement). It is kept for this bus, node and identity (1000h, 1008h, 1018h) "
-        "and "
-        "used by every motion without --turn, with a notice; what the drive's own parameters tell goes "
-        "before it. "
-        "Example: `units learn -n 1`.",
+        "For drives that do not tell it. Looks, asks, moves and ends as `jog` does: faster and faster until "
+        "the drive's own monitor shows 30 rpm, then 6 s at that speed, about 4 turns in all. The way of "
+        "6064h over the integral of the monitor is the measurement, 606Ch has to agree; the gear 6091h is "
+        "taken out. It is refused when it may be more than 1 % off, and when the monitor shows nothing or "
+        "does not go with the way. Taken is the power of two within 1 %, else a round decimal number (not "
+        "where the manual prints two scales for the monitor: then --nameplate COUNTS is held against the "
+        "measurement). It is kept for this bus, node and identity (1000h, 1008h, 1018h) and used by every "
+        "motion without --turn, with a notice; what the drive's own parameters tell goes before it. Example: "
+        "`units learn -n 1`.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,

@@ -128,9 +128,8 @@ const Command kUnitsShow{
     .summary = "Show what is known of a turn of the motor and of its torque, and from where",
     .details =
         "Increments (6064h) and encoder pulses in a turn, rated torque, as far as the family's rules know "
-        "how to "
-        "get them: from the drive's own parameters, from what `units learn` kept, or from --turn. In JSON "
-        "`source` is drive, kept, --turn or null. What is kept and not used is told with the reason.",
+        "how to get them: from the drive's own parameters, from what `units learn` kept, or from --turn. In "
+        "JSON `source` is drive, kept, --turn or null. What is kept and not used is told with the reason.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::reads,

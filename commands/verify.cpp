@@ -63,9 +63,8 @@ const Command kVerify{
     .summary = "Compare a drive with a backup or the factory values",
     .details =
         "Reads every value of the backup from the drive; exit code 1 when one differs or is not there. A "
-        "file of "
-        "another form with an entry that cannot be used is refused; --skip-invalid verifies the rest, exit "
-        "code 1.",
+        "file of another form with an entry that cannot be used is refused; --skip-invalid verifies the "
+        "rest, exit code 1.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::reads,

@@ -164,13 +164,9 @@ const Command kWatch{
     .summary = "Show how values of objects change",
     .details =
         "Every --every, one line for each node, until --for is over or Ctrl-C. What a TPDO brings is taken "
-        "from "
-        "it; "
-        "the rest is read by SDO. At the end it tells for each object how many values there were, the least, "
-        "the "
-        "mean "
-        "and the greatest; --plot draws them. `-o jsonl` gives one document a look. A drive that does not "
-        "answer at the end makes the exit code.",
+        "from it; the rest is read by SDO. At the end it tells for each object how many values there were, "
+        "the least, the mean and the greatest; --plot draws them. `-o jsonl` gives one document a look. A "
+        "drive that does not answer at the end makes the exit code.",
     .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::reads,

@@ -20,9 +20,8 @@ std::string missing_hint() {
                                     : fmt::format("CAN interfaces here: {}", fmt::join(present, ", "));
   return here +
          "; for a USB adapter: plug it in, then `sudo ip link set can0 up type can bitrate 500000`, with the "
-         "bitrate "
-         "of the drives; for a virtual bus: `sudo ip link add dev vcan0 type vcan && sudo ip link set vcan0 "
-         "up`";
+         "bitrate of the drives; for a virtual bus: `sudo ip link add dev vcan0 type vcan && sudo ip link "
+         "set vcan0 up`";
 }
 
 }  // namespace
@@ -49,9 +48,8 @@ tl::unexpected<Error> interface_bus_off(const std::string& name) {
   return fail(
       Errc::bus, fmt::format("{} is off the bus after too many errors (bus-off)", name),
       fmt::format(
-          "check the bitrate, the cable and the two 120 ohm resistors; then `sudo ip link set {0} type "
-          "can restart`, or take it down and up again: `sudo ip link set {0} down && sudo ip link "
-          "set {0} up`",
+          "check the bitrate, the cable and the two 120 ohm resistors; then `sudo ip link set {0} type can "
+          "restart`, or take it down and up again: `sudo ip link set {0} down && sudo ip link set {0} up`",
           name));
 }
 
@@ -67,10 +65,12 @@ tl::unexpected<Error> interface_lost(const std::string& name, int error) {
 }
 
 tl::unexpected<Error> interface_queue_full(const std::string& name) {
-  return fail(Errc::bus, fmt::format("the transmit queue of {} stays full", name),
-              fmt::format("is another node on the bus and the bitrate right? "
-                          "`ip -details -statistics link show {0}`, `sudo ip link set {0} txqueuelen 1000`",
-                          name));
+  return fail(
+      Errc::bus, fmt::format("the transmit queue of {} stays full", name),
+      fmt::format(
+          "is another node on the bus and the bitrate right? `ip -details -statistics link show {0}`, `sudo "
+          "ip link set {0} txqueuelen 1000`",
+          name));
 }
 
 tl::unexpected<Error> interface_cannot_open(const std::string& name, int error) {

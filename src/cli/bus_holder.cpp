@@ -28,9 +28,11 @@ Error no_bus() {
   error.code = Errc::usage;
   error.message = "which bus?";
   const auto interfaces = can::can_interfaces();
-  error.hint = interfaces.empty() ? "this machine has no CAN interface now; try `--bus sim:FAMILY@1` "
-                                    "(`drives` lists families), or local:NAME"
-                                  : fmt::format("add --bus {} or set SERVOCTL_BUS", one_of(interfaces));
+  error.hint =
+      interfaces.empty()
+          ? "this machine has no CAN interface now; try `--bus sim:FAMILY@1` (`drives` lists families), or "
+            "local:NAME"
+          : fmt::format("add --bus {} or set SERVOCTL_BUS", one_of(interfaces));
   return error;
 }
 

@@ -79,8 +79,7 @@ Result<void> FamilyGate::ask_all(std::span<const std::uint8_t> nodes, const driv
       return fail(identity.error());
     if (must_answer)
       notices_->push_back(
-          fmt::format("node {} did not answer when it was asked what it is: that it is a {} is "
-                      "unchecked",
+          fmt::format("node {} did not answer when it was asked what it is: that it is a {} is unchecked",
                       nodes[i], profile.family));
   }
   return {};

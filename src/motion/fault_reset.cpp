@@ -51,8 +51,8 @@ Result<bool> by_controlword(session::Session& session, std::uint8_t node) {
   auto error = left ? released.error() : left.error();
   if (!released)
     error.hint =
-        "bit 7 of the controlword may still be set, then the drive obeys no other command: "
-        "`write 0x6040 0` takes it back";
+        "bit 7 of the controlword may still be set, then the drive obeys no other command: `write 0x6040 0` "
+        "takes it back";
   return fail(std::move(error));
 }
 

@@ -170,8 +170,7 @@ std::vector<std::string> turn_notes(const MotionUnits& units, const KnownTurn& k
   if (units.uses_learned() && known.kept)
     out.push_back(fmt::format(
         "a turn is {} increments of 6064h, by the {} counts of its encoder ({}) that were measured at {} and "
-        "kept "
-        "for this drive; --turn says another number{}",
+        "kept for this drive; --turn says another number{}",
         plain_number(units.turn().value_or(0), 12), known.kept->counts, known.kept->reason, known.kept->time,
         known.kept->identity.serial.value_or(0) == 0
             ? "; it has no serial number (1018h:04): another drive or motor would not be noticed by it"

@@ -135,11 +135,10 @@ void MotionGuard::put_back(const Changed& changed) {
 
 void MotionGuard::tell_foreign_writes() {
   for (const auto object : foreign_)
-    result_.left.push_back(
-        fmt::format("another master wrote object {} meanwhile: what it held before may be lost, and what it "
-                    "holds now is not known "
-                    "to be right",
-                    to_string(object)));
+    result_.left.push_back(fmt::format(
+        "another master wrote object {} meanwhile: what it held before may be lost, and what it holds now is "
+        "not known to be right",
+        to_string(object)));
   foreign_.clear();
 }
 

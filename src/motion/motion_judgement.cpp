@@ -100,8 +100,7 @@ void MotionJudgement::judge_target(const Motion& motion, const MotionPlan& plan,
   if (std::abs(*place - plan.value) <= near) return;
   const auto numbers = told_apart(*place, plan.value);
   differences.push_back(
-      fmt::format("it is at {} {}; {} {} was asked for (the position window, 6067h, "
-                  "is wider than that)",
+      fmt::format("it is at {} {}; {} {} was asked for (the position window, 6067h, is wider than that)",
                   numbers.first, plan.unit, numbers.second, plan.unit));
 }
 

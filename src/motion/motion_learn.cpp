@@ -182,9 +182,10 @@ class Learning {
   Error lies(double speed) const {
     return motion_->error(
         Errc::negative,
-        fmt::format("turns at {} inc/s by 606Ch, and {} shows {} rpm, which does not go with what it showed "
-                    "at other speeds",
-                    number_text(speed), learn_->monitor_name, number_text(shown_)),
+        fmt::format(
+            "turns at {} inc/s by 606Ch, and {} shows {} rpm, which does not go with what it showed at other "
+            "speeds",
+            number_text(speed), learn_->monitor_name, number_text(shown_)),
         std::string(kOtherWay));
   }
 
@@ -258,10 +259,10 @@ Result<MotionPlan> plan_learn(Motion& motion, const Learn& learn) {
   plan.summary = fmt::format("turn at {} rpm by {} for {}, about {} turns, found in steps from {} {} on",
                              number_text(learn.rpm), learn.monitor_name, servoctl::to_string(learn.length),
                              turns_of(learn), number_text(std::round(plan.value)), plan.unit);
-  plan.tell(
-      fmt::format("60FFh and its ramps are written again and again, each time for at most {} times the "
-                  "last speed, until {} shows {} rpm",
-                  number_text(kSpeedUp), learn.monitor_name, number_text(std::abs(learn.rpm))));
+  plan.tell(fmt::format(
+      "60FFh and its ramps are written again and again, each time for at most {} times the last speed, until "
+      "{} shows {} rpm",
+      number_text(kSpeedUp), learn.monitor_name, number_text(std::abs(learn.rpm))));
   plan.moving = {{objects::kTargetVelocity, plan.command},
                  {objects::kTargetVelocity, Bytes(plan.command.size(), 0)}};
   motion.set_standstill(plan.value);

@@ -117,9 +117,9 @@ Error Motion::quarrel(double shown, double speed) const {
   const auto pending = restart_note(*profile_, *units_->turn_way());
   return error(
       Errc::negative,
-      fmt::format("turns at {} rpm by {}, and at {} rpm by the {} increments that its parameters tell "
-                  "of a turn",
-                  number_text(shown), name, number_text(speed), plain_number(units_->turn().value_or(0), 12)),
+      fmt::format(
+          "turns at {} rpm by {}, and at {} rpm by the {} increments that its parameters tell of a turn",
+          number_text(shown), name, number_text(speed), plain_number(units_->turn().value_or(0), 12)),
       (pending.empty() ? "" : pending + "; ") +
           "--turn says how many a turn has, and then it is not held against " + name);
 }

@@ -84,11 +84,11 @@ std::string end_text(const MotionEnd& end, const WatchdogPlan& watchdog) {
   if (end.verified)
     return fmt::format("{}{}, verified (statusword 0x{:04X})", drive::name(end.state),
                        end.quick_stop ? " after a quick stop" : "", end.statusword);
-  std::string out = end.statusword == 0 ? "THE END STATE COULD NOT BE VERIFIED: TAKE THE POWER AWAY"
-                                        : fmt::format(
-                                              "IT IS IN {} (statusword 0x{:04X}), NOT WITHOUT POWER: TAKE "
-                                              "THE POWER AWAY",
-                                              drive::name(end.state), end.statusword);
+  std::string out =
+      end.statusword == 0
+          ? "THE END STATE COULD NOT BE VERIFIED: TAKE THE POWER AWAY"
+          : fmt::format("IT IS IN {} (statusword 0x{:04X}), NOT WITHOUT POWER: TAKE THE POWER AWAY",
+                        drive::name(end.state), end.statusword);
   if (watchdog.kind != WatchdogPlan::Kind::none)
     out += fmt::format(" (its watchdog should stop it within {} ms)",
                        std::chrono::duration_cast<std::chrono::milliseconds>(watchdog.time).count());

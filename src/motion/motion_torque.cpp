@@ -36,9 +36,8 @@ Result<void> limit_speed(const Motion& motion, double cap, MotionPlan& plan) {
     if (*object == objects::kTargetVelocity) plan.kept_target = *object;
     if (units.meaning(*object).effect == od::Effect::restart)
       plan.tell(fmt::format(
-          "the drive's speed limit in torque mode ({}) is set to {} {}, but may act after its "
-          "next start only: "
-          "servoctl looks at the speed and stops above {} {}",
+          "the drive's speed limit in torque mode ({}) is set to {} {}, but may act after its next start "
+          "only: servoctl looks at the speed and stops above {} {}",
           to_string(*object), number_text(held->value), held->unit, number_text(cap * kOvershoot), unit));
   }
   if (!plan.settings.empty()) return {};

@@ -108,9 +108,10 @@ Result<TurnMeasurement> measure_turn(std::span<const TurnLook> looks, double ste
   if (!(spread <= kMostSpread)) {
     const auto [least, most] = std::minmax_element(parts.begin(), parts.end());
     return no_number(
-        fmt::format("shows a speed in rpm that does not go with its way: {} to {} increments a turn "
-                    "in parts of the measurement",
-                    std::llround(*least), std::llround(*most)),
+        fmt::format(
+            "shows a speed in rpm that does not go with its way: {} to {} increments a turn in parts of the "
+            "measurement",
+            std::llround(*least), std::llround(*most)),
         std::string("does the motor turn evenly? ") + std::string(kOtherWay));
   }
   out.by_speed = by_speed(looks, out.rpm);
@@ -145,15 +146,17 @@ Result<TurnCounts> counts_behind(double measured, double uncertainty, const Turn
   const auto said =
       fmt::format("has {} counts a turn as measured (± {} %)", std::llround(measured), percent(uncertainty));
   if (!is_near(measured, decimal))
-    return no_number(said + ": neither a power of two nor a round decimal number is within 1 % of it",
-                     fmt::format("look at the nameplate of the motor; `units learn -n {} --nameplate COUNTS` "
-                                 "measures again, holds its number against that and keeps it",
-                                 expected.node));
+    return no_number(
+        said + ": neither a power of two nor a round decimal number is within 1 % of it",
+        fmt::format(
+            "look at the nameplate of the motor; `units learn -n {} --nameplate COUNTS` measures again, "
+            "holds its number against that and keeps it",
+            expected.node));
   if (expected.disputed)
     return no_number(
         fmt::format(
-            "{}: {} is near, but the manual prints two scales for the monitor of the speed, and by the "
-            "other it would be {}",
+            "{}: {} is near, but the manual prints two scales for the monitor of the speed, and by the other "
+            "it would be {}",
             said, std::llround(decimal), plain_number(decimal / 10, 12)),
         fmt::format("look at the nameplate of the motor; when it says so, `units learn -n {} --nameplate {}` "
                     "measures again and keeps it",

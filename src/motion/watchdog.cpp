@@ -193,8 +193,8 @@ std::string to_string(const WatchdogPlan& plan) {
       plan.alarms.empty()
           ? std::string("none: nothing stops the drive when the cable is cut or servoctl dies")
           : fmt::format(
-                "none that servoctl can arm: the manual names alarm {} for a lost communication, "
-                "but not whether and when the motor stops; when servoctl alone dies it may keep turning",
+                "none that servoctl can arm: the manual names alarm {} for a lost communication, but not "
+                "whether and when the motor stops; when servoctl alone dies it may keep turning",
                 fmt::join(plan.alarms, ", "));
   return none + (plan.remark.empty() ? "" : "; " + plan.remark);
 }

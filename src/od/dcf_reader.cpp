@@ -98,10 +98,9 @@ class Reader {
     if (listed == listed_.end() || &places_[listed->second] == &place) return;
     auto& other = places_[listed->second];
     other.taken = true;
-    out_.passed_over.push_back(
-        fmt::format("{}:{}: [{}] has a value of {} as well, which counts for nothing beside "
-                    "the one in line {}",
-                    file_, other.key->line, other.section->name, to_string(entry.address), place.key->line));
+    out_.passed_over.push_back(fmt::format(
+        "{}:{}: [{}] has a value of {} as well, which counts for nothing beside the one in line {}", file_,
+        other.key->line, other.section->name, to_string(entry.address), place.key->line));
   }
 
   Place* place_of(const Entry& entry) {

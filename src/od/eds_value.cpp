@@ -28,11 +28,13 @@ bool take_leading_zero(const IniKey& key, std::string_view number, ValueUse use,
   const auto decimal = parse_digits(digits, 10);
   const auto octal = parse_digits(digits, 8);
   if (use == ValueUse::written && octal && octal != decimal) {
-    findings.error(key, "octal-value",
-                   fmt::format("{}: '{}' is {} by the standard (a leading zero means octal), and {} to most "
-                               "who write it; not taken",
-                               shown(key.key), shown(number), *octal, decimal.value_or(0)),
-                   fmt::format("write 0x{:X} or {}", *octal, decimal.value_or(0)));
+    findings.error(
+        key, "octal-value",
+        fmt::format(
+            "{}: '{}' is {} by the standard (a leading zero means octal), and {} to most who write it; not "
+            "taken",
+            shown(key.key), shown(number), *octal, decimal.value_or(0)),
+        fmt::format("write 0x{:X} or {}", *octal, decimal.value_or(0)));
     return false;
   }
   const auto by_standard = !octal             ? std::string("no number")

@@ -121,8 +121,7 @@ std::string PdoRecord::notice_of(const fs::path& record, const std::optional<Ide
   if (backup && drive && is_other_drive(backup->identity, *drive))
     return fmt::format(
         "node {}: a change of the PDOs of another drive that was node {} here ({}){} did not come to its "
-        "end; {} "
-        "holds what they were, for that drive (delete the file when that is not wanted)",
+        "end; {} holds what they were, for that drive (delete the file when that is not wanted)",
         node_, node_, text_of(backup->identity), since, record.string());
   return fmt::format(
       "node {}: a change of its PDOs{} did not come to its end; `pdo apply {} -n {}{}` puts back what they "

@@ -32,8 +32,8 @@ std::string case_xml(const TestResult& result, const Criterion& criterion) {
 
 std::string suite_xml(const TestResult& result) {
   auto out = fmt::format(
-      "  <testsuite name=\"{} node {}\" tests=\"{}\" failures=\"{}\" errors=\"0\" "
-      "skipped=\"{}\" time=\"{:.3f}\">\n",
+      "  <testsuite name=\"{} node {}\" tests=\"{}\" failures=\"{}\" errors=\"0\" skipped=\"{}\" "
+      "time=\"{:.3f}\">\n",
       escaped(result.test), result.node, result.criteria.size(), count(result, Verdict::failed),
       count(result, Verdict::skipped), result.seconds);
   for (const auto& criterion : result.criteria) out += case_xml(result, criterion);
@@ -54,8 +54,8 @@ std::string junit_xml(const std::vector<TestResult>& results) {
     suites += suite_xml(result);
   }
   return fmt::format(
-      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"servoctl\" "
-      "tests=\"{}\" failures=\"{}\" errors=\"0\" time=\"{:.3f}\">\n{}</testsuites>\n",
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"servoctl\" tests=\"{}\" "
+      "failures=\"{}\" errors=\"0\" time=\"{:.3f}\">\n{}</testsuites>\n",
       tests, failures, seconds, suites);
 }
 

@@ -158,10 +158,9 @@ std::string svg_plot(std::span<const Series> series) {
   top -= kGap;
   drawing += time_axis(time, top);
   return fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
-      "height=\"{1}\" role=\"img\" aria-label=\"{2}\" font-family=\"sans-serif\" "
-      "font-size=\"12\" fill=\"#000\">\n<rect width=\"{0}\" height=\"{1}\" "
-      "fill=\"#fff\"/>\n{3}</svg>\n",
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" "
+      "role=\"img\" aria-label=\"{2}\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#000\">\n<rect "
+      "width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n{3}</svg>\n",
       kWidth, top + kTimeAxis, escaped(names), drawing);
 }
 

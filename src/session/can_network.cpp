@@ -141,9 +141,10 @@ Result<TimePoint> CanNetwork::send_sync() {
 Result<void> CanNetwork::on_report(can::ControllerReport report) {
   if (report == can::ControllerReport::bus_off) {
     last_report_.reset();
-    return fail(Errc::bus, url_ + ": " + std::string(can::text(report)),
-                "check bitrate, wiring and termination; then take the interface down and up again "
-                "(`ip link set … restart-ms 100` lets it come back by itself)");
+    return fail(
+        Errc::bus, url_ + ": " + std::string(can::text(report)),
+        "check bitrate, wiring and termination; then take the interface down and up again (`ip link set … "
+        "restart-ms 100` lets it come back by itself)");
   }
   if (report != last_report_) reports_.push_back(report);
   last_report_ = report;

@@ -147,8 +147,7 @@ Result<void> refuse_duplicate(Session& session, std::uint8_t node) {
       fmt::format("two nodes answer as node {} ({}): nothing is written to them or moved", node, by);
   error.hint = fmt::format(
       "take one of them off the bus and give it a number of its own, then `scan`; `disable -n {}` and `nmt "
-      "stop` "
-      "reach both",
+      "stop` reach both",
       node);
   return fail(std::move(error));
 }

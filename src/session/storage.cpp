@@ -123,10 +123,10 @@ Result<void> StorageScope::choose_memory() {
   if (rules.flash_switch.empty() || !value) return {};
   if (const auto done = set(rules.flash_switch, *value, memory_); !done) return done;
   if (memory_ && !keep_ && rehearsal_ == nullptr)
-    notices_.push_back(
-        fmt::format("node {}: {} is {} now, so that trials go to the RAM and are lost at power-off; --keep "
-                    "makes values stay",
-                    node_, rules.flash_switch, *value));
+    notices_.push_back(fmt::format(
+        "node {}: {} is {} now, so that trials go to the RAM and are lost at power-off; --keep makes values "
+        "stay",
+        node_, rules.flash_switch, *value));
   return {};
 }
 

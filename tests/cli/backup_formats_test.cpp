@@ -158,9 +158,10 @@ TEST_F(BackupTest, OfAnotherToolWritesSettingsOnly) {
             "[1400sub0]\nParameterName=n\nDataType=5\nAccessType=ro\n"
             "[1400sub1]\nParameterName=id\nDataType=7\nAccessType=rw\nParameterValue=$NODEID+0x200\n");
   ASSERT_EQ(run("restore %foreign.dcf --yes"), 0) << console.err_text;
-  EXPECT_NE(console.err_text.find("no settings, and left out: 0x1000:0 Device type "
-                                  "(read-only), 0x6040:0 Controlword (process data)"),
-            std::string::npos)
+  EXPECT_NE(
+      console.err_text.find(
+          "no settings, and left out: 0x1000:0 Device type (read-only), 0x6040:0 Controlword (process data)"),
+      std::string::npos)
       << console.err_text;
   EXPECT_NE(console.out_text.find("different  2"), std::string::npos) << console.out_text;
   EXPECT_EQ(run("verify %foreign.dcf"), 0) << console.out_text;

@@ -136,9 +136,11 @@ TEST_F(Units, GiveWayToWhatIsSaidAndToWhatTheDriveTells) {
             "0x2002:41 is 1\"");
   ASSERT_TRUE(jog()) << error;
   EXPECT_EQ(notices.find("kept"), std::string::npos) << notices;
-  EXPECT_NE(notices.find("a turn is 131072 increments of 6064h by what the drive's parameters are set to; "
-                         "Pn0458, Pn0456, Pn0462, Pn0464 take effect when the drive is restarted"),
-            std::string::npos)
+  EXPECT_NE(
+      notices.find(
+          "a turn is 131072 increments of 6064h by what the drive's parameters are set to; Pn0458, Pn0456, "
+          "Pn0462, Pn0464 take effect when the drive is restarted"),
+      std::string::npos)
       << notices;
   ASSERT_TRUE(jog({{"--turn", "131072"}})) << error;
   EXPECT_EQ(notices.find("restarted"), std::string::npos) << notices;
