@@ -26,7 +26,7 @@ constexpr Parameter kParameters[] = {
      .kind = Kind::choice,
      .choices = settings::kBackupFormats},
     {.name = "--only",
-     .help = "communication, pdo, params, changed (other than from the factory), or a group of parameters",
+     .help = "communication, pdo, params, changed (not at factory value), or a group of parameters",
      .kind = Kind::text},
 };
 
@@ -108,13 +108,13 @@ Result<Value> run(Context& context, const Arguments& arguments) {
 extern const Command kBackup;
 const Command kBackup{
     .path = "backup",
-    .summary = "Save the settings of a drive into a file",
+    .summary = "Save the settings of a drive to a file",
     .details =
-        "Parameters and writable objects, one a line; several nodes are read at the same time and go into a "
-        "folder, node-N.json each. What is no setting (commands, readings, targets) or is refused by the "
-        "drive is named with the reason. A file is written whole or not at all. JSON holds identity and "
-        "checksum and is what to keep; a DCF (CiA 306) goes into other tools, a table into a spreadsheet, "
-        "and a batch is command lines for `run`. `restore`, `diff` and `verify` read all of them.",
+        "Saves parameters and writable objects, one per line; several nodes are read at the same time into a "
+        "folder, as node-N.json. What is not a setting (commands, readings, targets) or is refused by the "
+        "drive is listed with the reason. A file is written whole or not at all. JSON has identity and "
+        "checksum: keep that one. A DCF (CiA 306) is for other tools, a table for a spreadsheet, a batch for "
+        "`run`. `restore`, `diff` and `verify` read all of them.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::reads,

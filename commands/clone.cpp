@@ -19,7 +19,7 @@ using report::Value;
 constexpr Parameter kParameters[] = {
     {.name = "--from", .help = "node whose settings are taken", .kind = Kind::number, .required = true},
     {.name = "--to", .help = "nodes that get them: 2,3,5-8", .kind = Kind::text, .required = true},
-    {.name = "--force", .help = "although identities differ", .kind = Kind::flag},
+    {.name = "--force", .help = "even if identities differ", .kind = Kind::flag},
     kKeepOption,
     kUnlockOption,
     kResumeOption,
@@ -32,7 +32,7 @@ Result<std::vector<std::uint8_t>> nodes_of(std::string_view text) {
     const auto first = parse_digits(part.substr(0, dash), 10);
     const auto last = dash == std::string_view::npos ? first : parse_digits(part.substr(dash + 1), 10);
     if (!first || !last || *first < canopen::kFirstNode || *last > canopen::kLastNode || *first > *last)
-      return fail(Errc::usage, fmt::format("'{}' is no node-ID (1..127)", part), "write 2, 2,3,4 or 2-4");
+      return fail(Errc::usage, fmt::format("'{}' is not a node-ID (1..127)", part), "write 2, 2,3,4 or 2-4");
     for (auto number = *first; number <= *last; ++number) {
       const auto node = static_cast<std::uint8_t>(number);
       if (std::find(out.begin(), out.end(), node) == out.end()) out.push_back(node);
@@ -84,11 +84,11 @@ Result<Value> run(Context& context, const Arguments& arguments) {
 extern const Command kClone;
 const Command kClone{
     .path = "clone",
-    .summary = "Put the settings of one drive into others",
+    .summary = "Copy the settings of one drive to others",
     .details =
-        "As backup and restore in one, with the same care: each target is checked, what differs is shown and "
-        "asked, what it held goes into before-clone-node-N.json in the present folder, and a failure puts "
-        "everything back and ends the work. Node-ID and bitrate stay; COB-IDs follow the node they go to.",
+        "Backup and restore in one, with the same care: each target is checked, the differences are shown "
+        "and confirmed, its old values go to before-clone-node-N.json in the current folder, and a failure "
+        "writes them back and stops. Node-ID and bitrate stay; COB-IDs follow the target's node-ID.",
     .parameters = kParameters,
     .needs = Needs::bus | Needs::dictionary,
     .effect = Effect::stores,

@@ -34,7 +34,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   }
   if (what == "objects" || what == "parameters") {
     if (context.profile == nullptr)
-      return fail(Errc::usage, "whose names? A drive family is needed", "add -d FAMILY; `drives` lists them");
+      return fail(Errc::usage, "a drive family is needed", "add -d FAMILY; `drives` lists them");
     if (what == "objects") return report::Value(lines(drive::names(*context.profile)));
     std::vector<std::string> ids;
     for (const auto& parameter : context.profile->parameters) ids.push_back(parameter.id);
@@ -54,7 +54,7 @@ const Command kCompletion{
     .details =
         "bash: put `source <(servoctl completion bash)` into ~/.bashrc. zsh: `servoctl completion zsh > "
         "_servoctl` in a folder of $fpath. fish: `servoctl completion fish > "
-        "~/.config/fish/completions/servoctl.fish`. An installed servoctl brings all three.",
+        "~/.config/fish/completions/servoctl.fish`. An installed servoctl includes all three.",
     .parameters = kParameters,
     .needs = Needs::nothing,
     .effect = Effect::none,

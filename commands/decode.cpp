@@ -49,14 +49,14 @@ Result<Value> run(Context& context, const Arguments& arguments) {
 extern const Command kDecode;
 const Command kDecode{
     .path = "decode",
-    .summary = "Explain a recording: PDO and SDO with names and values, NMT, EMCY",
+    .summary = "Decode a recording: PDO and SDO with names and values, NMT, EMCY",
     .details =
         "Reads what --trace or candump wrote (-L, -l, or as on a terminal, -ta -tz -tA -x -a), and .asc "
-        "logs. With -d the objects have their names, units and labels; with -n only these nodes (and frames "
-        "of the whole bus) are shown, with --service and --object only such frames. PDOs are shown by the "
-        "mapping that was read or written in the recording itself, else by the one the family leaves the "
-        "factory with. `-o jsonl` gives one document a frame. A recording in the form of candump answers "
-        "commands again as a bus: --bus replay:FILE.",
+        "logs. With -d the objects have their names, units and labels; -n limits the output to these nodes "
+        "(and frames without a node), --service and --object to such frames. PDOs are decoded by the mapping "
+        "read or written in the recording itself, else by the family's factory mapping. `-o jsonl` gives one "
+        "document per frame. A candump recording can also serve as a bus that answers commands: --bus "
+        "replay:FILE.",
     .parameters = kParameters,
     .needs = Needs::nothing,
     .effect = Effect::none,

@@ -40,13 +40,13 @@ Result<Operand> parse_operand(std::string_view word, settings::LineReader* lines
   if (word.starts_with(kNode)) {
     const auto number = parse_digits(word.substr(kNode.size()), 10);
     if (!number || *number < canopen::kFirstNode || *number > canopen::kLastNode)
-      return fail(Errc::usage, fmt::format("'{}' is no node", word), "write node:1 to node:127");
+      return fail(Errc::usage, fmt::format("'{}' is not a node", word), "write node:1 to node:127");
     out.node = static_cast<std::uint8_t>(*number);
     return out;
   }
   auto source = settings::open_backup(word, lines);
   if (!source) {
-    if (parse_digits(word, 10)) source.error().hint = fmt::format("a drive is named {}{}", kNode, word);
+    if (parse_digits(word, 10)) source.error().hint = fmt::format("write a drive as {}{}", kNode, word);
     return fail(source.error());
   }
   out.source = std::move(*source);
@@ -106,7 +106,7 @@ class Difference {
     const auto needy = std::find_if(operands_.begin(), operands_.end(),
                                     [](const Operand& operand) { return !operand.source; });
     if (profile_ != nullptr || needy == operands_.end()) return {};
-    return fail(Errc::usage, fmt::format("{}: of which family?", needy->word),
+    return fail(Errc::usage, fmt::format("{}: which family?", needy->word),
                 "add -d FAMILY; `drives` lists families");
   }
 
@@ -134,7 +134,7 @@ class Difference {
     }
     if (!family_.empty() && family_ != backup->family)
       return fail(Errc::negative,
-                  fmt::format("{} is of {}, {} of {}: they have nothing to compare", operands_[1 - i].word,
+                  fmt::format("{} is for {}, {} for {}: they cannot be compared", operands_[1 - i].word,
                               family_, operands_[i].word, backup->family));
     family_ = backup->family;
     return settings::side_of(*backup, operands_[i].word);
@@ -145,8 +145,8 @@ class Difference {
     const auto& operand = operands_[i];
     if (!family_.empty() && family_ != profile_->family)
       return fail(Errc::refused,
-                  fmt::format("{} is of {}, not of {}", operands_[1 - i].word, family_, profile_->family),
-                  "name the family of the backup with -d when the drive really is one");
+                  fmt::format("{} is for {}, not for {}", operands_[1 - i].word, family_, profile_->family),
+                  "give the backup's family with -d if the drive really is one");
     if (context_->front_end == nullptr)
       return fail(Errc::usage, fmt::format("{}: there is no bus to open here", operand.word));
     const auto session = context_->front_end->open_bus();
@@ -185,7 +185,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   }
   const bool batch = arguments.has("--batch");
   if (operands[0].source && operands[1].source && are_data_sheets(*operands[0].source, *operands[1].source))
-    return batch ? fail(Errc::usage, "two data sheets (EDS) have no settings that lines could write",
+    return batch ? fail(Errc::usage, "two data sheets (EDS) contain no settings to write",
                         "leave --batch out to compare their dictionaries")
                  : settings::compare_data_sheets(context, *operands[0].source, *operands[1].source);
   return Difference(context, std::move(operands), arguments.has("--skip-invalid")).run(batch);
@@ -199,13 +199,13 @@ const Command kDiff{
     .summary = "Compare backups, drives, factory values and data sheets",
     .details =
         "Two of: a file (any format `restore` takes), node:N for a drive on the bus, `factory` for the "
-        "defaults of the family's data. Shows every value that differs, with unit and label; exit code 1 "
-        "when there is one. COB-IDs and the node-ID are compared as each node's own. Values whose default "
-        "the manual does not state are not compared with `factory`. --batch prints the command lines that "
-        "turn A into B instead: `diff factory node:1 --batch` is all that was set on a drive. Two data "
-        "sheets (EDS; or an EDS and a DCF) are compared entry by entry: name, type, access, mapping, default "
-        "and limits. A file of another form with an entry that cannot be used is refused; --skip-invalid "
-        "compares the rest.",
+        "defaults of the family's data. Shows every value that differs, with unit and label; exit code 1 if "
+        "any does. COB-IDs and the node-ID are compared relative to each node. Values whose default the "
+        "manual does not state are not compared with `factory`. --batch prints the command lines that turn A "
+        "into B instead: `diff factory node:1 --batch` lists everything set on a drive. Two data sheets "
+        "(EDS; or an EDS and a DCF) are compared entry by entry: name, type, access, mapping, default and "
+        "limits. A file in another format is refused if it has an unusable entry; --skip-invalid compares "
+        "the rest.",
     .parameters = kParameters,
     .needs = Needs::nothing,
     .effect = Effect::reads,

@@ -32,9 +32,9 @@ void tell(Context& context, std::uint8_t node, const motion::PowerDownResult& do
   if (energised)
     context.notices.push_back(
         done.statusword
-            ? fmt::format("node {} is still energised: {}; `disable` takes its power away", node,
+            ? fmt::format("node {} is still energised: {}; `disable` de-energises it", node,
                           drive::name(done.state()))
-            : fmt::format("WHETHER NODE {} IS ENERGISED IS NOT KNOWN: TAKE THE POWER AWAY", node));
+            : fmt::format("NODE {} MAY BE ENERGISED, STATE UNKNOWN: SWITCH OFF THE SUPPLY", node));
 }
 
 Value planned(const Context& context, motion::PowerAim aim) {
@@ -71,12 +71,12 @@ Result<Value> run_quick_stop(Context& context, const Arguments&) {
 extern const Command kDisable;
 const Command kDisable{
     .path = "disable",
-    .summary = "Take the power of a motor away",
+    .summary = "De-energise (disable) a drive",
     .details =
-        "Controlwords 07h and 00h to all nodes at the same time; asks nothing. 00h is written in every "
-        "state, also in a fault. A motor that turns coasts, or ramps down where the drive does that by "
-        "605Ch; `quick-stop` stops it first. A drive that does not obey or does not answer is tried by NMT "
-        "as well (pre-operational). The answer is the state read afterwards.",
+        "Sends controlwords 07h and 00h to all nodes at the same time, without asking. 00h is written in "
+        "every state, even Fault. A turning motor coasts, or ramps down if 605Ch says so; use `quick-stop` "
+        "first to stop it. A drive that does not obey or answer is also sent NMT pre-operational. The result "
+        "is the state read afterwards.",
     .parameters = {},
     .needs = Needs::node,
     .effect = Effect::writes,
@@ -87,10 +87,10 @@ const Command kDisable{
 extern const Command kQuickStopCommand;
 const Command kQuickStopCommand{
     .path = "quick-stop",
-    .summary = "Stop a motor as fast as it can",
+    .summary = "Stop a motor by quick stop",
     .details =
-        "Controlword 02h to all nodes before any answer is waited for; asks nothing. What a drive does after "
-        "it has stopped is set by 605Ah: some stay energised, and the answer says so.",
+        "Sends controlword 02h to all nodes before waiting for any answer, without asking. 605Ah sets what a "
+        "drive does once stopped: some stay energised, and the result says so.",
     .parameters = {},
     .needs = Needs::node,
     .effect = Effect::writes,

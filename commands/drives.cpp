@@ -36,8 +36,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   if (table.rows.empty()) {
     std::string folders;
     for (const auto& folder : context.drive_folders) append(folders, folder.string());
-    return fail(Errc::file, "no drive data was found in " + folders,
-                "set SERVOCTL_DRIVES to the folder that holds it");
+    return fail(Errc::file, "no drive data was found in " + folders, "set SERVOCTL_DRIVES to its folder");
   }
   return report::Value(std::move(table));
 }
@@ -49,7 +48,7 @@ const Command kDrives{
     .path = "drives",
     .summary = "List the drive families servoctl knows, or the rules of one",
     .details =
-        "Families of your own go into ~/.config/servoctl/drives or a folder of $SERVOCTL_DRIVES "
+        "Put your own families into ~/.config/servoctl/drives or a folder in $SERVOCTL_DRIVES "
         "(docs/drive-data.md).",
     .parameters = kParameters,
     .needs = Needs::nothing,

@@ -39,7 +39,7 @@ std::string standard_input() {
 Result<std::string> text_of(const Context& context, const std::string& path) {
   if (path != kStandardInput) return read_file(path, od::kMostEdsBytes);
   if (context.stays_open)
-    return fail(Errc::usage, "standard input holds the command lines, and nothing for this one",
+    return fail(Errc::usage, "standard input contains the command lines, and no file for this one",
                 "name a file");
   return standard_input();
 }
@@ -119,10 +119,10 @@ const Command kEdsCheck{
     .path = "eds check",
     .summary = "Check EDS and DCF files against CiA 306",
     .details =
-        "Every finding has line, section, key, rule and remedy, and says what is taken. Exit code 1 when "
-        "there are errors; warnings alone are fine. A file that cannot be read stands in the list with its "
-        "error; of several files the worst makes the exit code. `-` reads standard input to its end: in a "
-        "pipe of command lines, what follows the line.",
+        "Every finding gives line, section, key, rule and remedy, and what is used instead. Exit code 1 if "
+        "there are errors; warnings alone are fine. A file that cannot be read is listed with its error; of "
+        "several files the worst sets the exit code. `-` reads standard input to its end: in a pipe of "
+        "command lines, what follows this line.",
     .parameters = kParameters,
     .needs = Needs::nothing,
     .effect = Effect::none,

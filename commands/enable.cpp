@@ -43,7 +43,7 @@ Result<void> enable_one(Context& context, motion::Motion& motion, session::Rehea
   const auto mode = motion::read_mode(*context.session, motion.node());
   if (!mode) return fail(mode.error());
   const auto question = fmt::format(
-      "Energise node {} and leave it so, in mode {}? Nothing will watch over it, and the motor may move.",
+      "Energise node {} in mode {} and leave it so? It will not be supervised, and the motor may move.",
       motion.node(), motion::mode_text(*context.profile, *mode, context.chinese));
   if (const auto answer = context.confirm(question); !answer) return fail(answer.error());
   return energise(context, motion, rehearsal);
@@ -79,8 +79,8 @@ Result<Value> run(Context& context, const Arguments& arguments) {
     if (done && state && *state != drive::DriveState::operation_enabled)
       done = fail(session::drive_error(
           Errc::negative, node,
-          fmt::format("was enabled and did not stay so: it is in {}", drive::name(*state)),
-          "`status` and `fault show` tell more; `disable` it before anything else"));
+          fmt::format("was enabled but did not stay so: it is in {}", drive::name(*state)),
+          "see `status` and `fault show`; `disable` it before anything else"));
     if (!done) context.errors.push_back(done.error());
     table.rows.push_back({node, state ? Value(drive::name(*state)) : Value(),
                           state ? Value(drive::is_energised(*state)) : Value(),
@@ -99,10 +99,10 @@ const Command kEnable{
     .path = "enable",
     .summary = "Energise a drive and leave it enabled",
     .details =
-        "Shows what there is to know before, asks, sets the targets so that nothing moves (60FFh and 6071h "
-        "to 0, 607Ah to where it stands), and goes to \"operation enabled\" by controlwords 06h, 07h, 0Fh, "
-        "waiting in every state. The drive stays energised when servoctl ends: `disable` takes the power "
-        "away. `jog` and `move` enable and disable by themselves.",
+        "Shows the preflight checks, asks, sets the targets so that nothing moves (60FFh and 6071h to 0, "
+        "607Ah to the actual position), and goes to \"operation enabled\" by controlwords 06h, 07h, 0Fh, "
+        "waiting for each state. The drive stays energised when servoctl ends: `disable` de-energises it. "
+        "`jog` and `move` enable and disable by themselves.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,

@@ -29,7 +29,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   for (const auto& fault : context.profile->faults)
     if (wanted(fault, pattern)) found.push_back(&fault);
   if (found.empty())
-    return fail(Errc::negative, fmt::format("no fault of {} fits '{}'", context.profile->family, pattern),
+    return fail(Errc::negative, fmt::format("no fault of {} matches '{}'", context.profile->family, pattern),
                 "`fault list` shows all");
   if (found.size() > show::kFewFaults) return report::Value(show::fault_table(found, context.chinese));
   report::List out;
@@ -44,8 +44,8 @@ const Command kFaultList{
     .path = "fault list",
     .summary = "List the faults and warnings of a drive family",
     .details =
-        "Works without a bus. The code is the one of object 603Fh and of emergency messages. `?` marks what "
-        "the manual does not state, `!` what it states in more than one way; --json names the lines.",
+        "Works without a bus. The code is that of object 603Fh and of emergency messages. `?` marks what the "
+        "manual does not state, `!` what it states inconsistently; --json gives the line numbers.",
     .parameters = kParameters,
     .needs = Needs::dictionary,
     .effect = Effect::none,

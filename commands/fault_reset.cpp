@@ -39,7 +39,7 @@ Value planned_resets(Context& context) {
       continue;
     }
     if (planned->empty())
-      context.notices.push_back(fmt::format("node {} is in no fault: nothing would be sent", node));
+      context.notices.push_back(fmt::format("node {} is not in Fault: nothing would be sent", node));
     messages.insert(messages.end(), planned->begin(), planned->end());
   }
   return show::planned_messages(context, messages);
@@ -47,7 +47,7 @@ Value planned_resets(Context& context) {
 
 Result<Value> run_reset(Context& context, const Arguments&) {
   if (context.dry_run) return planned_resets(context);
-  const auto question = fmt::format("Reset the fault of {}? Its cause must be gone.", whom(context));
+  const auto question = fmt::format("Reset the fault of {}? The cause must be gone.", whom(context));
   if (const auto answer = context.confirm(question); !answer) return fail(answer.error());
   auto table = result_table();
   for (const auto node : context.nodes) {
@@ -96,8 +96,8 @@ const Command kFaultReset{
     .path = "fault reset",
     .summary = "Reset the fault of a drive",
     .details =
-        "Writes to a drive in fault only: controlword 0000h, 0080h, 0000h, none of which can enable it, and "
-        "where the family has another way, that one after it. Exit code 1 when the fault stays.",
+        "Only for a drive in state Fault: writes controlword 0000h, 0080h, 0000h, none of which can enable "
+        "it, then uses the family's own method if it has one. Exit code 1 if the fault remains.",
     .parameters = {},
     .needs = Needs::node,
     .effect = Effect::resets,

@@ -7,12 +7,12 @@ namespace {
 using namespace command;
 
 constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
-    {.name = "method", .help = "number or name of 6098h; the drive's own unless said", .kind = Kind::value},
-    {.name = "--speed", .help = "speed to the switch (6099h:01)", .kind = Kind::value},
+    {.name = "method", .help = "number or name in 6098h (default: the present one)", .kind = Kind::value},
+    {.name = "--speed", .help = "switch search speed (6099h:01)", .kind = Kind::value},
     {.name = "--search", .help = "speed of the search for zero (6099h:02)", .kind = Kind::value},
-    {.name = "--offset", .help = "position of the home point (607Ch)", .kind = Kind::value},
+    {.name = "--offset", .help = "home offset (607Ch)", .kind = Kind::value},
     {.name = "--within",
-     .help = "longest time it may take (by --window and speed, else 60s)",
+     .help = "timeout (default: from --window and speed, else 60s)",
      .kind = Kind::duration},
     kCsvOption,
 }));
@@ -38,10 +38,10 @@ const Command kHome{
     .path = "home",
     .summary = "Find the home position",
     .details =
-        "Homing mode with the family's own start sequence, watched and ended like `jog`. A drive that says "
-        "\"homed\" from an earlier run is not believed: the bits must go and come back. Method, speeds and "
-        "offset are put back afterwards; the home position stays. Example: `home 35 -n 1`, `home 1 --speed "
-        "30rpm --search 6rpm -n 1`.",
+        "Homing mode with the family's own start sequence, supervised and ended like `jog`. \"Homing "
+        "attained\" left from an earlier run does not count: the bits must clear and set again. Method, "
+        "speeds and offset are restored afterwards; the home position stays. Example: `home 35 -n 1`, `home "
+        "1 --speed 30rpm --search 6rpm -n 1`.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,

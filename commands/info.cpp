@@ -61,9 +61,10 @@ Value one(const session::Identity& node, std::span<const drive::Family> families
     out.push_back({"family", profile->family, report::Show::json});
   } else {
     const auto text = show::guess_text(guesses);
-    out.push_back({"family",
-                   text.empty() ? Value("none fits") : Value(text + "  (a guess, no proof: say -d FAMILY)"),
-                   report::Show::text});
+    out.push_back(
+        {"family",
+         text.empty() ? Value("none matches") : Value(text + "  (a guess, not proof: use -d FAMILY)"),
+         report::Show::text});
   }
   report::List all;
   for (const auto& guess : guesses)
@@ -115,9 +116,8 @@ const Command kInfo{
     .path = "info",
     .summary = "Show the identity of a node",
     .details =
-        "Reads device type, name, versions, identity, error register, heartbeat time and supported modes. "
-        "Where they contradict the family that is named with -d, it says so with exit code 8 and names those "
-        "that fit.",
+        "Reads device type, name, versions, identity, error register, heartbeat time and supported modes. If "
+        "they contradict the family given with -d, it lists the families that fit and ends with exit code 8.",
     .parameters = {},
     .needs = Needs::node,
     .effect = Effect::reads,

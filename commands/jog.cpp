@@ -15,10 +15,9 @@ constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
      .kind = Kind::value,
      .required = true},
     {.name = "--for", .help = "how long", .kind = Kind::duration},
-    {.name = "--turns", .help = "how many turns of the motor", .kind = Kind::number},
+    {.name = "--turns", .help = "how many motor revolutions", .kind = Kind::number},
     {.name = "--until-key",
-     .help =
-         "while an arrow key is held; any other key ends, and so do 5 s without one (default on a terminal)",
+     .help = "while an arrow key is held; any other key, or 5 s without one, ends it (default on a terminal)",
      .kind = Kind::flag},
     kAccelerationOption,
     kCsvOption,
@@ -67,11 +66,11 @@ Result<motion::Jog> parse_jog(const Arguments& arguments) {
   if (arguments.has("--turns")) {
     jog.turns = parse_real(arguments.text("--turns"));
     if (!jog.turns || *jog.turns <= 0)
-      return fail(Errc::usage, fmt::format("'{}' is no number of turns", arguments.text("--turns")),
+      return fail(Errc::usage, fmt::format("'{}' is not a number of turns", arguments.text("--turns")),
                   "write 3 or 0.5; the sign of the speed is the direction");
   }
   if (int{jog.length.has_value()} + int{jog.turns.has_value()} + int{arguments.has("--until-key")} > 1)
-    return fail(Errc::usage, "--for, --turns and --until-key are three ways to end; give one");
+    return fail(Errc::usage, "--for, --turns and --until-key exclude each other; give one");
   return jog;
 }
 
@@ -79,7 +78,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   auto jog = parse_jog(arguments);
   if (!jog) return fail(jog.error());
   const bool by_key = !jog->length && !jog->turns;
-  const auto missing = fail(Errc::usage, "how long?", "add --for 2s or --turns 3; keys need a terminal");
+  const auto missing = fail(Errc::usage, "how long?", "add --for 2s or --turns 3; key jog needs a terminal");
   motion::MotionRun motion;
   motion.plan = [&](motion::Motion& m) { return motion::plan_jog(m, *jog); };
   motion.run = [&](motion::Motion& m, const motion::MotionPlan& plan) {
@@ -87,8 +86,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
       auto keys = context.front_end->open_keys();
       if (keys == nullptr) return m.finish(missing);
       context.tell(
-          "hold right or up to turn, left or down to turn back; any other key ends, and so do 5 s without "
-          "one\n");
+          "hold right or up to turn, left or down to turn back; any other key, or 5 s without one, ends it\n");
       auto held = std::make_shared<HeldKey>(std::move(keys), m.session());
       jog->keys = [held] { return (*held)(); };
     }
@@ -111,15 +109,15 @@ const Command kJog{
     .path = "jog",
     .summary = "Turn a motor at a speed, for a time, some turns, or while a key is held",
     .details =
-        "Looks at the drive first and shows what there is to know, asks, then enables the drive in its "
-        "velocity mode, turns, stops and disables it, and puts everything back that it changed; on every way "
-        "out, Ctrl-C and lost connections among them. Above 300 rpm, or the rated speed where that is less "
-        "(or a tenth of the drive's own limit, where its unit is not known), --limit is needed. Ramps take "
-        "half a second unless --accel says otherwise. It ends at once when the drive reports an emergency, "
-        "does not answer, turns the wrong way or not at all, or passes a limit given. Where the drive has a "
-        "heartbeat consumer (1016h), it watches servoctl meanwhile and stops by itself 0.5 s after the last "
-        "heartbeat. Positions, speeds, torques are shown on the way; -o jsonl has every sample. Examples: "
-        "`jog 60rpm --for 2s -n 1`, `jog -30rpm --turns 3 -n 1 --yes`.",
+        "Checks the drive and shows the result, asks, then enables the drive in its velocity mode, turns, "
+        "stops and disables it, and restores everything it changed, however it ends, including Ctrl-C and "
+        "lost connections. --limit is needed above 300 rpm, or above the rated speed if that is lower (or "
+        "above a tenth of the drive's own limit, where counts cannot be converted to rpm). Ramps take 0.5 s "
+        "by default. It stops at once if the drive sends an emergency, does not answer, turns the wrong way "
+        "or not at all, or exceeds a limit given. A drive with a heartbeat consumer (1016h) watches servoctl "
+        "meanwhile and stops by itself 0.5 s after the last heartbeat. Position, speed and torque are shown "
+        "during the motion; -o jsonl has every sample. Examples: `jog 60rpm --for 2s -n 1`, `jog -30rpm "
+        "--turns 3 -n 1 --yes`.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,

@@ -19,7 +19,7 @@ using report::Value;
 
 constexpr Parameter kParameters[] = {
     {.name = "mode",
-     .help = "number or name (pp, pv, hm …); shows the present one unless said",
+     .help = "number or name (pp, pv, hm …); without it, shows the present mode",
      .kind = Kind::value},
 };
 
@@ -34,9 +34,9 @@ Result<std::int8_t> parse_mode(const drive::Profile& profile, std::string_view t
     for (const auto& label : *meaning.labels)
       for (const auto word : drive::label_words(label.label)) offered.emplace_back(word);
   const auto near = did_you_mean(text, offered);
-  return fail(Errc::usage, fmt::format("'{}' is no mode of this family", text),
+  return fail(Errc::usage, fmt::format("'{}' is not a mode of this family", text),
               !near.empty()     ? near
-              : offered.empty() ? std::string("write its number: 1 to 10 are those of CiA 402")
+              : offered.empty() ? std::string("write its number: 1 to 10 are the CiA 402 modes")
                                 : std::string("`objects 0x6060` lists them"));
 }
 
@@ -54,10 +54,10 @@ Result<void> check_change(Context& context, const Wanted& wanted) {
   const auto state = power.state();
   if (!state) return fail(state.error());
   if (!drive::is_energised(*state)) return {};
-  return fail(session::drive_error(
-      Errc::refused, wanted.node,
-      fmt::format("is energised ({}): a new mode could move it at once", drive::name(*state)),
-      "`disable` it first"));
+  return fail(
+      session::drive_error(Errc::refused, wanted.node,
+                           fmt::format("is energised ({}): a mode change may move it", drive::name(*state)),
+                           "`disable` it first"));
 }
 
 Result<void> change(Context& context, const Wanted& wanted) {
@@ -114,9 +114,9 @@ const Command kMode{
     .path = "mode",
     .summary = "Show or set the mode of operation (6060h)",
     .details =
-        "Names are the family's own: `mode pv`, `mode \"Profile velocity\"`, `mode 3`. Refused when the "
-        "family or the drive (6502h) does not have the mode, and while the drive is energised. Waits until "
-        "6061h follows.",
+        "Names are the family's own: `mode pv`, `mode \"Profile velocity\"`, `mode 3`. Refused if the family "
+        "or the drive (6502h) does not support the mode, and while the drive is energised. Waits until 6061h "
+        "shows it.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::writes,

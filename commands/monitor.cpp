@@ -28,7 +28,7 @@ constexpr Parameter kParameters[] = {
     kObjectOption,
     {.name = "--ask", .help = "first read the PDO mapping of the nodes given by -n", .kind = Kind::flag},
     {.name = "--bitrate",
-     .help = "bitrate for the load of the bus, where the interface does not tell it: 500k",
+     .help = "bitrate for the bus load, if the interface does not give it: 500k",
      .kind = Kind::text},
     {.name = "--raw", .help = "show the frames as well", .kind = Kind::flag},
 };
@@ -43,7 +43,7 @@ Result<std::uint32_t> bitrate_option(const Arguments& arguments) {
   if (factor > 1) text.remove_suffix(1);
   const auto number = parse_digits(text, 10);
   if (!number || *number == 0 || *number > 1'000'000 || *number * factor > 1'000'000)
-    return fail(Errc::usage, fmt::format("'{}' is no bitrate", arguments.text("--bitrate")),
+    return fail(Errc::usage, fmt::format("'{}' is not a bitrate", arguments.text("--bitrate")),
                 "write 125k, 250k, 500k or 1M; CANopen has at most 1 Mbit/s");
   return static_cast<std::uint32_t>(*number * factor);
 }
@@ -51,7 +51,7 @@ Result<std::uint32_t> bitrate_option(const Arguments& arguments) {
 /// Puts the PDOs of the nodes into the book as the drives tell them.
 Result<void> ask_mappings(Context& context, show::PdoBook& book) {
   if (context.nodes.empty() || context.nodes.front() == 0)
-    return fail(Errc::usage, "--ask needs to know which nodes", "add -n 1 or a list");
+    return fail(Errc::usage, "--ask needs a list of nodes", "add -n 1 or a list");
   auto answers = session::read_pdo_values(*context.session, context.profile, context.nodes);
   for (std::size_t i = 0; i < answers.size(); ++i) {
     if (!answers[i]) return fail(answers[i].error());
@@ -156,13 +156,13 @@ const Command kMonitor{
     .path = "monitor",
     .summary = "Show everything on the bus as it happens, with names and values",
     .details =
-        "One line a frame: NMT, SYNC, TIME, EMCY in the family's words, PDOs with the objects they carry, "
-        "SDO with names, values and aborts, heartbeats, boot-ups, node guarding; and an ALARM when a node's "
-        "heartbeat ends. It sends nothing unless told to: with --ask the PDO mapping of the nodes given by "
-        "-n is read first, else PDOs are shown by the mapping that is written or read on the bus meanwhile, "
-        "or by the one the family (-d) leaves the factory with. At the end (--for, or Ctrl-C) it tells how "
-        "many frames there were, and the load of the bus where the interface or --bitrate tells the bitrate. "
-        "`-o jsonl` gives one document a frame.",
+        "One line per frame: NMT, SYNC, TIME, EMCY in the family's words, PDOs with the objects they carry, "
+        "SDO with names, values and aborts, heartbeats, boot-ups, node guarding; and an ALARM if a node's "
+        "heartbeat stops. It sends nothing, except with --ask: then it first reads the PDO mapping of the "
+        "nodes given by -n. Otherwise PDOs are decoded by a mapping seen on the bus meanwhile, or by the "
+        "family's (-d) factory mapping. At the end (--for, or Ctrl-C) it shows the number of frames, and the "
+        "bus load if the bitrate is known from the interface or --bitrate. `-o jsonl` gives one document per "
+        "frame.",
     .parameters = kParameters,
     .needs = Needs::can,
     .effect = Effect::reads,

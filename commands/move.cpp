@@ -11,9 +11,9 @@ constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
      .help = "90deg, 2rev, or the drive's own counts",
      .kind = Kind::value,
      .required = true},
-    {.name = "--relative", .help = "counted from where it stands", .kind = Kind::flag},
+    {.name = "--relative", .help = "relative to the actual position", .kind = Kind::flag},
     {.name = "--speed",
-     .help = "speed of the move (a fifth of the safe speed unless said)",
+     .help = "speed of the move (default: a fifth of the speed limit)",
      .kind = Kind::value},
     kAccelerationOption,
     kCsvOption,
@@ -36,10 +36,10 @@ const Command kMove{
     .path = "move",
     .summary = "Go to a position",
     .details =
-        "Profile position with the set-point handshake, watched and ended like `jog`. The motion counts as "
-        "done when the drive reports the target reached, stands still, and is where it was sent; a way that "
-        "the drive's counts cannot say to 1 % is refused. Afterwards it is without power and holds nothing. "
-        "Example: `move 90deg --speed 30rpm -n 1`.",
+        "Profile position mode with the set-point handshake, supervised and ended like `jog`. The move is "
+        "done when the drive reports target reached, is at standstill, and is at the target position; a "
+        "distance that the drive's counts cannot represent to 1 % is refused. Afterwards the drive is "
+        "disabled: the motor does not hold its position. Example: `move 90deg --speed 30rpm -n 1`.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,

@@ -71,18 +71,18 @@ Error unconfirmed(const Before& before, NmtCommand command, const Heartbeats& he
   error.code = Errc::timeout;
   error.node = before.node;
   error.message =
-      fmt::format("node {}: '{}' was sent, nothing confirms it", before.node, canopen::name(command));
+      fmt::format("node {}: '{}' was sent but not confirmed", before.node, canopen::name(command));
   const auto& silent = heartbeats.silent;
   if (is_reset(command))
     error.hint =
-        "no boot-up message came: it may restart under another node-ID or bitrate; `scan` shows who is there";
+        "no boot-up message: it may have restarted with another node-ID or bitrate; `scan` shows who answers";
   else if (std::find(silent.begin(), silent.end(), before.node) != silent.end())
     error.hint =
         fmt::format("the node sends no heartbeat: `write 0x1017 500 -n {}` switches it on", before.node);
   else if (watch.heartbeats(before.node) > before.heartbeats)
-    error.hint = "its heartbeats still tell another state";
+    error.hint = "its heartbeats still show another state";
   else
-    error.hint = "no heartbeat came; `read 0x1017` tells whether it sends any, unless it is stopped";
+    error.hint = "no heartbeat came; unless it is stopped, `read 0x1017` shows whether it sends any";
   return error;
 }
 
@@ -101,11 +101,10 @@ report::Table result_table(Context& context, std::span<const Before> before, Nmt
 
 /// What a user may have set a moment ago, and a drive loses.
 constexpr std::string_view kSetAndNotStored =
-    "PDOs, COB-IDs, heartbeats (1017h) and watched producers (1016h, the watchdog) that were set and not "
-    "stored";
+    "unstored changes of PDOs, COB-IDs, heartbeat (1017h) and heartbeat consumers (1016h, the watchdog)";
 
 std::string communication_goes() {
-  return fmt::format("by CiA 301, 1000h to 1FFFh go back to what they are after power-on: {} are lost",
+  return fmt::format("by CiA 301, 1000h to 1FFFh go back to their power-on values: {} are lost",
                      kSetAndNotStored);
 }
 
@@ -117,7 +116,7 @@ std::string whom(std::span<const std::uint8_t> nodes) {
 /// What is to be answered before a reset.
 std::string question(std::span<const std::uint8_t> nodes, NmtCommand command) {
   if (command == NmtCommand::reset_node)
-    return fmt::format("Reset {}? Drives restart and a moving axis loses its control.", whom(nodes));
+    return fmt::format("Reset {}? Drives restart; a moving axis loses control.", whom(nodes));
   return fmt::format(
       "Reset the communication of {}? PDOs and heartbeats pause, so a moving axis may lose its control; {}.",
       whom(nodes), communication_goes());
@@ -129,8 +128,8 @@ void tell_reset(Context& context, std::span<const Before> before, bool waited) {
   for (const auto& entry : before)
     if (waited && confirmed(*context.session, entry, NmtCommand::reset_communication))
       context.notices.push_back(
-          fmt::format("node {}: by CiA 301, 1000h to 1FFFh are now as after power-on: {} are gone",
-                      entry.node, kSetAndNotStored));
+          fmt::format("node {}: 1000h to 1FFFh now have power-on values (CiA 301): {} are lost", entry.node,
+                      kSetAndNotStored));
     else
       unseen = true;
   if (unseen) context.notices.push_back(communication_goes());
@@ -150,7 +149,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments, NmtComma
   const bool all = context.nodes.front() == 0;
   const bool wait = arguments.has("--wait");
   if (wait && all)
-    return fail(Errc::usage, "--wait needs node-IDs: `all` does not say whose answer to wait for",
+    return fail(Errc::usage, "--wait needs node-IDs: `all` does not say which nodes must answer",
                 "for example -n 1,2,3");
   if (is_reset(command))
     if (const auto answer = context.confirm(question(context.nodes, command)); !answer)
@@ -191,26 +190,26 @@ Result<report::Value> run_command(Context& context, const Arguments& arguments) 
 }
 
 constexpr std::string_view kDetails =
-    "The command is sent once and is not answered by nodes. With --wait it counts as done when a heartbeat "
-    "confirms it; exit code 4 when nothing does. `-n all` addresses every node.";
+    "The command is sent once; nodes do not answer it. With --wait it is done when a heartbeat confirms it; "
+    "exit code 4 if none does. `-n all` addresses every node.";
 
 constexpr std::string_view kResetDetails =
-    "The node restarts as if it had been switched off and on: what was set and neither stored (`store`) nor "
-    "kept (--keep) is gone. With --wait it counts as done when the boot-up message confirms it; exit code 4 "
-    "when none comes. `-n all` addresses every node.";
+    "The node restarts as after power-on: settings neither stored (`store`) nor kept (--keep) are lost. With "
+    "--wait it is done when the boot-up message confirms it; exit code 4 if none comes. `-n all` addresses "
+    "every node.";
 
 constexpr std::string_view kResetCommDetails =
-    "By CiA 301 the node gives 1000h to 1FFFh the values they have after power-on and leaves everything else "
-    "as it is: PDOs, COB-IDs, its heartbeat (1017h) and whom it watches (1016h) go back to what is stored. "
-    "With --wait it counts as done when the boot-up message confirms it; exit code 4 when none comes. `-n "
-    "all` addresses every node.";
+    "By CiA 301 the node resets 1000h to 1FFFh to their power-on values and leaves everything else "
+    "unchanged: PDOs, COB-IDs, its heartbeat (1017h) and heartbeat consumers (1016h) go back to what is "
+    "stored. With --wait it counts as done when the boot-up message confirms it; exit code 4 when none "
+    "comes. `-n all` addresses every node.";
 
 }  // namespace
 
 extern const Command kNmtStart;
 const Command kNmtStart{
     .path = "nmt start",
-    .summary = "Put nodes into operational: PDOs flow",
+    .summary = "Set nodes to operational: PDOs active",
     .details = kDetails,
     .parameters = kParameters,
     .needs = Needs::node | Needs::can,
@@ -223,7 +222,7 @@ const Command kNmtStart{
 extern const Command kNmtStop;
 const Command kNmtStop{
     .path = "nmt stop",
-    .summary = "Put nodes into stopped: neither PDO nor SDO",
+    .summary = "Set nodes to stopped: no PDO, no SDO",
     .details = kDetails,
     .parameters = kParameters,
     .needs = Needs::node | Needs::can,
@@ -236,7 +235,7 @@ const Command kNmtStop{
 extern const Command kNmtPreop;
 const Command kNmtPreop{
     .path = "nmt preop",
-    .summary = "Put nodes into pre-operational: SDO, no PDO",
+    .summary = "Set nodes to pre-operational: SDO, no PDO",
     .details = kDetails,
     .parameters = kParameters,
     .needs = Needs::node | Needs::can,
@@ -250,7 +249,7 @@ const Command kNmtPreop{
 extern const Command kNmtReset;
 const Command kNmtReset{
     .path = "nmt reset",
-    .summary = "Restart nodes (reset node); asks first",
+    .summary = "Restart nodes (NMT reset node); asks first",
     .details = kResetDetails,
     .parameters = kParameters,
     .needs = Needs::node | Needs::can,
@@ -263,7 +262,7 @@ const Command kNmtReset{
 extern const Command kNmtResetComm;
 const Command kNmtResetComm{
     .path = "nmt reset-comm",
-    .summary = "Restart the communication of nodes; asks first",
+    .summary = "Reset communication of nodes (NMT); asks first",
     .details = kResetCommDetails,
     .parameters = kParameters,
     .needs = Needs::node | Needs::can,

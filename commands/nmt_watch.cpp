@@ -24,9 +24,9 @@ constexpr Duration kSlice = std::chrono::milliseconds(100);
 
 constexpr Parameter kParameters[] = {
     kForOption,
-    {.name = "--guard", .help = "ask by node guarding, once in this time", .kind = Kind::duration},
+    {.name = "--guard", .help = "use node guarding, with this guard time", .kind = Kind::duration},
     {.name = "--life",
-     .help = "lost after so many guard times without answer (default 3)",
+     .help = "life time factor: guard times without answer (default 3)",
      .kind = Kind::number},
 };
 
@@ -46,11 +46,10 @@ Result<Plan> plan_of(const Arguments& arguments) {
   plan.guard_time = *guard_time;
   if (!arguments.has("--life")) return plan;
   if (!plan.guard_time)
-    return fail(Errc::usage, "--life is of node guarding: without --guard nothing is guarded",
-                "--guard 100ms --life 3");
+    return fail(Errc::usage, "--life is for node guarding only: it needs --guard", "--guard 100ms --life 3");
   const auto life = parse_digits(arguments.text("--life"), 10);
   if (!life || *life < 1 || *life > 255)
-    return fail(Errc::usage, fmt::format("'{}' is no life time factor", arguments.text("--life")),
+    return fail(Errc::usage, fmt::format("'{}' is not a life time factor", arguments.text("--life")),
                 "write 1..255");
   plan.life_factor = static_cast<std::uint32_t>(*life);
   return plan;
@@ -182,7 +181,7 @@ class Log {
     Error error;
     error.code = Errc::negative;
     error.node = row.node;
-    error.hint = "ask it by --guard 1s";
+    error.hint = "try --guard 1s";
     if (row.lost > 0 && context_->session->can()->watch().state(row.node)) {
       error.message = fmt::format("was lost {} time{}", row.lost, row.lost == 1 ? "" : "s");
       error.hint.clear();
@@ -191,16 +190,16 @@ class Log {
     } else if (row.told && *row.told) {
       const auto period = load_le(**row.told) & 0xFFFFU;
       error.message = period == 0 ? "sends no heartbeat"
-                                  : fmt::format("no heartbeat came, although 1017h says {} ms", period);
+                                  : fmt::format("no heartbeat came, although 1017h is {} ms", period);
       if (period == 0)
         error.hint =
             fmt::format("`write 0x1017 500 -n {}` switches it on; or {}", row.node, std::move(error.hint));
     } else if (answered(row)) {
-      error.message = "no heartbeat came, and it has no 1017h to switch one on";
+      error.message = "no heartbeat came, and it has no 1017h to enable one";
     } else if (heard(row)) {
-      error.message = "sends no heartbeat and answers no SDO; its boot-up or emergency messages were heard";
+      error.message = "no heartbeat and no SDO answer; only boot-up or emergency messages were received";
     } else {
-      error.message = "does not answer and was never heard";
+      error.message = "does not answer and sent nothing";
       error.hint = "is it powered and connected, and is this its node-ID? `scan` shows who answers";
     }
     error.message = fmt::format("node {}: {}", row.node, error.message);
@@ -257,14 +256,13 @@ const Command kNmtWatch{
     .path = "nmt watch",
     .summary = "Watch whether nodes are alive: heartbeat or node guarding",
     .details =
-        "Tells boot-ups, changes of state, emergencies, and nodes that are lost or back, as they happen; at "
-        "the end (--for, or Ctrl-C) what became of each node. A lost node is one that was silent for three "
-        "of its heartbeat periods (100 ms more than one at the least), or with --guard did not answer in its "
-        "life time. Emergencies are found under the CAN-ID of 1014h, which is read first, and under 080h + "
-        "node-ID, the only one that is known of a node which did not answer and with --guard. Guarding sends "
-        "frames that start a drive's own watch over its master: --read-only refuses it. Exit code 1 when a "
-        "node was lost, never heard, or sends no heartbeat. Do not guard nodes that send heartbeats: CiA 301 "
-        "allows one of the two.",
+        "Reports boot-ups, state changes, emergencies, and nodes lost or back, as they happen; at the end "
+        "(--for, or Ctrl-C) a summary of each node. A node is lost if it was silent for three heartbeat "
+        "periods (at least 100 ms more than one), or with --guard did not answer within its life time. "
+        "Emergencies are recognised by the COB-ID in 1014h, which is read first, and by 080h + node-ID; if "
+        "the node did not answer, or with --guard, by the latter only. Guarding requests start the drive's "
+        "life guarding, so --read-only refuses them. Exit code 1 if a node was lost, never heard, or sends "
+        "no heartbeat. Do not guard nodes that send heartbeats: CiA 301 allows only one of the two.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::can,
     .effect = Effect::writes,

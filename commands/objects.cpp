@@ -168,7 +168,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
         if (parse_object_address(pattern)) add_values(context, entry, table);
       }
   if (table.rows.empty())
-    return fail(Errc::negative, fmt::format("no object of {} fits '{}'", context.profile->family, pattern),
+    return fail(Errc::negative, fmt::format("no object of {} matches '{}'", context.profile->family, pattern),
                 "try a shorter word, or 0x60* for a range of indexes");
   if (sheet.node_id != 0)
     context.notices.push_back(
@@ -183,10 +183,10 @@ const Command kObjects{
     .path = "objects",
     .summary = "List the object dictionary of a drive family",
     .details =
-        "Works without a bus. The pattern is part of a name in English or Chinese, an index, or a form with "
-        "`*`; of an index, what the values stand for is listed as well. Of a DCF, value and denotation are "
-        "what it gives each entry (ParameterValue, Denotation). `?` marks what the manual does not state, "
-        "`!` what it states in more than one way; --json names the lines.",
+        "Works without a bus. The pattern is part of a name in English or Chinese, an index, or an index "
+        "with `*`; for a single index the meanings of its values are listed too. For a DCF, value and "
+        "denotation are those of each entry (ParameterValue, Denotation). `?` marks what the manual does not "
+        "state, `!` what it states inconsistently; --json gives the line numbers.",
     .parameters = kParameters,
     .needs = Needs::dictionary,
     .effect = Effect::none,

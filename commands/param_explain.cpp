@@ -22,10 +22,10 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
 extern const Command kParamExplain;
 const Command kParamExplain{
     .path = "param explain",
-    .summary = "Tell all that is known of a panel parameter",
+    .summary = "Show all that is known about a panel parameter",
     .details =
-        "Works without a bus. What the manual does not state is marked as assumed, what it states in two "
-        "ways as contradicted.",
+        "Works without a bus. What the manual does not state is marked assumed, what it states "
+        "inconsistently contradicted.",
     .parameters = kParameters,
     .needs = Needs::dictionary,
     .effect = Effect::none,

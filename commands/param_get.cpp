@@ -33,7 +33,7 @@ Result<std::vector<drive::Target>> wanted(const drive::Profile& profile, std::sp
       if (show::fits(word, parameter.id) && parameter.object && od::readable(parameter.access))
         out.push_back(drive::target_at(&profile, *parameter.object));
     if (out.size() == before)
-      return fail(Errc::usage, fmt::format("no readable parameter fits '{}'", word),
+      return fail(Errc::usage, fmt::format("no readable parameter matches '{}'", word),
                   "`param list` shows all");
   }
   return out;
@@ -68,9 +68,8 @@ const Command kParamGet{
     .path = "param get",
     .summary = "Read panel parameters of a drive",
     .details =
-        "`Pn02*` reads all that fit. The value is the number the panel shows; where one step is not one "
-        "unit, the value in units stands behind it. In JSON `raw` is the panel's number and `value` is in "
-        "`unit`.",
+        "`Pn02*` reads all that match. The value is the number the panel shows; where one step is not one "
+        "unit, the value in units follows it. In JSON `raw` is the panel's number and `value` is in `unit`.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::reads,

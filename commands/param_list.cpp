@@ -25,7 +25,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   }
   if (found.empty())
     return fail(
-        Errc::negative, fmt::format("no parameter of {} fits '{}'", context.profile->family, pattern),
+        Errc::negative, fmt::format("no parameter of {} matches '{}'", context.profile->family, pattern),
         groups.empty() ? "this family has no table of panel parameters" : "groups: " + one_of(groups));
   return report::Value(show::parameter_table(found, context.chinese));
 }
@@ -37,9 +37,9 @@ const Command kParamList{
     .path = "param list",
     .summary = "List the panel parameters of a drive family",
     .details =
-        "Works without a bus. Range and default are the numbers the panel shows; one step of them is what "
-        "the unit column says. `?` marks what the manual does not state, `!` what it states in more than one "
-        "way; `param explain` tells which, with its lines.",
+        "Works without a bus. Range and default are the numbers the panel shows; the unit column gives the "
+        "size of one step. `?` marks what the manual does not state, `!` what it states inconsistently; "
+        "`param explain` shows which, with line numbers.",
     .parameters = kParameters,
     .needs = Needs::dictionary,
     .effect = Effect::none,

@@ -43,7 +43,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   for (const auto& entry : found) best.push_back(entry.second);
   if (best.empty())
     return fail(Errc::negative,
-                fmt::format("no parameter of {} speaks of '{}'", context.profile->family, said),
+                fmt::format("no parameter of {} mentions '{}'", context.profile->family, said),
                 "try a shorter word, or the Chinese or English one");
   return report::Value(show::parameter_table(best, context.chinese));
 }
@@ -55,7 +55,7 @@ const Command kParamSearch{
     .path = "param search",
     .summary = "Find panel parameters by words, in English or Chinese",
     .details =
-        "Looks in numbers, names, labels and notes; those that fit by name come first. Works without a bus.",
+        "Searches numbers, names, labels and notes; matches in the name come first. Works without a bus.",
     .parameters = kParameters,
     .needs = Needs::dictionary,
     .effect = Effect::none,

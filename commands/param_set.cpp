@@ -76,7 +76,7 @@ const Command kParamSet{
     .details =
         "All values are checked before the first frame. A plain number is the number the panel shows (Pn0214 "
         "400), a number with a unit is converted (Pn0214 40Hz), a label stands for its value. Stops at the "
-        "first refusal. The answer tells whether the value was read back and when it takes effect.",
+        "first refusal. The result shows whether the value was read back and when it takes effect.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::writes,

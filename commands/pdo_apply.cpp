@@ -87,11 +87,11 @@ Result<drive::PdoFile> fitting(const Context& context, const Arguments& argument
   const std::filesystem::path path(arguments.text("file"));
   auto file = read(context, path);
   if (!file) return file;
-  if (file->pdos.empty()) return fail(Errc::negative, fmt::format("{} says nothing of PDOs", path.string()));
+  if (file->pdos.empty()) return fail(Errc::negative, fmt::format("{} contains no PDOs", path.string()));
   if (!file->family.empty() && !equals_nocase(file->family, context.profile->family))
     return fail(Errc::refused,
-                fmt::format("{} is of {}, not of {}", path.string(), file->family, context.profile->family),
-                "an edited copy without the family, or with this one, is taken");
+                fmt::format("{} is for {}, not for {}", path.string(), file->family, context.profile->family),
+                "edit a copy: remove the family, or set this one");
   return file;
 }
 
@@ -121,11 +121,11 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
 extern const Command kPdoApply;
 const Command kPdoApply{
     .path = "pdo apply",
-    .summary = "Put the PDOs of a file into a drive",
+    .summary = "Write the PDOs of a file to a drive",
     .details =
-        "All PDOs of the file are changed as a whole, or none. It may be a file of `pdo save`, a backup of a "
-        "drive of the family, or an EDS or DCF. CAN-IDs that contain the node-ID follow the node. PDOs the "
-        "file does not name stay as they are.",
+        "All PDOs of the file are written, or none. The file may come from `pdo save`, or be a backup of the "
+        "same family, an EDS or a DCF. CAN-IDs that contain the node-ID follow the node. PDOs not in the "
+        "file stay unchanged.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::stores,

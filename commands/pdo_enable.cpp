@@ -77,16 +77,15 @@ constexpr Command command(std::string_view path, std::string_view summary, std::
 extern const Command kPdoEnable;
 constexpr Command kPdoEnable = command<Action::enable>(
     "pdo enable", "Switch PDOs on",
-    "Bit 31 of the COB-ID goes, the other bits stay; on a family that assigns fixed PDOs, the PDO is "
+    "Clears bit 31 of the COB-ID and keeps the others; on a family that assigns fixed PDOs, the PDO is "
     "assigned.");
 
 extern const Command kPdoDisable;
-constexpr Command kPdoDisable =
-    command<Action::disable>("pdo disable", "Switch PDOs off",
-                             "Bit 31 of the COB-ID is set; what the PDO carries stays for `pdo enable`.");
+constexpr Command kPdoDisable = command<Action::disable>(
+    "pdo disable", "Switch PDOs off", "Sets bit 31 of the COB-ID; the mapping stays for `pdo enable`.");
 
 extern const Command kPdoClear;
-constexpr Command kPdoClear = command<Action::clear>(
-    "pdo clear", "Switch PDOs off and empty them", "The PDO is switched off, and nothing is mapped into it.");
+constexpr Command kPdoClear = command<Action::clear>("pdo clear", "Switch PDOs off, clear mapping",
+                                                     "Switches the PDO off and clears its mapping.");
 
 }  // namespace servoctl::commands

@@ -25,12 +25,10 @@ constexpr Parameter kParameters[] = {
      .required = true,
      .many = true},
     {.name = "--type", .help = "transmission type: 1 at every SYNC, 255 by event", .kind = Kind::number},
-    {.name = "--inhibit", .help = "shortest time between two: 10ms", .kind = Kind::duration},
-    {.name = "--event",
-     .help = "longest time between two, by a type that sends by it: 100ms",
-     .kind = Kind::duration},
+    {.name = "--inhibit", .help = "inhibit time: 10ms", .kind = Kind::duration},
+    {.name = "--event", .help = "event timer, if the type uses it: 100ms", .kind = Kind::duration},
     {.name = "--cob-id", .help = "CAN-ID: 0x181, $NODEID+0x180; 29 bits: 0x1ABCDEF", .kind = Kind::text},
-    {.name = "--sync-start", .help = "SYNC counter from which it is sent", .kind = Kind::number},
+    {.name = "--sync-start", .help = "SYNC start value (counter)", .kind = Kind::number},
     kKeepOption,
     kUnlockOption,
 };
@@ -54,7 +52,8 @@ Result<std::optional<std::uint8_t>> byte_option(const Arguments& arguments, std:
   const auto number = parse_integer(arguments.text(name));
   const auto value = number ? number->as_unsigned() : std::nullopt;
   if (!value || *value > 255)
-    return fail(Errc::usage, fmt::format("{}: '{}' is no number from 0 to 255", name, arguments.text(name)));
+    return fail(Errc::usage,
+                fmt::format("{}: '{}' is not a number from 0 to 255", name, arguments.text(name)));
   return std::optional(static_cast<std::uint8_t>(*value));
 }
 
@@ -66,7 +65,7 @@ Result<std::optional<std::uint16_t>> steps_option(const Arguments& arguments, st
   if (!time) return fail(Errc::usage, fmt::format("{}: {}", name, time.error().message), time.error().hint);
   const auto most = std::chrono::duration<double, std::milli>(step * 0xFFFF);
   if (*time % step != Duration::zero() || *time / step > 0xFFFF)
-    return fail(Errc::usage, fmt::format("{}: '{}' is no time of this kind", name, arguments.text(name)),
+    return fail(Errc::usage, fmt::format("{}: '{}' is not a valid time", name, arguments.text(name)),
                 fmt::format("in steps of {}, at most {:g} ms", to_string(step), most.count()));
   return std::optional(static_cast<std::uint16_t>(*time / step));
 }
@@ -108,10 +107,10 @@ bool counts_event(const drive::Profile& profile, std::uint8_t type) {
 Error no_timer(const Pdo& pdo, std::optional<std::uint8_t> right) {
   Error error;
   error.code = Errc::usage;
-  error.message = fmt::format("{}: at transmission type {} the event timer does not count",
+  error.message = fmt::format("{}: transmission type {} does not use the event timer",
                               canopen::name(pdo.direction, pdo.number), pdo.type);
-  error.hint = right ? fmt::format("--type {} sends by it; or leave --event away", *right)
-                     : "no type of this drive sends by it; leave --event away";
+  error.hint = right ? fmt::format("use --type {}, or leave --event out", *right)
+                     : "no type of this drive uses it; leave --event out";
   return error;
 }
 
@@ -130,8 +129,8 @@ Result<void> settle_event(Context& context, const Options& options, std::uint8_t
   if (options.type || !right) return fail(no_timer(pdo, right));
   const auto name = canopen::name(pdo.direction, pdo.number);
   context.notices.push_back(
-      fmt::format("node {}, {}: at transmission type {} the event timer does not count: {} is set with it",
-                  node, name, pdo.type, *right));
+      fmt::format("node {}, {}: transmission type {} does not use the event timer: type {} is set", node,
+                  name, pdo.type, *right));
   pdo.type = *right;
   return {};
 }
@@ -164,7 +163,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   if (!options) return fail(options.error());
   const bool absolute = !options->cob_id.empty() && options->cob_id.front() != '$';
   if (absolute && context.nodes.size() > 1)
-    return fail(Errc::usage, "one CAN-ID for several nodes is a conflict", "--cob-id '$NODEID+0x180'");
+    return fail(Errc::usage, "several nodes cannot share one CAN-ID", "--cob-id '$NODEID+0x180'");
   const pdo::PdoEdit edit = [&](const pdo::PresentPdos& present) -> Result<pdo::WantedPdos> {
     auto pdo = pdo::find_pdo(present, arguments.text("pdo"));
     if (!pdo) return fail(pdo.error());
@@ -195,11 +194,11 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
 extern const Command kPdoMap;
 const Command kPdoMap{
     .path = "pdo map",
-    .summary = "Say what a PDO carries, and when",
+    .summary = "Set what a PDO carries, and when",
     .details =
         "Everything is checked before the first frame; then the PDO is switched off, mapped, switched on and "
-        "read back, by the family's own procedure. When the drive refuses a step, the PDO is put back as it "
-        "was. What is not said stays as it is. Not while the drive is energised. --dry-run shows the frames.",
+        "read back, by the family's own procedure. If the drive refuses a step, the old PDO is written back. "
+        "What is not given stays unchanged. Refused while the drive is energised. --dry-run shows the frames.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::stores,

@@ -27,8 +27,8 @@ Result<const drive::PdoPreset*> preset_of(const Context& context, const Argument
   std::vector<std::string> names;
   for (const auto& preset : presets) names.push_back(preset.name);
   return fail(Errc::usage,
-              fmt::format("the manual of {} recommends no mapping '{}'", context.profile->family, word),
-              names.empty() ? "it recommends none; `pdo map` makes one" : "there are " + one_of(names));
+              fmt::format("the manual of {} has no mapping for '{}'", context.profile->family, word),
+              names.empty() ? "it has none; `pdo map` makes one" : "use " + one_of(names));
 }
 
 Result<void> check(Context& context, const Arguments& arguments) {
@@ -53,8 +53,8 @@ const Command kPdoPreset{
     .path = "pdo preset",
     .summary = "Map the PDOs as the manual recommends for a mode",
     .details =
-        "What the family's manual prints for profile position (pp), profile velocity (pv), torque (pt), "
-        "homing (home) and the others; PDOs it does not name stay as they are. As safe as `pdo map`.",
+        "The mappings in the family's manual for profile position (pp), profile velocity (pv), torque (pt), "
+        "homing (home) and others; other PDOs stay unchanged. As safe as `pdo map`.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::stores,

@@ -20,9 +20,8 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   const std::filesystem::path path(arguments.text("file"));
   const auto extension = lower(path.extension().string());
   if (extension != ".toml" && extension != ".json")
-    return fail(Errc::usage, fmt::format("'{}': a file of PDOs ends in .toml or .json", path.string()));
-  if (context.nodes.size() != 1)
-    return fail(Errc::usage, "the PDOs of one node go into one file", "say -n 1");
+    return fail(Errc::usage, fmt::format("'{}': a PDO file must end in .toml or .json", path.string()));
+  if (context.nodes.size() != 1) return fail(Errc::usage, "one file takes the PDOs of one node", "say -n 1");
   const auto node = context.nodes.front();
   const auto read = session::read_pdo_values(*context.session, context.profile, context.nodes).front();
   if (!read) return fail(read.error());
@@ -48,10 +47,10 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
 extern const Command kPdoSave;
 const Command kPdoSave{
     .path = "pdo save",
-    .summary = "Write the PDOs of a drive into a file",
+    .summary = "Save the PDOs of a drive to a file",
     .details =
-        "TOML, to be read and edited, or JSON, by the extension. CAN-IDs that contain the node-ID are "
-        "written with $NODEID, so that the file fits other nodes. `pdo apply` puts it into a drive.",
+        "TOML, to read and edit, or JSON, by the extension. CAN-IDs that contain the node-ID are written "
+        "with $NODEID, so that the file fits other nodes. `pdo apply` writes it to a drive.",
     .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::reads,

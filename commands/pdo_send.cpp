@@ -28,16 +28,17 @@ constexpr Parameter kParameters[] = {
 
 Result<void> check_usable(const show::PdoView& view) {
   if (view.pdo.direction == canopen::PdoDirection::transmit)
-    return fail(Errc::usage, fmt::format("{} is sent by the drive", view.name), "an RPDO can be sent to it");
+    return fail(Errc::usage, fmt::format("{} is a TPDO", view.name), "only RPDOs can be sent");
   if (!view.pdo.is_valid())
     return fail(Errc::negative, fmt::format("node {}: {} is not in use", view.node, view.name),
                 "bit 31 of its COB-ID is set; `pdo enable` clears it");
   if (view.pdo.entries.empty())
     return fail(Errc::negative, fmt::format("node {}: {} maps nothing", view.node, view.name),
-                "`pdo map` gives it objects");
+                "`pdo map` maps objects into it");
   if (view.pdo.bits() > 64)
-    return fail(Errc::negative, fmt::format("node {}: {} is no PDO of classical CAN", view.node, view.name),
-                "`pdo show` tells its length");
+    return fail(Errc::negative,
+                fmt::format("node {}: {} is too long for classical CAN", view.node, view.name),
+                "`pdo show` shows its length");
   return {};
 }
 
@@ -83,9 +84,9 @@ Result<void> check_operational(Context& context, const show::PdoView& view) {
   const auto state = session::ask_state(*context.session, view.node, !context.dry_run);
   if (!state) return fail(state.error());
   if (!*state) {
-    context.notices.push_back(fmt::format(
-        "node {} does not tell whether it is operational (no heartbeat{}); if not, it ignores PDOs",
-        view.node, context.dry_run ? ", and a dry run does not guard it" : ""));
+    context.notices.push_back(
+        fmt::format("node {}: not known whether it is operational (no heartbeat{}); if not, it ignores PDOs",
+                    view.node, context.dry_run ? ", and a dry run does not guard it" : ""));
     return {};
   }
   if (**state == session::NodeState::operational) return {};
@@ -138,12 +139,12 @@ Result<Value> run(Context& context, const Arguments& arguments) {
 extern const Command kPdoSend;
 const Command kPdoSend{
     .path = "pdo send",
-    .summary = "Send an RPDO with these values once; asks first",
+    .summary = "Send an RPDO once with these values; asks first",
     .details =
-        "Reads the mapping of the node and puts the values, one for each mapped object, where they belong: "
-        "`pdo send RPDO1 0x0F 1000rpm`. Types, limits and units are checked as for `write`. Refused when the "
-        "PDO is not in use or the node is not operational. PDOs are not answered: `status` or `pdo watch` "
-        "tell what became of it.",
+        "Reads the node's mapping and packs the values, one for each mapped object, into the PDO: `pdo send "
+        "RPDO1 0x0F 1000rpm`. Types, limits and units are checked as for `write`. Refused if the PDO is not "
+        "in use or the node is not operational. PDOs are not answered: `status` or `pdo watch` show the "
+        "effect.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::can,
     .effect = Effect::moves,

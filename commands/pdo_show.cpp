@@ -85,7 +85,7 @@ std::vector<std::string> conflicts(const NodePdos& mine, const Pdo& pdo, const s
   if (!pdo.is_valid()) return out;
   const auto text = show::can_id_text(pdo.cob_id);
   if (const auto service = canopen::service_of(pdo.can_id()); !service.empty())
-    out.push_back(fmt::format("{} is the CAN-ID of {}", text, service));
+    out.push_back(fmt::format("{} is reserved for {}", text, service));
   const bool sent = pdo.direction == PdoDirection::transmit;
   for (const auto& node : all)
     for (const auto& other : node.pdos) {
@@ -94,11 +94,11 @@ std::vector<std::string> conflicts(const NodePdos& mine, const Pdo& pdo, const s
       if (same || !other.is_valid() || other.can_id() != pdo.can_id()) continue;
       const auto name = canopen::name(other.direction, other.number);
       if (sent && other.direction == PdoDirection::transmit)
-        out.push_back(fmt::format("{} of node {} is sent with {} as well", name, node.node, text));
+        out.push_back(fmt::format("{} of node {} is also sent with {}", name, node.node, text));
       if (sent && other.direction == PdoDirection::receive)
-        out.push_back(fmt::format("{} of node {} takes it for its own", name, node.node));
+        out.push_back(fmt::format("{} of node {} receives it", name, node.node));
       if (!sent && other.direction == PdoDirection::receive)
-        out.push_back(fmt::format("{} of node {} takes {} as well", name, node.node, text));
+        out.push_back(fmt::format("{} of node {} also receives {}", name, node.node, text));
     }
   return out;
 }
@@ -163,9 +163,9 @@ const Command kPdoShow{
     .path = "pdo show",
     .summary = "Show what a drive sends and receives as PDOs",
     .details =
-        "All RPDOs (the drive receives) and TPDOs (it sends): COB-ID, transmission type, times, mapped "
-        "objects; what is not as it left the factory, where -d names the family. With -n all: TPDOs of two "
-        "drives on one COB-ID.",
+        "All RPDOs (received by the drive) and TPDOs (sent): COB-ID, transmission type, times, mapped "
+        "objects; with -d, also what differs from the factory setting. With -n all, also TPDOs of two drives "
+        "with the same COB-ID.",
     .parameters = {},
     .needs = Needs::node,
     .effect = Effect::reads,

@@ -17,7 +17,7 @@ using report::Value;
 
 constexpr Parameter kParameters[] = {
     {.name = "pdo",
-     .help = "RPDO1, TPDO2 …; all that are in use unless said",
+     .help = "RPDO1, TPDO2 … (default: all that are in use)",
      .kind = Kind::text,
      .many = true},
     kForOption,
@@ -89,7 +89,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   if (!watched) return fail(watched.error());
   if (watched->empty())
     return fail(Errc::negative, "none of the PDOs is in use",
-                "`pdo show` tells them, `pdo enable` opens one");
+                "`pdo show` lists them; `pdo enable` enables one");
   auto& session = *context.session;
   const auto begin = session.now();
   show::SampleWriter writer(context);
@@ -117,8 +117,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   });
   if (on_request)
     context.notices.emplace_back(
-        "TPDOs of transmission types 252 and 253 come when somebody asks for them by a remote frame; "
-        "servoctl does not");
+        "TPDOs of transmission types 252 and 253 are sent only on a remote frame; servoctl sends none");
   if (!context.keeps_samples) return Value(summary(*watched));
   return Value(report::Record{{"pdos", summary(*watched)}, {"samples", writer.take_kept()}});
 }
@@ -128,11 +127,11 @@ Result<Value> run(Context& context, const Arguments& arguments) {
 extern const Command kPdoWatch;
 const Command kPdoWatch{
     .path = "pdo watch",
-    .summary = "Show PDOs as they come, by the mapping the drive has now",
+    .summary = "Show PDOs as they arrive, decoded by the drive's mapping",
     .details =
-        "Reads the mapping of the nodes and then listens: one line a PDO, with the names, values and units "
-        "of what it carries. At the end (--for, or Ctrl-C) it tells how often each came, and the periods "
-        "measured: mean, shortest, longest, standard deviation. RPDOs are shown when a master sends them.",
+        "Reads the mapping of the nodes and then listens: one line per PDO, with the names, values and units "
+        "of its objects. At the end (--for, or Ctrl-C) it shows how often each came, and the measured "
+        "periods: mean, shortest, longest, standard deviation. RPDOs are shown if a master sends them.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::can,
     .effect = Effect::reads,

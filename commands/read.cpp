@@ -17,10 +17,10 @@ constexpr Parameter kParameters[] = {
      .required = true,
      .many = true},
     {.name = "--type",
-     .help = "data type, when the dictionary does not know it",
+     .help = "data type, if the dictionary does not have it",
      .kind = Kind::type,
      .choices = kTypeNames},
-    {.name = "--to", .help = "put the bytes of one object into this file", .kind = Kind::file},
+    {.name = "--to", .help = "write the bytes of one object to this file", .kind = Kind::file},
     kTransferOption,
 };
 
@@ -42,11 +42,11 @@ Result<void> check(Context& context, const Arguments& arguments) {
 /// `--to` takes the bytes of one object of one node.
 Result<report::Value> run_to_file(Context& context, const Arguments& arguments) {
   if (arguments.has("--type"))
-    return fail(Errc::usage, "--type goes with a value that is shown: --to takes the bytes as they are",
-                "leave --type away");
+    return fail(Errc::usage, "--type is for values that are shown; --to writes the raw bytes",
+                "leave --type out");
   if (arguments.all("object").size() != 1 || context.nodes.size() != 1)
     return fail(Errc::usage, "--to takes one object of one node",
-                "one line for each object and node, each with a file of its own");
+                "use a separate command and file for each object and node");
   const auto target = drive::resolve(context.profile, arguments.text("object"));
   if (!target) return fail(target.error());
   return settings::read_to_file(context, context.nodes.front(), *target,
@@ -81,9 +81,9 @@ const Command kRead{
     .path = "read",
     .summary = "Read objects of a node",
     .details =
-        "Without --drive only addresses are understood, and the value is shown as an unsigned number of its "
-        "length. Index and sub-index are hexadecimal. With --to the bytes of one object of any size go into "
-        "a file; block transfer is tried first where the drive may know it.",
+        "Without --drive only addresses are accepted, and the value is shown as an unsigned number of its "
+        "length. Index and sub-index are hexadecimal. With --to the bytes of one object of any size go to a "
+        "file; block transfer is tried first where the drive may support it.",
     .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::reads,

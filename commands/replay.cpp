@@ -19,10 +19,7 @@ using namespace command;
 using report::Value;
 
 constexpr Parameter kParameters[] = {
-    {.name = "file",
-     .help = "a recording in the form of candump, or .asc",
-     .kind = Kind::file,
-     .required = true},
+    {.name = "file", .help = "a recording in candump format, or .asc", .kind = Kind::file, .required = true},
     {.name = "--speed", .help = "2 is twice as fast as recorded (default 1)", .kind = Kind::number},
     {.name = "--only",
      .help = "only this service, such as sdo (may be given several times)",
@@ -43,7 +40,7 @@ std::string question(const traffic::ReplayPlan& plan, std::string_view file, std
     out +=
         fmt::format(" {} of them can move a motor: {}.", plan.dangerous(), traffic::kinds_text(plan.moving));
   if (!plan.lasting.empty())
-    out += fmt::format(" Some last or restart a drive: {}.", traffic::kinds_text(plan.lasting));
+    out += fmt::format(" Some store, restart, re-address: {}.", traffic::kinds_text(plan.lasting));
   return out;
 }
 
@@ -51,7 +48,7 @@ Result<double> speed_of(const Arguments& arguments) {
   if (!arguments.has("--speed")) return 1.0;
   const auto speed = parse_real(arguments.text("--speed"));
   if (!speed || *speed < 0.001 || *speed > 1000)
-    return fail(Errc::usage, fmt::format("'{}' is no speed", arguments.text("--speed")),
+    return fail(Errc::usage, fmt::format("'{}' is not a speed", arguments.text("--speed")),
                 "write 0.001..1000; 1 is as recorded");
   return *speed;
 }
@@ -77,7 +74,7 @@ std::string failure_text(const Context& context, const traffic::ReplayFailure& f
 void tell_failures(Context& context, const traffic::ReplayRun& run) {
   if (run.answered_by_recording() > 0)
     context.notices.push_back(fmt::format(
-        "SDO requests answered by the recording alone, by no drive: {}; --master leaves such answers out",
+        "SDO requests answered only by the recording, not by a drive: {}; --master leaves such answers out",
         run.answered_by_recording()));
   const auto& failures = run.failures();
   if (failures.empty()) return;
@@ -89,7 +86,7 @@ void tell_failures(Context& context, const traffic::ReplayRun& run) {
   if (failures.size() > 1)
     error.message = fmt::format("{} SDO requests were refused or not answered; the first: {}",
                                 failures.size(), error.message);
-  error.hint = "the drives are not as the recording left them; the table names all of them";
+  error.hint = "the drives are not in the recording's final state; see the table";
   context.errors.push_back(std::move(error));
 }
 
@@ -122,7 +119,7 @@ void remember_energised(Context& context, const traffic::ReplayPlan& plan,
       context.session->energised().insert(node);
     else
       context.notices.push_back(
-          fmt::format("node {} does not answer: whether the replay energises it cannot be told", node));
+          fmt::format("node {} does not answer: whether the replay energises it is not known", node));
   }
 }
 
@@ -159,14 +156,14 @@ void tell_plan(Context& context, const traffic::ReplayPlan& plan, std::string_vi
   if (plan.extended > 0)
     context.notices.push_back(
         plan.extended == 1
-            ? "1 frame with an identifier of 29 bits is left out: such are not replayed"
-            : fmt::format("{} frames with identifiers of 29 bits are left out: such are not replayed",
+            ? "1 frame with a 29-bit identifier is left out: these are not replayed"
+            : fmt::format("{} frames with 29-bit identifiers are left out: these are not replayed",
                           plan.extended));
   std::string dropped;
   for (const auto id : plan.dropped) append(dropped, fmt::format("0x{:03X}", id));
   if (!dropped.empty())
-    context.notices.push_back(
-        fmt::format("left out as TPDOs by their CAN-ID, which no drive and no family confirms: {}", dropped));
+    context.notices.push_back(fmt::format(
+        "left out, taken as TPDOs by CAN-ID only (not confirmed by a drive or family): {}", dropped));
 }
 
 Result<Value> run(Context& context, const Arguments& arguments) {
@@ -182,11 +179,10 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   tell_plan(context, plan, file);
   if (plan.seen == 0) return traffic::no_frames(file);
   if (plan.frames.size() > 1 && plan.frames.back().time == Duration::zero())
-    return fail(Errc::usage,
-                fmt::format("{} has no times: it cannot be told when its frames are to go", file),
+    return fail(Errc::usage, fmt::format("{} has no timestamps: its frames cannot be timed", file),
                 "`candump -L` and `candump -ta` write them, `--trace FILE` too");
   if (plan.frames.empty())
-    return fail(Errc::negative, fmt::format("none of the {} frames of {} is sent", plan.seen, file),
+    return fail(Errc::negative, fmt::format("no frame of the {} in {} is sent", plan.seen, file),
                 "--only and --master leave them out");
   report::Record answer{{"frames", plan.frames.size()},
                         {"can_move", plan.dangerous(), report::Show::everywhere, "can move a motor"}};
@@ -214,14 +210,14 @@ const Command kReplay{
     .path = "replay",
     .summary = "Send the frames of a recording again; asks first",
     .details =
-        "Keeps the times between the frames, unless --speed says otherwise. It sends what drives and masters "
-        "sent alike: where the drives are there themselves, --master leaves their part out, and --only "
-        "chooses services. Before, it asks the drives of the recording for their PDOs; then it asks you, and "
-        "says how many of the frames can move a motor (NMT start, SYNC, RPDOs, writes of objects from 2000h "
-        "on) and which store, restart or re-address a drive; --dry-run only counts. After Ctrl-C and after "
-        "an error the drives are stopped and disabled; one that the whole replay leaves energised is named. "
-        "Exit code 1 when a drive refused an SDO request or did not answer it. To have commands answered by "
-        "a recording instead, use --bus replay:FILE.",
+        "Keeps the times between the frames, unless --speed says otherwise. It sends the frames of drives "
+        "and masters alike: if the real drives are connected, --master leaves theirs out; --only selects "
+        "services. It first reads the PDOs of the drives in the recording, then asks you, stating how many "
+        "of the frames can move a motor (NMT start, SYNC, RPDOs, writes to objects from 2000h up) and which "
+        "store, restart or re-address a drive; --dry-run only counts. After Ctrl-C or an error the drives "
+        "are stopped and disabled; any that a complete replay leaves energised is listed. Exit code 1 when a "
+        "drive refused an SDO request or did not answer it. To have commands answered by a recording "
+        "instead, use --bus replay:FILE.",
     .parameters = kParameters,
     .needs = Needs::can,
     .effect = Effect::moves,

@@ -28,10 +28,10 @@ using report::Value;
 constexpr Parameter kParameters[] = {
     {.name = "file", .help = "FILE.html, or FILE.json for programs", .kind = Kind::file},
     {.name = "--output",
-     .help = "the file as well; or the form of the answer: text, json, jsonl",
+     .help = "the file, like FILE; or the output format: text, json, jsonl",
      .kind = Kind::file,
      .short_name = "-o"},
-    {.name = "--title", .help = "what stands above it: the machine, the axis", .kind = Kind::text},
+    {.name = "--title", .help = "title of the report: the machine, the axis", .kind = Kind::text},
     {.name = "--tests",
      .help = "results of earlier tests (test … --json >FILE); may be repeated",
      .kind = Kind::file,
@@ -44,8 +44,8 @@ Result<Form> form_of(const std::filesystem::path& file) {
   const auto extension = lower(file.extension().string());
   if (extension == ".html" || extension == ".htm") return Form::html;
   if (extension == ".json") return Form::json;
-  return fail(Errc::usage, fmt::format("'{}' is no name for a report", file.string()),
-              "it ends in .html for people or in .json for programs");
+  return fail(Errc::usage, fmt::format("'{}' is not a report file name", file.string()),
+              "use .html for people or .json for programs");
 }
 
 /// `report FILE` and `report -o FILE` are the same.
@@ -164,7 +164,7 @@ class Collection {
         {"identity", "Identity", "标识", "info"},
         {"state", "State", "状态", "status"},
         {"faults", "Faults", "故障", "fault show"},
-        {"settings", "Settings that differ from the factory's", "与出厂值不同的设置", "verify"},
+        {"settings", "Settings that differ from factory values", "与出厂值不同的设置", "verify"},
         {"pdos", "Process data (PDO)", "过程数据 (PDO)", "pdo show"},
     };
     trial::DriveReport out{node, say(fmt::format("Node {}", node), fmt::format("节点 {}", node)), {}, {}};
@@ -235,8 +235,8 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   }
   for (const auto& result : earlier)
     if (std::find(context.nodes.begin(), context.nodes.end(), result.node) == context.nodes.end())
-      context.notices.push_back(fmt::format(
-          "the test {} of node {} is not in the report: -n does not name it", result.test, result.node));
+      context.notices.push_back(fmt::format("`test {}` of node {} is not in the report: add the node to -n",
+                                            result.test, result.node));
   if (const auto same = trial::check_tested(context, earlier); !same) return fail(same.error());
   const auto made = Collection(context, earlier).make(std::string(arguments.text("--title")));
   if (!made) return fail(made.error());
@@ -255,13 +255,13 @@ Result<Value> run(Context& context, const Arguments& arguments) {
 extern const Command kReport;
 const Command kReport{
     .path = "report",
-    .summary = "Write down what was commissioned: one page, or JSON",
+    .summary = "Write a commissioning report: one page, or JSON",
     .details =
-        "Identity and firmware, state, faults and their history, settings that differ from the factory's, "
-        "PDOs, who else is on the bus, and a test of the communication; with --tests also the results and "
-        "plots of tests made before, refused where they are of another drive. The page needs no network and "
-        "prints on A4; --lang zh makes it Chinese. Moves nothing and changes nothing. The file is written "
-        "whole or not at all; exit code 1 when a test in it failed.",
+        "Identity and firmware, state, faults and their history, settings not at factory value, PDOs, other "
+        "nodes on the bus, and a communication test; with --tests also results and plots of earlier tests, "
+        "refused if they are from another drive. The page needs no network and prints on A4; --lang zh makes "
+        "it Chinese. Moves nothing and changes nothing. The file is written whole or not at all; exit code 1 "
+        "when a test in it failed.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::reads,

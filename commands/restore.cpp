@@ -19,7 +19,7 @@ constexpr Parameter kParameters[] = {
     kOnlyOption,
     {.name = "--with-address", .help = "node-ID and bitrate as well", .kind = Kind::flag},
     {.name = "--no-rollback", .help = "leave things as they are when a write fails", .kind = Kind::flag},
-    {.name = "--force", .help = "although identity or family are others", .kind = Kind::flag},
+    {.name = "--force", .help = "even if identity or family differ", .kind = Kind::flag},
     kSkipInvalidOption,
     kKeepOption,
     kUnlockOption,
@@ -34,7 +34,7 @@ Result<void> keep_part(const Context& context, settings::Backup& backup, const s
   if (!*part) return {};
   std::erase_if(backup.entries, [&](const settings::Backup::Entry& entry) { return !(*part)(entry.object); });
   if (!backup.entries.empty()) return {};
-  return fail(Errc::usage, fmt::format("{} has nothing of '{}'", file, only));
+  return fail(Errc::usage, fmt::format("{} contains nothing of '{}'", file, only));
 }
 
 Result<Value> run(Context& context, const Arguments& arguments) {
@@ -68,19 +68,19 @@ Result<Value> run(Context& context, const Arguments& arguments) {
 extern const Command kRestore;
 const Command kRestore{
     .path = "restore",
-    .summary = "Put a backup into a drive: all of it or nothing",
+    .summary = "Restore a backup to a drive: all of it or nothing",
     .details =
         "Takes a backup of any format, a DCF or concise DCF of another tool, or a part of it (--only). "
-        "Checks file, family and identity, shows what differs, saves what the drive holds beside the backup "
-        "(FILE.before-node-N.json), writes only what differs and reads each value back, PDOs by the "
-        "procedure of CiA 301. When a write fails, what was written is put back; the answer says how things "
-        "stand. Stores with --keep, at the end and only if all is well. Node-ID and bitrate stay unless "
-        "--with-address is given; COB-IDs follow the node they go to. While it runs a journal stands beside "
-        "that file: after a pulled cable or a crash --resume goes on, and restoring FILE.before-node-N.json "
-        "takes everything back. A COB-ID that CiA 301 keeps for another service is refused. A value of a "
-        "backup of ours outside of the limits is named and left as it is (exit code 1), the rest restored; "
-        "entries of another tool's file that cannot be used, or not by this drive, are refused, and with "
-        "--skip-invalid named and left out.",
+        "Checks file, family and identity, shows what differs, saves the drive's present values next to the "
+        "backup (FILE.before-node-N.json), writes only what differs and reads each value back, PDOs by the "
+        "procedure of CiA 301. If a write fails, the old values are written back; the result says what was "
+        "done. --keep stores, at the end and only if all is well. Node-ID and bitrate stay unless "
+        "--with-address is given; COB-IDs follow the node they go to. While it runs it keeps a journal next "
+        "to that file: after a pulled cable or a crash --resume continues, and restoring "
+        "FILE.before-node-N.json undoes everything. A COB-ID that CiA 301 reserves for another service is "
+        "refused. A value of a servoctl backup outside its limits is listed and not written (exit code 1), "
+        "the rest restored; another tool's file with unusable entries, or entries this drive cannot take, is "
+        "refused; --skip-invalid lists and skips them.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::stores,

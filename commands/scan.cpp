@@ -25,8 +25,8 @@ Result<report::Value> run(Context& context, const Arguments&) {
     error.code = Errc::timeout;
     error.message = "no node answered on " + context.session->url();
     error.hint =
-        "check power, cable, 120 ohm at both ends, and that the interface runs at the drives' bitrate; a "
-        "stopped node does not answer: `nmt preop -n all`";
+        "check power, cable, 120 ohm at both ends, and that the interface has the drives' bitrate; a stopped "
+        "node does not answer: `nmt preop -n all`";
     context.errors.push_back(std::move(error));
   }
   const auto families = drive::find_families(context.drive_folders);
@@ -41,11 +41,11 @@ const Command kScan{
     .path = "scan",
     .summary = "Find the nodes on the bus and what they are",
     .details =
-        "Asks the nodes 1 to 127, or those of a --node in the line itself, for object 1000h at the same "
-        "time: the answer takes one timeout however many there are. Families are guessed from the identity "
-        "and, where it leaves them open, by reading two or three objects that only they have; `?` marks a "
-        "guess that proves nothing. cia402 fits every drive of that profile: it is named where nothing else "
-        "fits, and always by `info` and in JSON.",
+        "Reads object 1000h of nodes 1 to 127, or of the --node in the line itself, all at the same time: "
+        "the scan takes one timeout however many there are. Families are identified by the identity and, "
+        "where that is not enough, by reading two or three objects that only they have; `?` marks an "
+        "unproven guess. cia402 fits every drive of that profile: it is listed where nothing else fits, and "
+        "always by `info` and in JSON.",
     .parameters = {},
     .needs = Needs::bus,
     .effect = Effect::reads,

@@ -33,11 +33,11 @@ constexpr Parameter kParameters[] = {
      .required = true,
      .many = true},
     {.name = "--for", .help = "how long (default 2s)", .kind = Kind::duration},
-    {.name = "--map", .help = "put them into a spare TPDO meanwhile", .kind = Kind::flag},
+    {.name = "--map", .help = "map them into an unused TPDO meanwhile", .kind = Kind::flag},
     {.name = "--every", .help = "period of that TPDO (default 1ms)", .kind = Kind::duration},
     {.name = "--csv", .help = "write the samples to this file", .kind = Kind::file},
-    {.name = "--svg", .help = "draw them into this file", .kind = Kind::file},
-    {.name = "--plot", .help = "draw them here", .kind = Kind::flag},
+    {.name = "--svg", .help = "plot them to this file", .kind = Kind::file},
+    {.name = "--plot", .help = "plot them here", .kind = Kind::flag},
 };
 
 /// So long after a TPDO has brought an object it is not read by SDO: the next one is on its way.
@@ -111,7 +111,7 @@ class Scope {
     const bool any = std::any_of(records_.begin(), records_.end(),
                                  [](const traffic::ChannelRecord& r) { return r.statistics().count() > 0; });
     if (any || interrupted_) return {};
-    return fail(Errc::negative, "nothing was sampled in this time", "a longer --for gives the drive time");
+    return fail(Errc::negative, "no samples were taken in this time", "use a longer --for");
   }
 
   session::Session* session_;
@@ -134,7 +134,7 @@ Result<std::vector<std::unique_ptr<pdo::ScopeMapping>>> map_objects(Context& con
   if (!period) return fail(period.error());
   if (!arguments.has("--map")) return out;
   if (context.read_only || context.dry_run)
-    return fail(Errc::refused, "--map changes a TPDO of the drive, and that is forbidden",
+    return fail(Errc::refused, "--map changes a TPDO of the drive, which is not allowed now",
                 "without --map the objects are read by SDO");
   if (const auto right = context.hold_family(context.nodes, context.profile, true); !right)
     return fail(right.error());
@@ -213,12 +213,12 @@ const Command kScope{
     .path = "scope",
     .summary = "Record values of objects as fast as the bus allows",
     .details =
-        "Takes every TPDO that carries the objects; without one it reads them by SDO, one read after the "
-        "other. --map puts them into a TPDO that is not in use, sent every millisecond (--every), and puts "
-        "it back at the end: samples are denser then. It asks before; without --map nothing in the drive is "
-        "changed. Each value has the time at which its own frame arrived. The samples go into a file (--csv, "
-        "where a cell is empty without a value at that time; --svg) or are drawn (--plot); with --json they "
-        "are in the result. A drive that does not answer at the end makes the exit code.",
+        "Uses every TPDO that carries the objects; without one it reads them by SDO, one after the other. "
+        "--map asks, then maps them into an unused TPDO, sent every millisecond (--every), for a higher "
+        "sampling rate, and restores it at the end; without --map nothing in the drive is changed. Each "
+        "value has the arrival time of its own frame. The samples go to a file (--csv, with empty cells "
+        "where there is no value at that time; --svg) or are plotted (--plot); with --json they are in the "
+        "result. A drive that no longer answers at the end sets the exit code.",
     .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::reads,

@@ -36,10 +36,10 @@ const Command kSim{
     .path = "sim",
     .summary = "Put simulated drives on a bus until Ctrl-C",
     .details =
-        "For trying things out without hardware: `servoctl sim gsd600@1 --bus local:cell` in one terminal, "
-        "commands with --bus local:cell in another. Options after `?`, separated by `&`: state=FILE keeps "
-        "the drives' memory, fault=0xFF00@2s raises a fault, silent=5s makes them fall silent after 5 s, "
-        "delay=20ms answers late; counts=8388608 is what a turn of the motor has where no object tells it.",
+        "For trials without hardware: `servoctl sim gsd600@1 --bus local:cell` in one terminal, commands "
+        "with --bus local:cell in another. Options after `?`, separated by `&`: state=FILE keeps the drives' "
+        "memory, fault=0xFF00@2s raises a fault, silent=5s silences them after 5 s, delay=20ms delays "
+        "answers; counts=8388608 sets the counts per revolution where no object reports them.",
     .parameters = kParameters,
     .needs = Needs::can,
     .effect = Effect::none,

@@ -99,13 +99,12 @@ Record one(Context& context, std::uint8_t node, std::span<const Result<Bytes>> a
   const auto nmt = context.session->watch().state(node);
   const auto heartbeat = session::number_in(answers[4]);
   const bool has_no_heartbeat = !answers[4] && answers[4].error().code == Errc::sdo_abort;
-  out.push_back(
-      {"nmt",
-       nmt ? std::string(session::name(*nmt))
-           : std::string(has_no_heartbeat ? "not stopped (no heartbeat tells more: it has no 0x1017)"
-                         : heartbeat.value_or(0) == 0 ? "not stopped (no heartbeat tells more: 0x1017 is 0)"
-                                                      : "not heard"),
-       Show::text, "NMT state"});
+  out.push_back({"nmt",
+                 nmt ? std::string(session::name(*nmt))
+                     : std::string(has_no_heartbeat ? "not stopped (no heartbeat: it has no 0x1017)"
+                                   : heartbeat.value_or(0) == 0 ? "not stopped (no heartbeat: 0x1017 is 0)"
+                                                                : "not heard"),
+                 Show::text, "NMT state"});
   out.push_back({"nmt", nmt ? Value(session::name(*nmt)) : Value(), Show::json});
   add_drive_state(out, context, session::number_in(answers[0]), session::number_in(answers[1]));
   add_mode_and_fault(out, context, answers);
@@ -125,7 +124,7 @@ Result<report::Value> run(Context& context, const Arguments&) {
     const bool refused = !mine[0] && mine[0].error().code == Errc::sdo_abort;
     if (refused)
       context.notices.push_back(
-          fmt::format("node {} has no statusword: it is no CiA 402 drive", context.nodes[i]));
+          fmt::format("node {} has no statusword: it is not a CiA 402 drive", context.nodes[i]));
     if (!mine[0] && !refused)
       context.errors.push_back(mine[0].error());
     else
@@ -141,8 +140,8 @@ const Command kStatus{
     .path = "status",
     .summary = "Show the state of a drive: NMT, CiA 402, mode, fault",
     .details =
-        "Reads statusword, mode, error code and error register. The NMT state is told by heartbeats; where "
-        "the node sends some, status waits for one.",
+        "Reads statusword, mode, error code and error register. The NMT state comes from the heartbeat; if "
+        "the node sends one, status waits for it.",
     .parameters = {},
     .needs = Needs::node,
     .effect = Effect::reads,

@@ -19,15 +19,15 @@ using session::ParameterGroup;
 constexpr std::array<std::string_view, 4> kGroups{"all", "communication", "application", "vendor"};
 
 constexpr Parameter kParameters[] = {
-    {.name = "group", .help = "all (unless said), or a part", .kind = Kind::choice, .choices = kGroups},
+    {.name = "group", .help = "all (default), or a part", .kind = Kind::choice, .choices = kGroups},
 };
 
 Result<ParameterGroup> group_of(const Arguments& arguments) {
   const auto word = arguments.has("group") ? arguments.text("group") : kGroups.front();
   for (std::size_t i = 0; i < kGroups.size(); ++i)
     if (kGroups[i] == word) return static_cast<ParameterGroup>(i + 1);
-  return fail(Errc::usage, fmt::format("'{}' is no group of parameters", word),
-              "there are all, communication, application and vendor");
+  return fail(Errc::usage, fmt::format("'{}' is not a group of parameters", word),
+              "use all, communication, application or vendor");
 }
 
 struct Words {
@@ -71,13 +71,13 @@ Result<Value> run(Context& context, const Arguments& arguments, const Action& ac
 
 Result<Value> run_store(Context& context, const Arguments& arguments) {
   return run(context, arguments, {session::store_parameters, session::store_writes},
-             {"Store the present values of {}? They replace what it starts with.", "stored"});
+             {"Store the present values of {}? They replace its power-on values.", "stored"});
 }
 
 Result<Value> run_defaults(Context& context, const Arguments& arguments) {
   return run(context, arguments, {session::restore_defaults, session::restore_writes},
              {"Restore the factory values of {}? What is set now is lost (`backup` keeps it).",
-              "restored; they are in force after a restart of the drive"});
+              "restored; takes effect after a restart of the drive"});
 }
 
 }  // namespace
@@ -85,10 +85,10 @@ Result<Value> run_defaults(Context& context, const Arguments& arguments) {
 extern const Command kStore;
 const Command kStore{
     .path = "store",
-    .summary = "Make a drive keep its present values",
+    .summary = "Store the present values in the drive",
     .details =
-        "1010h with the signature \"save\", or the family's own way. Waits up to 10 s for the drive. Where "
-        "values are kept only while they are written, `param set … --keep` is the way, and store says so.",
+        "Writes \"save\" to 1010h, or uses the family's own method. Waits up to 10 s for the drive. Where "
+        "values can be kept only as they are written, store says so: use `param set … --keep`.",
     .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::stores,
@@ -99,7 +99,7 @@ extern const Command kDefaults;
 const Command kDefaults{
     .path = "defaults",
     .summary = "Restore the factory values of a drive",
-    .details = "1011h with the signature \"load\", or the family's own way. In force after a restart.",
+    .details = "Writes \"load\" to 1011h, or uses the family's own method. Takes effect after a restart.",
     .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::resets,

@@ -23,9 +23,9 @@ constexpr Duration kDefaultPeriod = std::chrono::milliseconds(10);
 constexpr Duration kShortestPeriod = std::chrono::microseconds(200);
 
 constexpr Parameter kStartParameters[] = {
-    {.name = "--period", .help = "time from SYNC to SYNC (default 10ms)", .kind = Kind::duration},
+    {.name = "--period", .help = "SYNC period (default 10ms)", .kind = Kind::duration},
     {.name = "--counter",
-     .help = "with a counter that runs from 1 to this (2..240, as 1019h says)",
+     .help = "with a counter from 1 to this overflow value (2..240, see 1019h)",
      .kind = Kind::number},
     kForOption,
 };
@@ -34,7 +34,7 @@ constexpr Parameter kStartParameters[] = {
 constexpr Duration kListening = std::chrono::milliseconds(200);
 
 constexpr std::string_view kWarning =
-    "Drives take over what RPDOs brought at SYNC: one that is enabled may move.";
+    "At SYNC drives apply the RPDOs they received: an enabled drive may move.";
 
 Value planned_frame(std::optional<std::uint8_t> counter) {
   return report::Record{{"frame", can::to_string(canopen::sync_frame(counter))}};
@@ -45,7 +45,7 @@ Result<void> check_none(const Context& context) {
   const auto* production = context.session->can()->sync();
   if (production == nullptr) return {};
   return fail(Errc::refused,
-              fmt::format("SYNC is produced already, every {}", to_string(production->options.period)),
+              fmt::format("SYNC is already being produced, every {}", to_string(production->options.period)),
               "`sync stop` ends it");
 }
 
@@ -58,8 +58,8 @@ Result<void> check_quiet(session::Session& session) {
   const auto waited = session.wait([&] { return heard; }, session.now() + kListening);
   if (!waited) return fail(waited.error());
   if (!*waited) return {};
-  return fail(Errc::refused, "somebody else on this bus produces SYNC already",
-              "end that one first: a PLC, another `sync start`, or a drive whose 1005h has bit 30 set");
+  return fail(Errc::refused, "another node on this bus already produces SYNC",
+              "stop it first: a PLC, another `sync start`, or a drive whose 1005h has bit 30 set");
 }
 
 Result<Value> run_once(Context& context, const Arguments&) {
@@ -78,11 +78,11 @@ Result<canopen::SyncProducer::Options> options_of(const Arguments& arguments) {
   out.period = period->value_or(kDefaultPeriod);
   if (out.period < kShortestPeriod)
     return fail(Errc::usage, fmt::format("a period of {} is too short", to_string(out.period)),
-                "the shortest is 200us; drives want 1ms or more");
+                "the minimum is 200us; drives need 1ms or more");
   if (!arguments.has("--counter")) return out;
   const auto counter = parse_digits(arguments.text("--counter"), 10);
   if (!counter || *counter < 2 || *counter > 240)
-    return fail(Errc::usage, fmt::format("'{}' is no last value of a counter", arguments.text("--counter")),
+    return fail(Errc::usage, fmt::format("'{}' is not a counter overflow value", arguments.text("--counter")),
                 "write 2..240 (CiA 301, 1019h)");
   out.last_counter = static_cast<std::uint8_t>(*counter);
   return out;
@@ -126,9 +126,8 @@ Result<Value> run_start(Context& context, const Arguments& arguments) {
 
 Result<Value> run_stop(Context& context, const Arguments&) {
   if (context.session->can()->sync() == nullptr)
-    return fail(
-        Errc::usage, "no SYNC is produced here",
-        "`sync start` in the same prompt or batch file begins one; another process is ended by Ctrl-C");
+    return fail(Errc::usage, "no SYNC is produced here",
+                "`sync start` in the same prompt or batch file starts it; stop another process with Ctrl-C");
   if (context.dry_run) return Value(report::Record{{"sync", "would be ended"}});
   auto result = traffic::end_sync(*context.session);
   for (auto& warning : result.warnings) context.notices.push_back(std::move(warning));
@@ -142,7 +141,7 @@ const Command kSyncOnce{
     .path = "sync once",
     .summary = "Send one SYNC; asks first",
     .details =
-        "Synchronous RPDOs that came before take effect, synchronous TPDOs are sent. It asks, because a "
+        "Synchronous RPDOs received before take effect, synchronous TPDOs are sent. Asks first, because a "
         "drive may move.",
     .parameters = {},
     .needs = Needs::can,
@@ -154,11 +153,11 @@ const Command kSyncOnce{
 extern const Command kSyncStart;
 const Command kSyncStart{
     .path = "sync start",
-    .summary = "Produce SYNC in a steady period; asks first",
+    .summary = "Produce SYNC at a fixed period; asks first",
     .details =
-        "At the prompt and in a batch file it goes on while other lines run, until `sync stop` or the end of "
-        "them; alone it lasts until Ctrl-C, with --for so long, and then tells the periods that were "
-        "measured: mean, shortest, longest, standard deviation, and how many SYNCs were missed because the "
+        "At the prompt and in a batch file it runs on behind the following lines, until `sync stop` or the "
+        "end of input; alone it runs until Ctrl-C, or for the time of --for, then shows the measured "
+        "periods: mean, shortest, longest, standard deviation, and how many SYNCs were missed because the "
         "computer was late. There must be no other producer of SYNC on the bus.",
     .parameters = kStartParameters,
     .needs = Needs::can,
@@ -170,10 +169,10 @@ const Command kSyncStart{
 extern const Command kSyncStop;
 const Command kSyncStop{
     .path = "sync stop",
-    .summary = "End the SYNC that `sync start` began",
+    .summary = "Stop the SYNC that `sync start` started",
     .details =
-        "Tells the periods that were measured. Drives that were left energised in a mode that follows SYNC "
-        "(ip, csp, csv, cst) are named: disable them first.",
+        "Shows the measured periods. Drives left energised in a mode that follows SYNC (ip, csp, csv, cst) "
+        "are listed: disable them first.",
     .parameters = {},
     .needs = Needs::can,
     .effect = Effect::none,

@@ -17,12 +17,12 @@ using namespace command;
 using report::TestResult;
 
 constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
-    {.name = "speed", .help = "for the test jog: 60rpm", .kind = Kind::value, .required = true},
-    {.name = "--expect", .help = "inputs for the test io; without, it is left out", .kind = Kind::text},
+    {.name = "speed", .help = "for `test jog`: 60rpm", .kind = Kind::value, .required = true},
+    {.name = "--expect", .help = "inputs for `test io`; without it, no `test io`", .kind = Kind::text},
     {.name = "--for", .help = "how long in each direction (default 2s)", .kind = Kind::duration},
     {.name = "--tolerance", .help = "how far the speed may be off, in % (default 10)", .kind = Kind::number},
     {.name = "--stop-within", .help = "longest time to standstill (default 1s)", .kind = Kind::duration},
-    {.name = "--no-home", .help = "leave the test home out", .kind = Kind::flag},
+    {.name = "--no-home", .help = "skip `test home`", .kind = Kind::flag},
     {.name = "--repeat", .help = "homings (default 5)", .kind = Kind::number},
     {.name = "--spread", .help = "greatest spread of home (default 1)", .kind = Kind::number},
     kEncoderOption,
@@ -72,7 +72,7 @@ class AllTests {
       if (const auto done = move(*jog, *home); !done) context_->errors.push_back(done.error());
     if (!heard)
       context_->notices.push_back(
-          fmt::format("node {}: nothing was moved, because the test of the communication failed", node));
+          fmt::format("node {}: nothing was moved, because `test comm` failed", node));
     if (context_->dry_run) return report::Value(std::move(plans_));
     return trial::verdicts(*context_, verdict_options(*arguments_), results_);
   }
@@ -102,7 +102,7 @@ class AllTests {
     auto possible = trial::check_home_test(*context_, *request_, home);
     if (possible) return possible;
     auto error = possible.error();
-    error.message = "the test home could not be run, so nothing is: " + error.message;
+    error.message = "`test home` is impossible, nothing was run: " + error.message;
     error.hint += "; or add --no-home";
     return fail(std::move(error));
   }
@@ -124,8 +124,8 @@ class AllTests {
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   for (const auto* option : {"--repeat", "--spread"})
     if (arguments.has("--no-home") && arguments.has(option))
-      return fail(Errc::usage, fmt::format("{} is of the homing test, which --no-home leaves out", option),
-                  "leave one of them away");
+      return fail(Errc::usage, fmt::format("{} is for `test home`, which --no-home skips", option),
+                  "leave one of them out");
   return AllTests(context, arguments).run();
 }
 
@@ -136,12 +136,12 @@ const Command kTestAll{
     .path = "test all",
     .summary = "Test communication, inputs, both directions and homing, with a verdict",
     .details =
-        "Runs `test comm`, `test io` where --expect names inputs, `test jog` and, where the family homes and "
-        "--no-home is not given, `test home` by the drive's present method. What a limit or an option would "
-        "refuse of any of them is refused before the first one moves. After a failure nothing more is moved. "
-        "Each motion shows what is known and asks, as it would alone. Exit code 1 when a test fails. "
-        "Example: `test all 60rpm -n 1 -d gsd600 --yes --json >axis-1.json`, then `report axis-1.html "
-        "--tests axis-1.json -n 1 -d gsd600`.",
+        "Runs `test comm`, `test io` if --expect names inputs, `test jog` and, if the family can home and "
+        "--no-home is not given, `test home` with the drive's present method. If a limit or an option rules "
+        "out any of them, nothing is moved at all. After a failure nothing more is moved. Each motion shows "
+        "its preflight checks and asks, as it would alone. Exit code 1 if a test fails. Example: `test all "
+        "60rpm -n 1 -d gsd600 --yes --json >axis-1.json`, then `report axis-1.html --tests axis-1.json -n 1 "
+        "-d gsd600`.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,

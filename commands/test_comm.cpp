@@ -38,10 +38,10 @@ const Command kTestComm{
     .path = "test comm",
     .summary = "Test the communication with a drive, with a verdict",
     .details =
-        "Reads 1000h many times without retries, then listens to the heartbeat. Passes when no answer was "
-        "lost or against the protocol, none took longer than --longest, the heartbeat came at the period of "
+        "Reads 1000h many times without retries, then listens to the heartbeat. Passes if no answer was lost "
+        "or violated the protocol, none took longer than --longest, the heartbeat came at the period of "
         "1017h, and there was no emergency, no restart and no error report of the CAN controller. Exit code "
-        "1 when it fails. Changes nothing and moves nothing.",
+        "1 if it fails. Changes nothing and moves nothing.",
     .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::reads,

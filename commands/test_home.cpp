@@ -11,7 +11,7 @@ using namespace command;
 
 constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
     {.name = "method", .help = "number of 6098h; the drive's present one unless said", .kind = Kind::value},
-    {.name = "--repeat", .help = "how often (default 5)", .kind = Kind::number},
+    {.name = "--repeat", .help = "runs (default 5)", .kind = Kind::number},
     {.name = "--spread",
      .help = "greatest spread that passes, in the unit of the position (default 1)",
      .kind = Kind::number},
@@ -38,10 +38,10 @@ const Command kTestHome{
     .path = "test home",
     .summary = "Home an axis several times, with a verdict",
     .details =
-        "Looks, asks, moves and ends as `home` does, --repeat times. Passes when each found home, and when "
-        "neither the position at rest nor home against the encoder's own count (6063h, or what the family "
-        "has) spreads by more than --spread. Where the drive does not tell how many counts its encoder has "
-        "in a turn, --encoder does; one that sets that count to zero as well shows no spread there. Exit "
+        "Checks, asks, moves and ends as `home` does, --repeat times. Passes if every run finds home, and "
+        "neither the final position nor the home position in encoder counts (6063h, or the family's own "
+        "object) spreads by more than --spread. --encoder gives the encoder counts per revolution if the "
+        "drive does not report them; a drive that also zeroes the encoder count shows no spread there. Exit "
         "code 1 when it fails. Example: `test home 33 --repeat 5 --spread 0.5 -n 1 -d gsd600 --yes`.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,

@@ -38,10 +38,10 @@ const Command kTestIo{
     .path = "test io",
     .summary = "Watch the inputs of a drive while you actuate them, with a verdict",
     .details =
-        "Reads 60FDh every 10 ms and tells each change. With --expect it passes, and ends, as soon as each "
-        "input named there was seen at 0 and at 1; without, it watches until the time is over (or Ctrl-C) "
-        "and passes when any input changed. 0 and 1 are the bits as the drive sends them: whether 1 means "
-        "actuated depends on the family and on the wiring. Exit code 1 when it fails. Moves nothing.",
+        "Reads 60FDh every 10 ms and reports each change. With --expect it passes, and ends, once every "
+        "input named has been seen at 0 and at 1; without, it watches until the time is over (or Ctrl-C) and "
+        "passes if any input changed. 0 and 1 are the bits as the drive sends them: whether 1 means actuated "
+        "depends on the family and on the wiring. Exit code 1 when it fails. Moves nothing.",
     .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::reads,

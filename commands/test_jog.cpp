@@ -43,11 +43,12 @@ const Command kTestJog{
     .path = "test jog",
     .summary = "Turn a motor both ways, with a verdict",
     .details =
-        "Looks, asks, moves and ends as `jog` does, once in each direction. Passes when it turned the way it "
-        "was told, was at its speed within --tolerance in the second half of the time, fell no farther "
-        "behind than 1 % of its way, stood still --stop-within after the command, and was left without "
-        "power. What a drive does not tell is skipped. --plot draws it, --csv keeps the samples. Exit code 1 "
-        "when it fails. Example: `test jog 60rpm -n 1 -d gsd600 --yes --junit jog.xml`.",
+        "Checks, asks, moves and ends as `jog` does, once in each direction. Passes if the motor turned in "
+        "the commanded direction, held its speed within --tolerance in the second half of the time, its "
+        "following error grew by at most 1 % of the distance, it stood still within --stop-within of the "
+        "stop command, and the drive was left disabled. What a drive does not report is skipped. --plot "
+        "plots, --csv saves the samples. Exit code 1 when it fails. Example: `test jog 60rpm -n 1 -d gsd600 "
+        "--yes --junit jog.xml`.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,

@@ -14,7 +14,7 @@ constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   if (!arguments.has("--limit"))
-    return fail(Errc::usage, "an unloaded motor runs away under torque: it needs a speed limit",
+    return fail(Errc::usage, "an unloaded motor runs away in torque mode: a speed limit is needed",
                 "add --limit 60rpm");
   motion::Torque torque;
   torque.torque = arguments.text("torque");
@@ -33,12 +33,12 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
 extern const Command kTorque;
 const Command kTorque{
     .path = "torque",
-    .summary = "Push with a torque for a time",
+    .summary = "Apply a torque for a time",
     .details =
-        "Torque mode, watched and ended like `jog`. --limit is the speed the motor must not exceed: it goes "
-        "to the drive where the family has a limit for this mode, and servoctl stops the motor that turns "
-        "faster than 1.2 times that in any case. More than the rated torque needs --max-torque; more than "
-        "6072h is refused. Example: `torque 5% --limit 60rpm --for 1s -n 1`.",
+        "Torque mode, supervised and ended like `jog`. --limit is the speed limit: it is set in the drive "
+        "where the family has one for this mode, and servoctl always stops a motor that exceeds 1.2 times "
+        "it. Above the rated torque --max-torque is needed; above 6072h is refused. Example: `torque 5% "
+        "--limit 60rpm --for 1s -n 1`.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,

@@ -37,10 +37,10 @@ Result<Value> run(Context& context, const Arguments& /*unused*/) {
 extern const Command kUnitsForget;
 const Command kUnitsForget{
     .path = "units forget",
-    .summary = "Drop the counts of a turn that `units learn` kept",
+    .summary = "Delete the kept counts per revolution",
     .details =
-        "Of these nodes on this bus, whatever drive stands there now. Nothing is read from the drive and "
-        "nothing changed in it. Example: `units forget -n 1`.",
+        "For these nodes on this bus, whatever drive is there now. Nothing is read from the drive or changed "
+        "in it. Example: `units forget -n 1`.",
     .parameters = {},
     .needs = Needs::node,
     .effect = Effect::none,

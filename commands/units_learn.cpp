@@ -26,17 +26,17 @@ constexpr Duration kLongest = std::chrono::seconds(60);
 
 constexpr Parameter kParameters[] = {
     {.name = "--speed",
-     .help = "of the motor: 15rpm to 30rpm (default 30rpm); the sign is the direction",
+     .help = "motor speed: 15rpm to 30rpm (default 30rpm); the sign is the direction",
      .kind = Kind::value},
-    {.name = "--for", .help = "how long it is measured (default 6s)", .kind = Kind::duration},
+    {.name = "--for", .help = "measuring time (default 6s)", .kind = Kind::duration},
     {.name = "--nameplate",
-     .help = "counts a turn of the encoder by its nameplate, held against the measurement",
+     .help = "encoder counts per revolution on the nameplate, compared with the result",
      .kind = Kind::number},
     {.name = "--max-torque", .help = "stop above this torque", .kind = Kind::value},
     {.name = "--max-following-error", .help = "stop above this following error", .kind = Kind::value},
-    {.name = "--window", .help = "stop when it has moved farther than this", .kind = Kind::value},
-    {.name = "--master-node", .help = "servoctl's own node-ID for the watchdog", .kind = Kind::number},
-    {.name = "--plot", .help = "draw the samples over time at the end", .kind = Kind::flag},
+    {.name = "--window", .help = "stop when it has moved further than this", .kind = Kind::value},
+    {.name = "--master-node", .help = "node-ID of servoctl for the watchdog", .kind = Kind::number},
+    {.name = "--plot", .help = "plot the samples over time at the end", .kind = Kind::flag},
     kCsvOption,
 };
 
@@ -49,8 +49,8 @@ Result<double> speed_of(const Arguments& arguments) {
   if (rpm && std::abs(*rpm) >= motion::kLeastLearnRpm && std::abs(*rpm) <= motion::kMostLearnRpm) return *rpm;
   return fail(
       Errc::usage,
-      fmt::format("--speed: '{}' is not 15rpm to 30rpm, one way or the other", arguments.text("--speed")),
-      "slower is not exact enough, faster is not safe before the counts are known");
+      fmt::format("--speed: '{}' is not 15rpm to 30rpm in either direction", arguments.text("--speed")),
+      "slower is too inaccurate, faster is not safe before the counts are known");
 }
 
 Result<std::optional<double>> nameplate_of(const Arguments& arguments) {
@@ -59,7 +59,7 @@ Result<std::optional<double>> nameplate_of(const Arguments& arguments) {
   if (counts && !counts->negative && counts->magnitude > 0)
     return std::optional(static_cast<double>(counts->magnitude));
   return fail(Errc::usage,
-              fmt::format("--nameplate: '{}' is no number of counts", arguments.text("--nameplate")),
+              fmt::format("--nameplate: '{}' is not a number of counts", arguments.text("--nameplate")),
               "such as 131072 for 17 bits");
 }
 
@@ -68,7 +68,7 @@ Result<Duration> length_of(const Arguments& arguments) {
   if (!length) return fail(length.error());
   if (!*length) return Learn{}.length;
   if (**length >= kShortest && **length <= kLongest) return **length;
-  return fail(Errc::usage, "--for: it is measured for 2 s to 60 s", "--for 6s");
+  return fail(Errc::usage, "--for: the measuring time is 2 s to 60 s", "--for 6s");
 }
 
 /// What keeps the number from being measured: conditions of the rules that do not hold.
@@ -105,13 +105,12 @@ Result<double> read_gear(Context& context, std::uint8_t node) {
     const auto pending = motion::restart_note(*context.profile, *known->way);
     return refused(
         node,
-        fmt::format("its own parameters tell that a turn has {} increments{}: nothing is to be learned",
-                    plain_number(known->value, 12), pending.empty() ? "" : " when they are in force"),
+        fmt::format("its parameters already give {} increments per revolution{}: nothing to learn",
+                    plain_number(known->value, 12), pending.empty() ? "" : " once they take effect"),
         "`units show` tells by which" + (pending.empty() ? "" : "; " + pending));
   }
   const auto why = unmet(context, node);
-  return refused(node,
-                 "the counts of a turn cannot be measured as it is set" + (why.empty() ? why : ": " + why),
+  return refused(node, "its present settings prevent the measurement" + (why.empty() ? why : ": " + why),
                  std::string(motion::kOtherWay));
 }
 
@@ -120,12 +119,11 @@ Result<Learn> learn_of(Context& context, const Arguments& arguments, std::uint8_
   if (rules.learn.speed.empty()) {
     const auto ways = rules.units.find(drive::Measure::increments_per_turn);
     const auto told = ways == rules.units.end() ? std::string() : show::ways_text(ways->second);
-    return fail(
-        Errc::refused,
-        told.empty()
-            ? fmt::format("{} has nothing to measure the counts of a turn by", context.profile->family)
-            : fmt::format("{} tells the counts of a turn itself: {}", context.profile->family, told),
-        told.empty() ? std::string(motion::kOtherWay) : "`units show` reads them");
+    return fail(Errc::refused,
+                told.empty()
+                    ? fmt::format("{} has no speed monitor to measure with", context.profile->family)
+                    : fmt::format("{} reports the counts per rev itself: {}", context.profile->family, told),
+                told.empty() ? std::string(motion::kOtherWay) : "`units show` reads them");
   }
   const auto monitor = drive::resolve(context.profile, rules.learn.speed);
   if (!monitor) return fail(monitor.error());
@@ -164,7 +162,7 @@ Result<void> keep(Context& context, std::uint8_t node, const motion::LearnReport
   // What was measured holds for these settings of this drive.
   const auto now = read_gear(context, node);
   if (!now || *now != gear)
-    return refused(node, "its gear was changed while it was measured: nothing is kept", "measure again");
+    return refused(node, "its gear was changed during the measurement: nothing is kept", "measure again");
   const auto identity = session::read_identity(*context.session, node);
   if (!identity) return fail(identity.error());
   motion::KeptTurn turn;
@@ -178,8 +176,7 @@ Result<void> keep(Context& context, std::uint8_t node, const motion::LearnReport
   auto written = motion::TurnFile(context, node).write(turn);
   if (written) return written;
   auto error = written.error();
-  error.message =
-      fmt::format("the {} counts that were measured are not kept: {}", turn.counts, error.message);
+  error.message = fmt::format("the measured {} counts are not kept: {}", turn.counts, error.message);
   return fail(std::move(error));
 }
 
@@ -188,15 +185,16 @@ void add_measurement(Value& answer, const motion::LearnReport& done, double gear
   if (record == nullptr) return;
   Record found;
   if (done.counts) {
-    found.push_back({"counts", std::llround(done.counts->counts), report::Show::everywhere, "counts a turn"});
+    found.push_back(
+        {"counts", std::llround(done.counts->counts), report::Show::everywhere, "counts per rev"});
     found.push_back({"why", done.counts->reason});
   }
   if (done.measured) {
     const auto& measured = *done.measured;
     found.push_back({"measured", std::llround(measured.increments / gear)});
     found.push_back({"uncertainty", parse_real(plain_number(measured.uncertainty * 100, 3)).value_or(0),
-                     report::Show::everywhere, "give or take %"});
-    found.push_back({"gear", gear, report::Show::everywhere, "increments a count"});
+                     report::Show::everywhere, "uncertainty (± %)"});
+    found.push_back({"gear", gear, report::Show::everywhere, "increments per count"});
     found.push_back({"rpm", parse_real(plain_number(measured.rpm, 4)).value_or(0)});
     found.push_back({"turns", parse_real(plain_number(measured.turns, 4)).value_or(0)});
     found.push_back({"looks", std::uint64_t{measured.looks}, report::Show::json});
@@ -215,8 +213,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   if (!learn) return fail(learn.error());
   const motion::TurnFile file(context, node);
   if (file.path().empty())
-    return fail(Errc::refused, "there is no folder to keep in what is measured",
-                "set HOME or XDG_STATE_HOME");
+    return fail(Errc::refused, "there is no folder to keep the result in", "set HOME or XDG_STATE_HOME");
   if (!context.dry_run)
     if (const auto possible = check_writable(file.path()); !possible) return fail(possible.error());
   motion::LearnReport done;
@@ -250,17 +247,16 @@ Result<Value> run(Context& context, const Arguments& arguments) {
 extern const Command kUnitsLearn;
 const Command kUnitsLearn{
     .path = "units learn",
-    .summary = "Turn a motor slowly to measure how many counts a turn has, and keep that",
+    .summary = "Turn a motor slowly to measure its counts per revolution, and keep them",
     .details =
-        "For drives that do not tell it. Looks, asks, moves and ends as `jog` does: faster and faster until "
-        "the drive's own monitor shows 30 rpm, then 6 s at that speed, about 4 turns in all. The way of "
-        "6064h over the integral of the monitor is the measurement, 606Ch has to agree; the gear 6091h is "
-        "taken out. It is refused when it may be more than 1 % off, and when the monitor shows nothing or "
-        "does not go with the way. Taken is the power of two within 1 %, else a round decimal number (not "
-        "where the manual prints two scales for the monitor: then --nameplate COUNTS is held against the "
-        "measurement). It is kept for this bus, node and identity (1000h, 1008h, 1018h) and used by every "
-        "motion without --turn, with a notice; what the drive's own parameters tell goes before it. Example: "
-        "`units learn -n 1`.",
+        "For drives that do not report it. Checks, asks, moves and ends as `jog` does: speeds up until the "
+        "drive's own speed monitor shows 30 rpm, then 6 s at that speed, about 4 turns in all. The result is "
+        "the change of 6064h divided by the integral of the monitor, without the gear 6091h; 606Ch must "
+        "agree. It is refused if it may be more than 1 % off, or if the monitor shows nothing or does not "
+        "match the position. The power of two within 1 % is taken, else a round decimal number (not where "
+        "the manual prints two scales for the monitor: then --nameplate COUNTS is compared with the result). "
+        "It is kept for this bus, node and identity (1000h, 1008h, 1018h) and used by every motion without "
+        "--turn, with a notice; the drive's own parameters take precedence. Example: `units learn -n 1`.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,

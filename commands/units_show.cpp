@@ -69,7 +69,7 @@ List row(const Context& context, std::uint8_t node, Measure measure, std::string
   std::string_view source;
   std::string from = "nobody";
   if (const auto unit = position_unit(*context.profile); of_turn && unit != "inc") {
-    from = fmt::format("not needed: its positions are in {}{}", unit, turn ? "; --turn changes nothing" : "");
+    from = fmt::format("not needed: positions are in {}{}", unit, turn ? "; --turn changes nothing" : "");
   } else if (of_turn && turn) {
     value = turn;
     source = "--turn";
@@ -79,8 +79,7 @@ List row(const Context& context, std::uint8_t node, Measure measure, std::string
     source = told->learned ? "kept" : "drive";
     from = told->learned ? kept_text(known) : "the drive: " + show::way_text(*told->way);
   } else if (of_turn) {
-    from += context.profile->rules.learn.speed.empty() ? ": --turn says it"
-                                                       : ": `units learn` measures it, --turn says it";
+    from += context.profile->rules.learn.speed.empty() ? ": use --turn" : ": use `units learn` or --turn";
   }
   return {node,
           name,
@@ -111,7 +110,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
     const auto known = motion::find_turn(context, node);
     if (!known.unused.empty())
       context.notices.push_back(
-          fmt::format("node {}: the counts of a turn that are kept are not used: {}", node, known.unused));
+          fmt::format("node {}: the kept counts per revolution are not used: {}", node, known.unused));
     for (const auto& [measure, name] : kMeasures)
       if (measure == Measure::increments_per_turn || context.profile->rules.units.count(measure) > 0)
         table.rows.push_back(row(context, node, measure, name, options->turn, known));
@@ -125,11 +124,11 @@ Result<Value> run(Context& context, const Arguments& arguments) {
 extern const Command kUnitsShow;
 const Command kUnitsShow{
     .path = "units show",
-    .summary = "Show what is known of a turn of the motor and of its torque, and from where",
+    .summary = "Show counts per revolution and rated torque, and their source",
     .details =
-        "Increments (6064h) and encoder pulses in a turn, rated torque, as far as the family's rules know "
-        "how to get them: from the drive's own parameters, from what `units learn` kept, or from --turn. In "
-        "JSON `source` is drive, kept, --turn or null. What is kept and not used is told with the reason.",
+        "Increments (6064h) and encoder pulses per revolution and rated torque, as far as the family's rules "
+        "give them: from the drive's parameters, from what `units learn` kept, or from --turn. In JSON "
+        "`source` is drive, kept, --turn or null. What is kept but not used is shown with the reason.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::reads,

@@ -27,8 +27,8 @@ Result<Value> run(Context& context, const Arguments& arguments) {
     if (!read) return fail(read.error());
     if (read->family != context.profile->family)
       return fail(Errc::refused,
-                  fmt::format("{} is of {}, not of {}", name, read->family, context.profile->family),
-                  "name the family of the backup with -d when the drive really is one");
+                  fmt::format("{} is for {}, not for {}", name, read->family, context.profile->family),
+                  "give the backup's family with -d if the drive really is one");
     backup = std::move(*read);
   }
   report::List out;
@@ -62,9 +62,9 @@ const Command kVerify{
     .path = "verify",
     .summary = "Compare a drive with a backup or the factory values",
     .details =
-        "Reads every value of the backup from the drive; exit code 1 when one differs or is not there. A "
-        "file of another form with an entry that cannot be used is refused; --skip-invalid verifies the "
-        "rest, exit code 1.",
+        "Reads every value of the backup from the drive; exit code 1 if one differs or is missing. A file in "
+        "another format is refused if it has an unusable entry; --skip-invalid verifies the rest, exit code "
+        "1.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::reads,

@@ -25,10 +25,10 @@ constexpr Parameter kParameters[] = {
      .kind = Kind::object,
      .required = true,
      .many = true},
-    {.name = "--every", .help = "time from value to value (default 100ms)", .kind = Kind::duration},
+    {.name = "--every", .help = "sampling period (default 100ms)", .kind = Kind::duration},
     kForOption,
     {.name = "--changes", .help = "only when a value has changed", .kind = Kind::flag},
-    {.name = "--plot", .help = "draw the values at the end", .kind = Kind::flag},
+    {.name = "--plot", .help = "plot the values at the end", .kind = Kind::flag},
 };
 
 /// Samples as they are shown: the values of one node at one time.
@@ -161,12 +161,12 @@ Result<Value> run(Context& context, const Arguments& arguments) {
 extern const Command kWatch;
 const Command kWatch{
     .path = "watch",
-    .summary = "Show how values of objects change",
+    .summary = "Show the values of objects over time",
     .details =
-        "Every --every, one line for each node, until --for is over or Ctrl-C. What a TPDO brings is taken "
-        "from it; the rest is read by SDO. At the end it tells for each object how many values there were, "
-        "the least, the mean and the greatest; --plot draws them. `-o jsonl` gives one document a look. A "
-        "drive that does not answer at the end makes the exit code.",
+        "One line per node at each --every, until --for is over or Ctrl-C. Values in a TPDO are taken from "
+        "it; the rest is read by SDO. At the end it shows the number of values of each object, the minimum, "
+        "mean and maximum; --plot plots them. `-o jsonl` gives one document per sample. A drive that no "
+        "longer answers at the end sets the exit code.",
     .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::reads,

@@ -19,7 +19,7 @@ constexpr Parameter kParameters[] = {
      .required = true},
     {.name = "value", .help = "100, -5, 0x64, 60rpm, a label, \"text\", hex:00 64", .kind = Kind::value},
     {.name = "--type",
-     .help = "data type, when the dictionary does not know it",
+     .help = "data type, if the dictionary does not have it",
      .kind = Kind::type,
      .choices = kTypeNames},
     {.name = "--from", .help = "write the bytes of this file instead of a value", .kind = Kind::file},
@@ -30,7 +30,7 @@ constexpr Parameter kParameters[] = {
 
 Result<void> check_one_source(const Arguments& arguments) {
   if (arguments.has("--from") && arguments.has("--type"))
-    return fail(Errc::usage, "--type goes with a value: a file is written as it is", "leave --type away");
+    return fail(Errc::usage, "--type is for a value; a file is written as raw bytes", "leave --type out");
   if (arguments.has("value") != arguments.has("--from")) return {};
   return fail(Errc::usage, "'write' needs a value, or a file with --from",
               "write OBJECT VALUE, or write OBJECT --from FILE");
@@ -99,12 +99,12 @@ const Command kWrite{
     .summary = "Write one object of a node",
     .details =
         "The value is checked against type and limits before a frame is sent. A plain number is the raw "
-        "number the drive shows; a number with a unit is converted. A write is never repeated: when its "
-        "answer is lost, the object is read and the outcome told. Asked before: what stores or restores, "
-        "changes node-ID or bitrate, and a controlword that enables the drive. With --from the bytes of a "
-        "file of any size are written, in blocks where the drive knows them, and kept with --keep. A COB-ID "
-        "that CiA 301 keeps for another service (NMT, SYNC, EMCY, SDO, error control, reserved) is refused. "
-        "A value that begins with - and is no number stands behind --: write 0x2000 -- \"--text\".",
+        "number the drive shows; a number with a unit is converted. A write is never repeated: if its answer "
+        "is lost, the object is read and the outcome reported. Asks first: to store or restore, change "
+        "node-ID or bitrate, or enable the drive by the controlword. With --from a file of any size is "
+        "written, by block transfer if the drive supports it; --keep keeps it too. A COB-ID that CiA 301 "
+        "reserves for another service (NMT, SYNC, EMCY, SDO, error control, restricted) is refused. A value "
+        "that begins with - and is not a number goes after --: write 0x2000 -- \"--text\".",
     .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::writes,

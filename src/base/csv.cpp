@@ -122,8 +122,7 @@ Result<CsvTable> parse_csv(std::string_view text, std::string_view file) {
       auto sorted = cells;
       std::sort(sorted.begin(), sorted.end());
       const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
-      if (twice != sorted.end())
-        return fail_at(file, line, fmt::format("column '{}' stands here twice", *twice));
+      if (twice != sorted.end()) return fail_at(file, line, fmt::format("column '{}' appears twice", *twice));
       continue;
     }
     if (cells.size() != table.columns.size())

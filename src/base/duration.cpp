@@ -38,8 +38,9 @@ Result<Duration> read_duration(std::string_view text) {
   text = trim(text);
   if (parse_real(text) || parse_integer(text))
     return fail(Errc::usage, fmt::format("'{}': a time needs its unit", text),
-                fmt::format("write {0}s or {0}ms, whichever is meant", text));
-  return fail(Errc::usage, fmt::format("'{}' is no time", text), "write 500ms, 2s or 1min; a day at most");
+                fmt::format("write {0}s or {0}ms", text));
+  return fail(Errc::usage, fmt::format("'{}' is not a time", text),
+              "write 500ms, 2s or 1min; at most one day");
 }
 
 std::string to_string(Duration duration) {

@@ -31,7 +31,7 @@ struct Close {
 using FilePtr = std::unique_ptr<std::FILE, Close>;
 
 constexpr auto kAsItIs = static_cast<uid_t>(-1);  ///< Also of a group.
-constexpr std::string_view kOtherFolder = "choose a folder that exists and that you may write to";
+constexpr std::string_view kOtherFolder = "choose an existing folder you may write to";
 /// How long a pipe, a terminal or a device may take nothing.
 constexpr auto kPatience = std::chrono::seconds(2);
 
@@ -41,9 +41,9 @@ std::string advice(int error) {
   switch (error) {
     case ENOSPC:
     case EDQUOT: return "make room on the disk, or name a file on another one";
-    case EFBIG: return "a limit of the size of files (ulimit -f) was reached";
+    case EFBIG: return "the file size limit (ulimit -f) was reached";
     case ETIMEDOUT:
-    case ENXIO: return "nobody reads it: start the reader first";
+    case ENXIO: return "it has no reader: start the reader first";
     default: return std::string(kOtherFolder);
   }
 }

@@ -33,12 +33,12 @@ std::optional<ControllerReport> parse_report(const Frame& frame) {
 std::string_view text(ControllerReport report) {
   switch (report) {
     case ControllerReport::bus_off: return "bus-off: the controller has left the bus after too many errors";
-    case ControllerReport::restarted: return "the controller takes part in the bus again";
+    case ControllerReport::restarted: return "the controller is back on the bus";
     case ControllerReport::error_passive:
       return "error passive: many errors on the bus; check bitrate, wiring and termination";
     case ControllerReport::error_warning: return "error warning: more errors on the bus than usual";
     case ControllerReport::error_active: return "error active: the bus is healthy again";
-    case ControllerReport::overflow: return "frames were lost: they came faster than they were read";
+    case ControllerReport::overflow: return "frames were lost: they were not read fast enough";
     case ControllerReport::transmit_timeout: return "a frame could not be sent in time";
   }
   return {};

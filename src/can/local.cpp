@@ -64,8 +64,8 @@ bool is_bus_name(std::string_view name) {
 
 tl::unexpected<Error> busy(std::string_view name, const LocalDirectory& directory) {
   return fail(
-      Errc::bus, fmt::format("local:{} stays busy: a process that is stopped or hangs holds it", name),
-      fmt::format("`fuser -v {}/lock` lists the processes on this bus; end that one", directory.path()));
+      Errc::bus, fmt::format("local:{} stays busy: a stopped or hanging process holds it", name),
+      fmt::format("`fuser -v {}/lock` lists the processes on this bus; end the culprit", directory.path()));
 }
 
 /// The process ids of `member-PID-N`, with spaces between them as `kill` wants them.
@@ -123,9 +123,8 @@ Result<void> LocalBus::deliver_all(std::span<const std::uint8_t> datagram, TimeP
     nap(kPause);
   }
   const auto ids = process_ids(waiting);
-  return fail(Errc::bus,
-              fmt::format("local:{} is blocked by a member that does not read (process {})", name_, ids),
-              fmt::format("let it go on (`kill -CONT {0}`) or end it (`kill {0}`)", ids));
+  return fail(Errc::bus, fmt::format("local:{} is blocked by process {}, which does not read", name_, ids),
+              fmt::format("resume it (`kill -CONT {0}`) or end it (`kill {0}`)", ids));
 }
 
 /// False while the member cannot take the frame.

@@ -34,7 +34,7 @@ std::string base_path() {
 
 tl::unexpected<Error> cannot_use(const std::string& path, const std::string& why) {
   return fail(Errc::bus, fmt::format("cannot use {} for the bus: {}", path, why),
-              "remove it, or set XDG_RUNTIME_DIR to a directory of yours, for all processes on the bus");
+              "remove it, or set XDG_RUNTIME_DIR to your own directory for all processes on the bus");
 }
 
 Result<Descriptor> open_private(const std::string& path) {

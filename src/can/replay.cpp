@@ -34,8 +34,8 @@ Result<void> ReplayBus::send(const Frame& frame) {
     skip_done();
     return {};
   }
-  return fail(Errc::bus, fmt::format("{} was not sent when {} was recorded", to_string(frame), name_),
-              "a recording answers only the commands it was made with, in their order; `decode` shows them");
+  return fail(Errc::bus, fmt::format("{} is not in the recording {}", to_string(frame), name_),
+              "a recording answers only its original commands, in order; `decode` shows them");
 }
 
 Result<std::optional<Frame>> ReplayBus::receive(TimePoint deadline) {
@@ -66,8 +66,8 @@ Result<std::unique_ptr<Bus>> open_replay(const std::filesystem::path& file) {
     if (line) lines.push_back(std::move(*line));
   }
   if (lines.empty())
-    return fail(Errc::file, fmt::format("{} holds no frame", file.string()),
-                "recordings are in a form of candump; `--trace FILE` makes them");
+    return fail(Errc::file, fmt::format("{} contains no frames", file.string()),
+                "recordings are candump files; `--trace FILE` writes them");
   std::stable_sort(lines.begin(), lines.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
   return std::make_unique<ReplayBus>(std::move(lines), file.string());
 }

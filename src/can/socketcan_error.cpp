@@ -16,8 +16,8 @@ bool needs_no_bitrate(std::string_view name) {
 
 std::string missing_hint() {
   const auto present = can_interfaces();
-  const auto here = present.empty() ? std::string("no CAN interface is here")
-                                    : fmt::format("CAN interfaces here: {}", fmt::join(present, ", "));
+  const auto here = present.empty() ? std::string("this machine has no CAN interface")
+                                    : fmt::format("CAN interfaces: {}", fmt::join(present, ", "));
   return here +
          "; for a USB adapter: plug it in, then `sudo ip link set can0 up type can bitrate 500000`, with the "
          "bitrate of the drives; for a virtual bus: `sudo ip link add dev vcan0 type vcan && sudo ip link "
@@ -61,12 +61,12 @@ tl::unexpected<Error> interface_lost(const std::string& name, int error) {
     return fail(Errc::bus, fmt::format("{} went down: the interface is gone", name),
                 fmt::format("was the adapter unplugged? plug it in, then {}", up));
   return fail(Errc::bus, fmt::format("{} failed: {}", name, system_text(error)),
-              fmt::format("`ip -details -statistics link show {}` tells its state", name));
+              fmt::format("`ip -details -statistics link show {}` shows its state", name));
 }
 
 tl::unexpected<Error> interface_queue_full(const std::string& name) {
   return fail(
-      Errc::bus, fmt::format("the transmit queue of {} stays full", name),
+      Errc::bus, fmt::format("the transmit queue of {} remains full", name),
       fmt::format(
           "is another node on the bus and the bitrate right? `ip -details -statistics link show {0}`, `sudo "
           "ip link set {0} txqueuelen 1000`",
@@ -75,7 +75,7 @@ tl::unexpected<Error> interface_queue_full(const std::string& name) {
 
 tl::unexpected<Error> interface_cannot_open(const std::string& name, int error) {
   return fail(Errc::bus, fmt::format("cannot open {}: {}", name, system_text(error)),
-              fmt::format("`ip -details link show {}` tells its state", name));
+              fmt::format("`ip -details link show {}` shows its state", name));
 }
 
 }  // namespace servoctl::can

@@ -77,14 +77,14 @@ bool configure(int fd, std::span<const Filter> filters) {
 
 Result<Descriptor> socketcan_socket(const std::string& name, std::span<const Filter> filters) {
   if (name.empty() || name.size() >= IFNAMSIZ || name.find('/') != std::string::npos)
-    return fail(Errc::usage, fmt::format("'{}' cannot be the name of an interface", name),
+    return fail(Errc::usage, fmt::format("'{}' is not an interface name", name),
                 "an interface has 1 to 15 characters, such as can0; `ip link` lists them");
   Descriptor socket(::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW));
   if (!socket && (errno == EAFNOSUPPORT || errno == EPROTONOSUPPORT))
     return fail(
-        Errc::bus, fmt::format("cannot open {}: the kernel has no CAN (SocketCAN)", name),
+        Errc::bus, fmt::format("cannot open {}: no SocketCAN in the kernel", name),
         "load it with `sudo modprobe can-raw`, or use a bus that needs no kernel CAN: local:NAME between "
-        "processes of this machine, sim: for simulated drives");
+        "processes of this machine, or sim: for simulated drives");
   if (!socket) return interface_cannot_open(name, errno);
   const auto index = interface_index(socket.get(), name);
   if (!index) return fail(index.error());

@@ -57,7 +57,7 @@ std::optional<Duration> parse_time(std::string_view text) {
 }
 
 std::string left_out_words(std::size_t frames, std::string_view file) {
-  return fmt::format("{} frames are missing in the trace {}: nobody read it in time", frames, file);
+  return fmt::format("{} frames are missing in the trace {}: it was not read in time", frames, file);
 }
 
 }  // namespace
@@ -91,8 +91,7 @@ TraceBus::~TraceBus() {
   flush_to_slow_reader();
   missing_ += left_out_ + static_cast<std::size_t>(std::count(buffer_.begin(), buffer_.end(), '\n'));
   if (file_ && missing_ > 0 && failed_)
-    failed_(fail(Errc::file, left_out_words(missing_, file_name_), "let what reads it read on to its end")
-                .value());
+    failed_(fail(Errc::file, left_out_words(missing_, file_name_), "let the reader read to the end").value());
 }
 
 Result<void> TraceBus::send(const Frame& frame) {
@@ -159,7 +158,7 @@ void TraceBus::give_up(int error) {
   file_ = Descriptor();
   if (failed_)
     failed_(fail(Errc::file, fmt::format("cannot write the trace {}: {}", file_name_, system_text(error)),
-                 "the trace ends here; the bus goes on without it")
+                 "the trace ends here; the command continues without it")
                 .value());
 }
 
@@ -192,7 +191,7 @@ Result<Descriptor> open_trace(const std::filesystem::path& file) {
   if (errno == ENXIO)
     return fail(Errc::file,
                 fmt::format("cannot write the trace {}: nobody reads this pipe or socket", file.string()),
-                "start what reads it first, such as `cat` on the pipe");
+                "start its reader first, such as `cat` on the pipe");
   return fail(Errc::file, fmt::format("cannot write the trace {}: {}", file.string(), system_text(errno)),
               "choose a folder that exists and that you may write to");
 }

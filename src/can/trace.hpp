@@ -22,7 +22,7 @@ enum class TraceClock {
   bus,   ///< Zero of the bus's own now(): for simulated buses.
 };
 
-/// Told what kept a trace from being written; Errc::file.
+/// Called with why a trace was not written; Errc::file.
 using TraceFailed = std::function<void(const Error& error)>;
 
 /// A bus that passes everything on to `inner` and writes every frame, sent and received, to `file` in the

@@ -51,7 +51,7 @@ std::string cob_id_conflict(ObjectAddress object, std::uint32_t cob_id, std::uin
   const auto can_id = cob_id & kBasicMask;
   const auto owner = service_of(can_id);
   if (owner.empty() || is_its_own(service, can_id, node)) return {};
-  return fmt::format("CAN-ID 0x{:03X} is that of {}{}", can_id, owner,
+  return fmt::format("CAN-ID 0x{:03X} belongs to {}{}", can_id, owner,
                      owner == service ? " of another node" : "");
 }
 

@@ -151,7 +151,7 @@ void DuplicateWatch::on_surplus(std::uint8_t id, const can::Frame& frame, TimePo
   const auto twice = std::count_if(node.answered.begin(), node.answered.end(),
                                    [](const Answered& answered) { return answered.twice; });
   if (twice >= kProof)
-    notice(id, fmt::format("{} of its last {} SDO answers came twice", twice, node.answered.size()), now);
+    notice(id, fmt::format("{} of its last {} SDO responses came twice", twice, node.answered.size()), now);
 }
 
 void DuplicateWatch::check_constant(std::uint8_t id, const can::Frame& frame, TimePoint now) {
@@ -191,7 +191,7 @@ void DuplicateWatch::on_boot_up(std::uint8_t id, TimePoint now) {
   const auto gap = node.boot ? now - *node.boot : Duration::max();
   if (!explained && gap < kBootWindow && gap > kDoubledFrame)
     notice(id,
-           fmt::format("two boot-ups within {} ms, unless it is one that starts over and over",
+           fmt::format("two boot-ups within {} ms, unless one node keeps restarting",
                        std::chrono::duration_cast<std::chrono::milliseconds>(gap).count()),
            now);
   node = Node{.open = {},

@@ -43,7 +43,7 @@ class DuplicateWatch {
   /// The longest time from a request to its first answer so far; zero until there was one.
   Duration slowest_answer() const { return slowest_; }
 
-  /// Told once a node.
+  /// Reported once per node.
   std::optional<NodeEvent> take_event();
 
  private:

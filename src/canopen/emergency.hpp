@@ -9,7 +9,7 @@
 
 namespace servoctl::canopen {
 
-/// An emergency message (CiA 301, 7.2.7): what went wrong on a node, told once.
+/// An emergency message (CiA 301, 7.2.7): what went wrong on a node, sent once.
 struct Emergency {
   std::uint8_t node = 0;
   std::uint16_t code = 0;                ///< Error code; 0x00xx: error reset or no error.

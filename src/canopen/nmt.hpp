@@ -33,7 +33,7 @@ std::optional<NmtCommand> parse_nmt_command(std::string_view name);
 /// The state a node reaches by the command; pre_operational after a reset, when it has booted.
 NmtState state_after(NmtCommand command);
 
-/// Tells a node (1..127), or all with 0, to change its state.
+/// Commands a node (1..127), or all with 0, to change state.
 can::Frame nmt_frame(NmtCommand command, std::uint8_t node);
 
 /// A node control message taken apart.

@@ -18,8 +18,8 @@ struct GuardOptions {
 };
 
 /// The master's side of node guarding, for any number of nodes: asks each by a remote frame, checks the
-/// toggle bit of the answers, and tells when a node is lost and when it is back. Performs no I/O and reads no
-/// clock.
+/// toggle bit of the answers, and reports when a node is lost and when it is back. Performs no I/O and reads
+/// no clock.
 ///
 /// An answer whose toggle bit did not change is taken as not received, as the standard says; the first
 /// answer, and the one after a boot-up, may carry either.

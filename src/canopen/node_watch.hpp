@@ -14,7 +14,7 @@
 
 namespace servoctl::canopen {
 
-/// Something a node told without being asked, or stopped telling.
+/// Something a node sent unasked, or stopped sending.
 struct NodeEvent {
   struct BootUp {};
   struct StateChange {
@@ -72,7 +72,7 @@ class NodeWatch {
   /// The node (0: every node) was sent an NMT command: the state of one that sends no heartbeat is unknown
   /// now.
   void on_command(std::uint8_t node);
-  /// Forgets the state and the period of the node, before it is told to reset.
+  /// Forgets the state and the period of the node, before it is sent a reset.
   void forget(std::uint8_t node);
 
  private:

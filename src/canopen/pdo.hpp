@@ -72,7 +72,7 @@ inline std::uint32_t can_id_of(const can::Frame& frame) {
   return frame.id | (frame.extended ? kPdoExtended : 0U);
 }
 
-/// A data frame of this CAN-ID, as can_id_of() tells it.
+/// A data frame with this CAN-ID, as given by can_id_of().
 can::Frame pdo_frame(std::uint32_t can_id, std::span<const std::uint8_t> data);
 
 /// The service that CiA 301 gives this CAN-ID (7.3.5 and table 40), which no PDO may use: `NMT`, `SDO`, `a

@@ -17,22 +17,21 @@ struct Row {
 
 constexpr std::string_view kCheckType =
     "check the object's type and size: `objects` shows what the dictionary says";
-constexpr std::string_view kCheckName =
-    "this firmware does not have it, or the dictionary in use belongs to another drive";
+constexpr std::string_view kCheckName = "not in this firmware, or the dictionary in use is for another drive";
 constexpr std::string_view kCheckRange =
     "`param explain` or `objects` shows the limits; other settings may narrow them";
 constexpr std::string_view kCheckState =
-    "the drive takes this in another state only: disable it or go to pre-operational, then try again";
+    "the drive accepts this only in another state: disable it or go to pre-operational, then try again";
 
 constexpr std::array kRows{
     Row{0x0503'0000, "toggle bit not alternated",
-        "try again; if it stays, look for a second master on the bus"},
-    Row{0x0504'0000, "SDO protocol timed out", "try again; if it stays, look at the bus load"},
+        "try again; if it persists, look for a second master on the bus"},
+    Row{0x0504'0000, "SDO protocol timed out", "try again; if it persists, check the bus load"},
     Row{0x0504'0001, "command specifier not valid or unknown",
         "the drive does not support this kind of transfer"},
     Row{0x0504'0002, "invalid block size", ""},
     Row{0x0504'0003, "invalid sequence number", ""},
-    Row{0x0504'0004, "CRC error", "try again; if it stays, look at the wiring and the termination"},
+    Row{0x0504'0004, "CRC error", "try again; if it persists, check wiring and termination"},
     Row{0x0504'0005, "out of memory", ""},
     Row{0x0601'0000, "unsupported access to an object", ""},
     Row{0x0601'0001, "attempt to read a write-only object", "it can be written, not read"},
@@ -74,7 +73,7 @@ std::string_view class_text(std::uint32_t code) {
     case 0x05: return "service error not listed in CiA 301";
     case 0x06: return "access error not listed in CiA 301";
     case 0x08: return "other error not listed in CiA 301";
-    default: return "code of the vendor, not listed in CiA 301";
+    default: return "vendor-specific code, not listed in CiA 301";
   }
 }
 
@@ -94,11 +93,11 @@ std::string sdo_abort_hint(std::uint32_t code, ObjectAddress object) {
   const bool by_state =
       code == sdo_abort::kUnsupportedAccess || code == sdo_abort::kGeneral || code == sdo_abort::kDeviceState;
   if (by_state && pdo_at(object.index))
-    return "a PDO is changed in steps (invalid, count 0, entries, count): `pdo map` takes them";
+    return "a PDO must be changed in steps (invalid, count 0, entries, count): `pdo map` does so";
   if (by_state && object == ObjectAddress{0x1019, 0})
-    return "it changes while 1006h is 0 only: write 0 there first, and the period again behind it";
+    return "it can change only while 1006h is 0: write 0 there first, then restore the period";
   if (code == sdo_abort::kIncompatible && object.index == 0x1016)
-    return "another entry watches this node already: write 0 there first";
+    return "another entry already monitors this node: write 0 to it first";
   return sdo_abort_hint(code);
 }
 

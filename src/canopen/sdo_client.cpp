@@ -242,9 +242,9 @@ void SdoClient::on_time(TimePoint now) {
   const bool asked_for_block =
       state_ == State::block_upload_initiate || state_ == State::block_download_initiate;
   abort(sdo_abort::kTimeout, Errc::timeout,
-        fmt::format("no answer{} within {} ms", asked_for_block ? " to the request of a block transfer" : "",
+        fmt::format("no answer{} within {} ms", asked_for_block ? " to the block transfer request" : "",
                     waited),
-        asked_for_block ? "when the node answers `read 0x1000`, try --transfer segmented" : "");
+        asked_for_block ? "if the node answers `read 0x1000`, try --transfer segmented" : "");
 }
 
 void SdoClient::send(const can::Frame& frame, State next, TimePoint now) {
@@ -273,7 +273,7 @@ Error SdoClient::error(Errc code, std::string message, std::string hint) const {
   out.hint = std::move(hint);
   out.node = node_;
   out.object = object_;
-  if (foreign_request_ && out.hint.empty()) out.hint = "another master talks to this node by SDO as well";
+  if (foreign_request_ && out.hint.empty()) out.hint = "another master is also using SDO with this node";
   return out;
 }
 

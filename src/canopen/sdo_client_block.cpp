@@ -32,7 +32,7 @@ void SdoClient::on_block_upload_initiate(const can::Frame& frame, TimePoint now)
   if ((command & 0xE0U) == 0x40 && transfer_ != Transfer::block) return on_upload_initiate(frame, now);
   if ((command & 0xE1U) != 0xC0) {
     abort(sdo_abort::kCommand, Errc::protocol,
-          fmt::format("it answered the request of a block transfer with command 0x{:02X}", command));
+          fmt::format("it answered the block transfer request with command 0x{:02X}", command));
     return;
   }
   crc_ = (command & kCrcSupported) != 0;
@@ -87,7 +87,7 @@ void SdoClient::on_block_upload_end(const can::Frame& frame, TimePoint) {
   const auto crc = static_cast<std::uint16_t>(frame.data[1] | frame.data[2] << 8U);
   if (crc_ && crc != sdo_crc(data)) {
     abort(sdo_abort::kCrc, Errc::protocol, "the checksum of the block transfer is wrong",
-          "the line is disturbed, or the object changed while it was read: try again");
+          "disturbed bus, or the object changed while being read: try again");
     return;
   }
   if (announced_ && data.size() != *announced_) {

@@ -10,19 +10,19 @@ using command::Needs;
 Result<void> check_allowed(const command::Command& command, const command::Arguments& arguments,
                            const Settings& settings) {
   if (command.of_front_end)
-    return fail(Errc::usage, fmt::format("'{}' cannot be a line of a batch file", command.path),
+    return fail(Errc::usage, fmt::format("'{}' is not allowed in a batch file", command.path),
                 "`for` repeats lines; a script runs several files");
   // A command that asks for more than reading is refused as a whole, before anything is opened.
   if (settings.read_only && command.effect_with(arguments) >= Effect::writes && !settings.dry_run)
     return fail(Errc::refused, fmt::format("'{}' changes a drive, and --read-only forbids it", command.path),
-                "leave --read-only out when you mean it");
+                "leave --read-only out to allow it");
   return {};
 }
 
 Result<void> check_network(const command::Command& command, session::Session& session) {
   if (!includes(command.needs, Needs::can) || session.can() != nullptr) return {};
-  return fail(Errc::usage, fmt::format("'{}' is for CAN, which {} is not", command.path, session.url()),
-              "objects, states and motions are the same there: `read`, `status`, `backup`, `jog`");
+  return fail(Errc::usage, fmt::format("'{}' needs CAN, {} is not CAN", command.path, session.url()),
+              "objects, states and motions work there: `read`, `status`, `backup`, `jog`");
 }
 
 Error no_node(const command::Command& command) {

@@ -30,7 +30,7 @@ Error no_bus() {
   const auto interfaces = can::can_interfaces();
   error.hint =
       interfaces.empty()
-          ? "this machine has no CAN interface now; try `--bus sim:FAMILY@1` (`drives` lists families), or "
+          ? "this machine has no CAN interface; try `--bus sim:FAMILY@1` (`drives` lists families), or "
             "local:NAME"
           : fmt::format("add --bus {} or set SERVOCTL_BUS", one_of(interfaces));
   return error;
@@ -125,7 +125,7 @@ Result<void> BusHolder::connect_again(const std::string& url, const std::set<std
     const auto time = steady_now();
     if (back || back.error().code != Errc::bus || time >= end) return back;
     if (time >= next_line) {
-      console_->err(fmt::format("notice: {}: stopping node{} {} is tried again\n", back.error().message,
+      console_->err(fmt::format("notice: {}: trying again to stop node{} {}\n", back.error().message,
                                 nodes.size() == 1 ? "" : "s", fmt::join(nodes, ", ")));
       next_line += kTelling;
     }

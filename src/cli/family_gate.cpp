@@ -14,12 +14,11 @@ namespace {
 using session::FamilyVerdict;
 
 std::string forcing_hint(std::span<const std::string> fitting, std::uint8_t node) {
-  const std::string_view force = "--force-family goes on all the same";
+  const std::string_view force = "--force-family continues anyway";
   if (fitting.empty())
-    return fmt::format(
-        "no family fits it: look at the nameplate; `info -n {}` tells what it says of itself; {}", node,
-        force);
-  return fmt::format("its identity fits {}: when the nameplate says so, add -d {}; {}", one_of(fitting),
+    return fmt::format("no family fits: check the nameplate; `info -n {}` shows its identity; {}", node,
+                       force);
+  return fmt::format("its identity fits {}: if the nameplate agrees, add -d {}; {}", one_of(fitting),
                      fitting.front(), force);
 }
 
@@ -79,7 +78,7 @@ Result<void> FamilyGate::ask_all(std::span<const std::uint8_t> nodes, const driv
       return fail(identity.error());
     if (must_answer)
       notices_->push_back(
-          fmt::format("node {} did not answer when it was asked what it is: that it is a {} is unchecked",
+          fmt::format("node {} did not answer the identity check: whether it is a {} is not verified",
                       nodes[i], profile.family));
   }
   return {};
@@ -104,17 +103,17 @@ Result<void> FamilyGate::hold_one(const session::Identity& identity, const drive
     error.code = Errc::refused;
     error.node = node;
     error.object = verdict.object;
-    error.message = fmt::format("node {} is no {}: {}", node, profile.family, verdict.why);
+    error.message = fmt::format("node {} is not a {}: {}", node, profile.family, verdict.why);
     error.hint = forcing_hint(others(identity, families), node);
     return fail(std::move(error));
   }
   const bool unproven_read = !contradicted && !refuses;
   if (unproven_read || !session_->identities().is_news(node, profile.family + (contradicted ? "!" : "?")))
     return {};
-  const std::string_view forced = refuses ? "; it goes on because of --force-family" : "";
+  const std::string_view forced = refuses ? "; continuing because of --force-family" : "";
   notices_->push_back(
       contradicted
-          ? fmt::format("node {} is no {}: {}{}", node, profile.family, verdict.why, forced)
+          ? fmt::format("node {} is not a {}: {}{}", node, profile.family, verdict.why, forced)
           : fmt::format("node {}: nothing proves that it is a {}: {}", node, profile.family, verdict.why));
   return {};
 }

@@ -108,8 +108,8 @@ int run_program(const std::vector<std::string>& words) {
     console.finish();
     // A reader that has closed the pipe has seen enough.
     if (console.write_error() == 0 || console.write_error() == EPIPE) return code;
-    std::cerr << "error: the output could not be written (" << std::strerror(console.write_error())
-              << "); what was shown is not complete\n  hint: what the command did on the bus is done\n";
+    std::cerr << "error: cannot write the output (" << std::strerror(console.write_error())
+              << "); the output is incomplete\n  hint: what the command did on the bus stays done\n";
     return code != 0 ? code : exit_code(Errc::file);
   } catch (const std::exception& e) {
     std::cerr << "error: servoctl failed: " << printable(e.what())

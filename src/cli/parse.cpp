@@ -169,12 +169,13 @@ class Parser {
 
   tl::unexpected<Error> bad_choice(const Parameter& parameter, const std::string& value) const {
     const std::vector<std::string> choices(parameter.choices.begin(), parameter.choices.end());
-    return fail(Errc::usage, fmt::format("{}: '{}' is no value of {}", command_->path, value, parameter.name),
+    return fail(Errc::usage,
+                fmt::format("{}: '{}' is not valid for {}", command_->path, value, parameter.name),
                 "write " + one_of(choices));
   }
 
   tl::unexpected<Error> one_too_many(const std::string& word) const {
-    return fail(Errc::usage, fmt::format("{}: '{}' is one word too many", command_->path, word), help_hint());
+    return fail(Errc::usage, fmt::format("{}: unexpected argument '{}'", command_->path, word), help_hint());
   }
 
   tl::unexpected<Error> superfluous(const std::string& word) const {
@@ -204,7 +205,7 @@ tl::unexpected<Error> unknown_command(const std::vector<std::string>& words, std
   }
   if (!in_group.empty()) {
     const auto said = first + 1 < words.size() ? words[first] + " " + words[first + 1] : words[first];
-    return fail(Errc::usage, fmt::format("'{}' is no command", said), "there are " + one_of(in_group));
+    return fail(Errc::usage, fmt::format("'{}' is not a command", said), "use " + one_of(in_group));
   }
   auto hint = did_you_mean(words[first], paths);
   if (hint.empty()) hint = "`help` lists the commands";

@@ -19,8 +19,7 @@ Result<void> RunningLine::confirm(std::string_view question) {
   auto& console = shell_->console();
   const auto shown = printable(question);
   if (!console.can_ask())
-    return fail(Errc::refused, fmt::format("this needs a confirmation: {}", shown),
-                "add --yes when you mean it");
+    return fail(Errc::refused, fmt::format("confirmation needed: {}", shown), "add --yes to confirm");
   if (console.ask(shown)) return {};
   return fail(Errc::refused, "not confirmed; nothing was sent");
 }

@@ -19,7 +19,7 @@ std::string variable(const char* name) {
 }
 
 tl::unexpected<Error> bad_nodes(std::string_view text) {
-  return fail(Errc::usage, fmt::format("'{}' is no node-ID", text),
+  return fail(Errc::usage, fmt::format("'{}' is not a node-ID", text),
               "write -n 1, -n 1,3,5-8 or -n all; node-IDs are 1 to 127");
 }
 
@@ -47,7 +47,7 @@ Result<Settings> apply_options(Settings base, const command::Arguments& argument
     const auto timeout = read_duration(arguments.text("--timeout"));
     if (!timeout || *timeout == Duration::zero())
       return fail(Errc::usage,
-                  timeout ? fmt::format("--timeout: '{}' is no time at all", arguments.text("--timeout"))
+                  timeout ? fmt::format("--timeout: '{}' is too short", arguments.text("--timeout"))
                           : "--timeout: " + timeout.error().message,
                   timeout ? "write 500ms or 2s" : timeout.error().hint);
     base.timeout = *timeout;
@@ -56,7 +56,7 @@ Result<Settings> apply_options(Settings base, const command::Arguments& argument
     const auto retries = parse_digits(arguments.text("--retries"), 10);
     if (!retries || *retries > 100)
       return fail(Errc::usage,
-                  fmt::format("--retries: '{}' is no number of 0 to 100", arguments.text("--retries")));
+                  fmt::format("--retries: '{}' is not a number from 0 to 100", arguments.text("--retries")));
     base.retries = static_cast<std::uint32_t>(*retries);
   }
   // Where a command writes a file, its own --output may name that.

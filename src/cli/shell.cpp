@@ -163,14 +163,12 @@ tl::unexpected<Error> Shell::ask_for_family(Run& run) {
         for (const auto& guess : session::guess_families(found->front(), families))
           guesses.push_back(guess.family);
         if (!guesses.empty())
-          hint =
-              fmt::format("its identity fits {} (a guess, no proof): when the nameplate says so, add -d {}",
-                          one_of(guesses), guesses.front());
+          hint = fmt::format("its identity fits {} (a guess, not proof): if the nameplate agrees, add -d {}",
+                             one_of(guesses), guesses.front());
       }
     }
   }
-  return fail(Errc::usage, fmt::format("'{}' needs to know the drive family", run.command->path),
-              std::move(hint));
+  return fail(Errc::usage, fmt::format("'{}' needs the drive family", run.command->path), std::move(hint));
 }
 
 /// A command without a bus takes the nodes as they are written.
@@ -237,10 +235,10 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
     run.context.notices.push_back(std::move(notice));
   if (const auto left_out = console_->take_left_out(); left_out > 0)
     run.context.notices.push_back(fmt::format(
-        "{} samples were not shown, because nobody read them in time; --csv has every sample", left_out));
+        "{} samples were not shown: the output was not read in time; --csv has every sample", left_out));
   if (const auto untold = console_->take_untold(); untold > 0)
     run.context.notices.push_back(
-        fmt::format("{} messages were not shown, because nobody read them in time", untold));
+        fmt::format("{} messages were not shown: the output was not read in time", untold));
   for (auto& error : errors) show::name_abort(run.context, error);
   if (auto failure = bus_.take_trace_failure()) {
     // The line was carried out; those that follow are too.

@@ -15,7 +15,7 @@ Result<std::optional<Duration>> duration_option(const Arguments& arguments, std:
     return fail(std::move(error));
   }
   if (*time == Duration::zero())
-    return fail(Errc::usage, fmt::format("{}: '{}' is no time at all", name, arguments.text(name)),
+    return fail(Errc::usage, fmt::format("{}: '{}' is too short", name, arguments.text(name)),
                 "write 500ms or 10s");
   return std::optional(*time);
 }

@@ -13,7 +13,7 @@ inline constexpr Parameter kServiceOption{
     .choices = traffic::kServices,
     .repeats = true};
 inline constexpr Parameter kObjectOption{.name = "--object",
-                                         .help = "only frames that carry or name this object",
+                                         .help = "only frames that carry or address this object",
                                          .kind = Kind::object,
                                          .repeats = true};
 

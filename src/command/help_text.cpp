@@ -61,15 +61,16 @@ std::string command_rows(std::string_view group, std::size_t width) {
 std::string program_help(std::size_t width) {
   return "servoctl: commissions CANopen servo drives from a terminal\n\n"
          "  servoctl [OPTIONS] COMMAND …    run one command\n"
-         "  servoctl [OPTIONS]              the prompt; command lines from a pipe likewise\n"
+         "  servoctl [OPTIONS]              the prompt; also reads command lines from a pipe\n"
          "  servoctl [OPTIONS] -            a batch file from standard input (see `help run`)\n\n"
          "Commands:\n" +
          command_rows({}, width) +
-         "\nAt the prompt also: use NODE, drive FAMILY, bus BUS choose for the lines that follow; exit.\n"
+         "\nAlso at the prompt: use NODE, drive FAMILY, bus BUS set it for the following lines; exit.\n"
          "\nOptions of every command:\n" +
          rows(global_options(), true, width) +
-         "\n`help COMMAND` tells more. Exit codes: 0 done, 1 the answer is no, 2 usage, 3 bus, 4 no answer,\n"
-         "5 refused by the drive, 6 protocol violated, 7 file, 8 refused for safety, 70 a bug, 130 Ctrl-C.\n";
+         "\n`help COMMAND` shows more. Exit codes: 0 done, 1 negative result, 2 usage, 3 bus, 4 no "
+         "answer,\n5 refused by the drive, 6 protocol error, 7 file, 8 refused for safety, 70 a bug, 130 "
+         "Ctrl-C.\n";
 }
 
 }  // namespace
@@ -100,7 +101,7 @@ Result<std::string> help_text(std::string_view path, std::size_t width) {
   std::vector<std::string> names;
   for (const auto* command : registry()) names.emplace_back(command->path);
   auto hint = did_you_mean(path, names);
-  return fail(Errc::usage, fmt::format("'{}' is no command", path),
+  return fail(Errc::usage, fmt::format("'{}' is not a command", path),
               hint.empty() ? "`help` lists the commands" : std::move(hint));
 }
 

@@ -32,14 +32,14 @@ Result<motion::MotionOptions> motion_options(const Context& context, const Argum
     if (!arguments.has(name)) continue;
     const auto counts = number(arguments, name);
     if (!counts || *counts == 0)
-      return fail(Errc::usage, fmt::format("'{}' is no number of counts", arguments.text(name)),
+      return fail(Errc::usage, fmt::format("'{}' is not a number of counts", arguments.text(name)),
                   "such as 131072 for 17 bits");
     *place = static_cast<double>(*counts);
   }
   if (!arguments.has("--master-node")) return out;
   const auto id = number(arguments, "--master-node");
   if (!id || *id < canopen::kFirstNode || *id > canopen::kLastNode)
-    return fail(Errc::usage, fmt::format("'{}' is no node-ID", arguments.text("--master-node")),
+    return fail(Errc::usage, fmt::format("'{}' is not a node-ID", arguments.text("--master-node")),
                 "write 1..127");
   out.producer = static_cast<std::uint8_t>(*id);
   return out;

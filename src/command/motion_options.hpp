@@ -10,25 +10,23 @@
 namespace servoctl::command {
 
 inline constexpr Parameter kAccelerationOption{
-    .name = "--accel", .help = "ramps (6083h, 6084h) instead of half a second", .kind = Kind::value};
+    .name = "--accel", .help = "ramps (6083h, 6084h); default: 0.5 s to speed", .kind = Kind::value};
 inline constexpr Parameter kTurnOption{
     .name = "--turn",
-    .help = "increments of 6064h in one turn of the motor, if the drive does not tell",
+    .help = "increments of 6064h per motor revolution, if the drive does not report it",
     .kind = Kind::number};
 /// What every motion takes.
 inline constexpr std::array kMotionOptions{
-    Parameter{
-        .name = "--limit", .help = "greatest speed; raises the safe one knowingly", .kind = Kind::value},
+    Parameter{.name = "--limit", .help = "speed limit; raises the safe default", .kind = Kind::value},
     Parameter{.name = "--max-torque",
-              .help = "stop above this torque; the ceiling of `torque`",
+              .help = "stop above this torque; for `torque`, the limit",
               .kind = Kind::value},
     Parameter{
         .name = "--max-following-error", .help = "stop above this following error", .kind = Kind::value},
-    Parameter{.name = "--window", .help = "stop when it has moved farther than this", .kind = Kind::value},
+    Parameter{.name = "--window", .help = "stop when it has moved further than this", .kind = Kind::value},
     kTurnOption,
-    Parameter{
-        .name = "--master-node", .help = "servoctl's own node-ID for the watchdog", .kind = Kind::number},
-    Parameter{.name = "--plot", .help = "draw the samples over time at the end", .kind = Kind::flag},
+    Parameter{.name = "--master-node", .help = "node-ID of servoctl for the watchdog", .kind = Kind::number},
+    Parameter{.name = "--plot", .help = "plot the samples over time at the end", .kind = Kind::flag},
 };
 inline constexpr Parameter kCsvOption{
     .name = "--csv", .help = "write the samples to this file", .kind = Kind::file};

@@ -8,7 +8,7 @@ Result<void> check_resume(const Arguments& arguments) {
   if (!arguments.has("--resume")) return {};
   for (const auto* option : {"--keep", "--unlock", "--force", "--with-address"})
     if (arguments.has(option))
-      return fail(Errc::usage, fmt::format("--resume goes on as it was begun: {} has no say", option),
+      return fail(Errc::usage, fmt::format("--resume uses the original options, not {}", option),
                   fmt::format("leave {} away", option));
   return {};
 }

@@ -9,12 +9,11 @@ namespace servoctl::command {
 inline constexpr Parameter kKeepOption{
     .name = "--keep", .help = "make the values survive power-off", .kind = Kind::flag};
 inline constexpr Parameter kUnlockOption{
-    .name = "--unlock", .help = "give the family's password before, take it back after", .kind = Kind::flag};
+    .name = "--unlock", .help = "unlock by the family's password, lock again after", .kind = Kind::flag};
 
 /// `--skip-invalid`, for the commands that read files of other forms.
-inline constexpr Parameter kSkipInvalidOption{.name = "--skip-invalid",
-                                              .help = "leave out entries that cannot be used, and name them",
-                                              .kind = Kind::flag};
+inline constexpr Parameter kSkipInvalidOption{
+    .name = "--skip-invalid", .help = "skip entries that cannot be used, and list them", .kind = Kind::flag};
 
 /// The option `--only`, for the commands that have it.
 inline constexpr Parameter kOnlyOption{
@@ -22,7 +21,7 @@ inline constexpr Parameter kOnlyOption{
 
 /// `--resume`, for the commands that restore.
 inline constexpr Parameter kResumeOption{
-    .name = "--resume", .help = "go on with what was cut off, as it was begun", .kind = Kind::flag};
+    .name = "--resume", .help = "resume an interrupted run, same options", .kind = Kind::flag};
 
 /// What is gone on with goes on as it was begun: an option that would say otherwise is refused, not dropped.
 Result<void> check_resume(const Arguments& arguments);

@@ -11,7 +11,7 @@ inline constexpr std::string_view kTransferNames[] = {"auto", "expedited", "segm
 
 /// `--transfer`, for the commands that have it.
 inline constexpr Parameter kTransferOption{.name = "--transfer",
-                                           .help = "how the bytes travel: by size unless said",
+                                           .help = "SDO transfer type (default: chosen by size)",
                                            .kind = Kind::choice,
                                            .choices = kTransferNames};
 

@@ -16,7 +16,8 @@ Result<double> number_option(const Arguments& arguments, std::string_view name, 
   if (!arguments.has(name)) return otherwise;
   const auto number = parse_real(arguments.text(name));
   if (!number || *number < 0)
-    return fail(Errc::usage, fmt::format("{}: '{}' is no number of at least 0", name, arguments.text(name)));
+    return fail(Errc::usage,
+                fmt::format("{}: '{}' is not a number of 0 or more", name, arguments.text(name)));
   return *number;
 }
 
@@ -56,8 +57,8 @@ Result<std::uint32_t> count_option(const Arguments& arguments, std::string_view 
   if (!arguments.has(name)) return otherwise;
   const auto number = parse_digits(arguments.text(name), 10);
   if (!number || *number < least || *number > most)
-    return fail(Errc::usage,
-                fmt::format("{}: '{}' is no number of {} to {}", name, arguments.text(name), least, most));
+    return fail(Errc::usage, fmt::format("{}: '{}' is not a number from {} to {}", name, arguments.text(name),
+                                         least, most));
   return static_cast<std::uint32_t>(*number);
 }
 

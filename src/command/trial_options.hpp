@@ -8,10 +8,10 @@
 namespace servoctl::command {
 
 inline constexpr Parameter kJunitOption{
-    .name = "--junit", .help = "write the verdicts into a file as JUnit XML", .kind = Kind::file};
+    .name = "--junit", .help = "write the verdicts to a file as JUnit XML", .kind = Kind::file};
 inline constexpr Parameter kEncoderOption{
     .name = "--encoder",
-    .help = "counts of the encoder in one turn of the motor, if the drive does not tell",
+    .help = "encoder counts per motor revolution, if the drive does not report them",
     .kind = Kind::number};
 
 /// `--for`, `--tolerance`, `--stop-within`. Errc::usage.

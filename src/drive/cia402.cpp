@@ -133,7 +133,7 @@ std::string device_kind(std::uint32_t device_type) {
   std::string out;
   for (std::size_t i = 0; i < std::size(kKinds); ++i)
     if ((device_type >> (16 + i) & 1U) != 0) append(out, fmt::format("{}", kKinds[i]), " and ");
-  return "CiA 402, " + (out.empty() ? std::string("kind of drive not told") : out);
+  return "CiA 402, " + (out.empty() ? std::string("kind of drive not stated") : out);
 }
 
 }  // namespace servoctl::drive

@@ -39,7 +39,7 @@ Result<std::vector<Fault>> parse_faults(std::string_view csv, std::string_view f
 /// they do not tell.
 std::string panel_text(const EmergencyRules& rules, const std::array<std::uint8_t, 5>& vendor);
 
-/// The vendor bytes of an emergency for this text of the panel; zeros where the layout does not tell.
+/// The vendor bytes of an emergency for this panel text; zeros where the layout is not known.
 std::array<std::uint8_t, 5> panel_bytes(const EmergencyRules& rules, std::string_view panel);
 
 /// All that a code may stand for: the one whose panel text the vendor bytes give, else every fault that

@@ -29,7 +29,7 @@ tl::unexpected<Error> unknown(const Profile& profile, std::string_view text) {
   auto hint = did_you_mean(lower(text), known);
   if (hint.empty())
     hint = "`objects PATTERN` and `param search WORD` find names; an index is written 0x6041 or 6041h";
-  return fail(Errc::usage, fmt::format("'{}' is no object or parameter of {}", text, profile.family),
+  return fail(Errc::usage, fmt::format("'{}' is not an object or parameter of {}", text, profile.family),
               std::move(hint));
 }
 
@@ -138,10 +138,10 @@ Result<const od::Parameter*> resolve_parameter(const Profile& profile, std::stri
   for (const auto* parameter : named) known.push_back(parameter->id);
   if (named.size() > 1) return ambiguous(text, known);
   for (const auto& parameter : profile.parameters) known.push_back(parameter.id);
-  auto hint = profile.parameters.empty() ? fmt::format("{} has no table of panel parameters", profile.family)
+  auto hint = profile.parameters.empty() ? fmt::format("{} has no panel parameter table", profile.family)
                                          : did_you_mean(text, known);
   if (hint.empty()) hint = "`param list` shows all, `param search WORD` finds them by name";
-  return fail(Errc::usage, fmt::format("'{}' is no panel parameter of {}", text, profile.family),
+  return fail(Errc::usage, fmt::format("'{}' is not a panel parameter of {}", text, profile.family),
               std::move(hint));
 }
 
@@ -156,13 +156,12 @@ Result<Target> resolve(const Profile* profile, std::string_view text) {
   if (const auto address = parse_object_address(text)) return target_at(profile, *address);
   if (profile == nullptr)
     return fail(Errc::usage,
-                fmt::format("'{}' is no object address, and without a drive family names are unknown", text),
+                fmt::format("'{}' is not an object address, and names need a drive family", text),
                 "write an address such as 0x6041 or 0x6099:1, or add -d FAMILY (`drives` lists them)");
   if (const auto* parameter = profile->parameter(text)) {
     if (!parameter->object)
-      return fail(Errc::usage,
-                  fmt::format("{} ({}) has no object on the bus", parameter->id, parameter->name),
-                  "it can be changed on the panel only; `param explain` tells what it does");
+      return fail(Errc::usage, fmt::format("{} ({}) has no CANopen object", parameter->id, parameter->name),
+                  "it can be changed only on the panel; `param explain` describes it");
     return target_at(profile, *parameter->object);
   }
   if (auto target = by_rule(*profile, text)) return *target;

@@ -10,7 +10,7 @@
 
 namespace servoctl::drive {
 
-/// What one PDO is to be; what is not said stays as it is.
+/// The settings for one PDO; what is not given stays unchanged.
 struct PdoRecipe {
   std::string pdo;  ///< `TPDO1`
   std::optional<std::vector<std::string>>

@@ -128,7 +128,7 @@ Result<Profile> load_parent(const Family& family, std::span<const fs::path> fold
   if (parent.empty()) return Profile{};
   if (ancestors == kMostAncestors)
     return fail(Errc::file,
-                fmt::format("{}: its parents never end (parent = \"{}\")", path.string(), parent));
+                fmt::format("{}: its parents form a loop (parent = \"{}\")", path.string(), parent));
   auto loaded = load_family(parent, folders, ancestors + 1);
   if (!loaded)
     return fail(Errc::file, fmt::format("{}: parent: {}", path.string(), loaded.error().message),

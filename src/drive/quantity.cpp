@@ -53,9 +53,9 @@ tl::unexpected<Error> inconvertible(const Meaning& meaning, const NumberWithUnit
     return fail(Errc::usage, fmt::format("'{}' carries a unit, but this object has none", text),
                 "write the plain number");
   auto hint = fmt::format("write a value in {} or the raw number", meaning.unit);
-  if (meaning.measure && !meaning.bridge) hint += "; what one is worth could not be learnt from the drive";
+  if (meaning.measure && !meaning.bridge) hint += "; the drive does not report its scale";
   return fail(Errc::usage,
-              fmt::format("'{}': the unit of this object is {}, which {} cannot be converted to", text,
+              fmt::format("'{}': the unit of this object is {}; {} cannot be converted to it", text,
                           meaning.unit, given.unit),
               std::move(hint));
 }
@@ -90,7 +90,7 @@ Result<Quantity> from_physical(const Meaning& meaning, const NumberWithUnit& giv
   const double step = meaning.scale / *factor;
   if (steps == Steps::exact && std::abs(raw - whole) > kWhole)
     return fail(Errc::usage,
-                fmt::format("'{}' is {} steps of {} {}: not a whole number", text, plain_number(raw, 9),
+                fmt::format("'{}' is {} steps of {} {}, not a whole number", text, plain_number(raw, 9),
                             plain_number(meaning.scale, 6), meaning.unit),
                 fmt::format("the nearest value is {} {}", plain_number(tidy(whole * step), 9), given.unit));
   const auto rounding =
@@ -199,7 +199,7 @@ Result<void> check_limits(const Meaning& meaning, const od::Value& value) {
     hint = fmt::format(
         "0 switches it off{}",
         meaning.least_assumed
-            ? fmt::format("; that {} is the least is assumed: its manual may mean the step", *meaning.least)
+            ? fmt::format("; the minimum {} is assumed: the manual may mean the step size", *meaning.least)
             : std::string());
   return fail(Errc::usage,
               fmt::format("{} is out of range: {}", plain_text(meaning, value), range_text(meaning)),
@@ -221,7 +221,7 @@ Result<Quantity> read(const Meaning& meaning, std::string_view text, Steps steps
     if (const auto physical = split_unit(text)) return from_physical(meaning, *physical, text, steps);
   const auto plain = od::parse_value(meaning.type, text);
   if (!plain && meaning.labels != nullptr && !parse_integer(text))
-    return fail(Errc::usage, fmt::format("'{}' is no value of this object", text),
+    return fail(Errc::usage, fmt::format("'{}' is not a value of this object", text),
                 "values: " + labels_text(meaning));
   if (!plain) return fail(plain.error());
   return Quantity{*plain, {}};

@@ -44,7 +44,7 @@ Meaning fitted(Meaning meaning, std::size_t bytes);
 /// show; a number with a unit (`60rpm`, `250ms`, `12%`) is converted and must come out exact; an enum label
 /// stands for its value. Where the object carries an encoded number (`f32`), a decimal number is that number
 /// and a hexadecimal one its bits. What is not zero does not become zero. Checked against type and limits.
-/// Errc::usage tells range and unit.
+/// Errc::usage states range and unit.
 Result<od::Value> parse_quantity(const Meaning& meaning, std::string_view text);
 
 /// Of what was asked, a value may lose so much in an object that holds whole steps; more is not what was

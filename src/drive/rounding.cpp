@@ -28,10 +28,10 @@ Result<std::optional<Rounding>> judge_rounding(const Rounding& rounding) {
   const auto& unit = rounding.unit;
   const auto what =
       fmt::format("{} would become {}", with_unit(rounding.asked, unit), with_unit(rounding.held, unit));
-  if (rounding.step == 0) return fail(Errc::usage, what + ": this object cannot hold it");
+  if (rounding.step == 0) return fail(Errc::usage, what + ": out of range for this object");
   const double below = std::floor(rounding.asked / rounding.step) * rounding.step;
   return fail(Errc::usage, what + ": one step is " + with_unit(rounding.step, unit),
-              fmt::format("the values beside it are {} and {}", with_unit(below, unit),
+              fmt::format("the nearest values are {} and {}", with_unit(below, unit),
                           with_unit(below + rounding.step, unit)));
 }
 

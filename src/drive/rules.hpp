@@ -134,7 +134,7 @@ struct StoreRules {
   std::string clear_alarms_at_start;  ///< Parameter: 1 clears the alarm records at the next start.
 };
 
-/// How the counts in a turn of the motor are measured where no object tells them.
+/// How the counts per motor revolution are measured where no object gives them.
 struct LearnRules {
   std::string speed;  ///< Parameter or object that shows the speed of the motor in rpm; empty: there is none.
   double least = 0;   ///< The drive has no fewer counts in a turn: how fast it may be told to turn at first.
@@ -242,7 +242,7 @@ struct Rules {
   std::vector<Caution> cautions;
 
   std::vector<ObjectAddress> mirror_add_node_id;
-  /// By DriveState, fault last; unless told otherwise those of CiA 402-2 with bits 4 and 9 set.
+  /// By DriveState, fault last; by default those of CiA 402-2 with bits 4 and 9 set.
   std::array<std::uint16_t, 8> statusword{0x0000, 0x0250, 0x0231, 0x0233, 0x0237, 0x0217, 0x021F, 0x0218};
   std::vector<ModeBits> mode_bits;
   std::vector<std::int64_t> quick_stop_stays_enabled;

@@ -43,9 +43,9 @@ Result<void> check_toml_depth(std::string_view toml, std::string_view file) {
     line += c == '\n' ? 1 : 0;
     depth.take(c);
     if (!depth.too_deep()) continue;
-    auto error = fail(Errc::file, fmt::format("{}:{}: tables stand in each other deeper than {} levels", file,
-                                              line, kDeepest))
-                     .value();
+    auto error =
+        fail(Errc::file, fmt::format("{}:{}: tables are nested deeper than {} levels", file, line, kDeepest))
+            .value();
     error.line = line;
     return fail(std::move(error));
   }

@@ -51,8 +51,8 @@ Result<bool> by_controlword(session::Session& session, std::uint8_t node) {
   auto error = left ? released.error() : left.error();
   if (!released)
     error.hint =
-        "bit 7 of the controlword may still be set, then the drive obeys no other command: `write 0x6040 0` "
-        "takes it back";
+        "controlword bit 7 may still be set; if so, the drive obeys no other command: `write 0x6040 0` "
+        "clears it";
   return fail(std::move(error));
 }
 
@@ -75,8 +75,8 @@ Result<FaultReset> check_power(session::Session& session, std::uint8_t node) {
   if (!drive::is_energised(*state)) return FaultReset::done;
   return fail(session::drive_error(
       Errc::negative, node,
-      fmt::format("its fault is reset, and it is energised: it is in {}", drive::name(*state)),
-      "another master commands it; stop and disable it, or take its power away"));
+      fmt::format("its fault is reset, but it is energised: it is in {}", drive::name(*state)),
+      "another master controls it; stop and disable it, or switch off its supply"));
 }
 
 /// Errc::refused for a drive that has its power and no fault.
@@ -87,7 +87,7 @@ Result<bool> needs_reset(session::Session& session, std::uint8_t node) {
   if (!drive::is_energised(*state)) return false;
   return fail(session::drive_error(
       Errc::refused, node,
-      fmt::format("it is in {}, not in a fault: a reset would take its power away", drive::name(*state)),
+      fmt::format("it is in {}, not in Fault: a reset would de-energise it", drive::name(*state)),
       "stop and disable it first"));
 }
 
@@ -111,7 +111,7 @@ Result<std::vector<session::PlannedMessage>> plan_fault_reset(session::Session& 
   for (const auto& setting : profile->rules.fault.reset) {
     const auto write = session::setting_write(*profile, node, setting);
     if (!write) return fail(write.error());
-    out.push_back(session::planned_write(*write, out.empty() ? "" : "if the fault stays"));
+    out.push_back(session::planned_write(*write, out.empty() ? "" : "if the fault remains"));
   }
   return out;
 }
@@ -128,7 +128,7 @@ Result<FaultReset> reset_fault(session::Session& session, const drive::Profile* 
   Error error;
   error.code = Errc::negative;
   error.node = node;
-  error.message = fmt::format("node {}: the fault stays", node);
+  error.message = fmt::format("node {}: the fault remains", node);
   error.hint = "remove its cause (`fault show`); some faults need a power cycle";
   const auto* gate = profile != nullptr && profile->rules.fault.reset_enabled_by
                          ? &*profile->rules.fault.reset_enabled_by

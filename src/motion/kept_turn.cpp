@@ -53,7 +53,7 @@ std::string seal_of(const KeptTurn& turn, std::uint8_t node) {
 
 tl::unexpected<Error> damaged(std::string message) {
   return fail(Errc::file, std::move(message),
-              "`units learn` measures anew, `units forget` takes the file away");
+              "`units learn` measures again, `units forget` deletes the file");
 }
 
 Result<KeptTurn> parse(const Value& document, const std::string& file, std::uint8_t node) {
@@ -75,7 +75,8 @@ Result<KeptTurn> parse(const Value& document, const std::string& file, std::uint
   if (fields.error()) return damaged(*fields.error());
   out.identity = *identity;
   if (seal != seal_of(out, node))
-    return damaged(fmt::format("{}: its seal does not fit: the file was changed after it was written", file));
+    return damaged(
+        fmt::format("{}: its seal does not match: the file was changed after it was written", file));
   return out;
 }
 
@@ -155,8 +156,7 @@ std::string restart_note(const drive::Profile& profile, const drive::Quotient& w
     out += (out.empty() ? "" : ", ") + (target.parameter ? target.parameter->id : to_string(object));
   }
   if (out.empty()) return out;
-  return fmt::format("{} take effect when the drive is restarted: restart it first if one was changed since",
-                     out);
+  return fmt::format("{} take effect at a restart of the drive: restart it first if one was changed", out);
 }
 
 std::vector<std::string> turn_notes(const MotionUnits& units, const KnownTurn& known) {
@@ -164,20 +164,19 @@ std::vector<std::string> turn_notes(const MotionUnits& units, const KnownTurn& k
   const auto* way = units.turn_way();
   const auto pending = way == nullptr || way->learned ? std::string() : restart_note(units.profile(), *way);
   if (!pending.empty())
-    out.push_back(
-        fmt::format("a turn is {} increments of 6064h by what the drive's parameters are set to; {}",
-                    plain_number(units.turn().value_or(0), 12), pending));
+    out.push_back(fmt::format("{} increments of 6064h per revolution, from the drive's parameters; {}",
+                              plain_number(units.turn().value_or(0), 12), pending));
   if (units.uses_learned() && known.kept)
     out.push_back(fmt::format(
-        "a turn is {} increments of 6064h, by the {} counts of its encoder ({}) that were measured at {} and "
-        "kept for this drive; --turn says another number{}",
+        "{} increments of 6064h per revolution, from the {} encoder counts ({}) measured at {} and kept for "
+        "this drive; --turn overrides it{}",
         plain_number(units.turn().value_or(0), 12), known.kept->counts, known.kept->reason, known.kept->time,
         known.kept->identity.serial.value_or(0) == 0
-            ? "; it has no serial number (1018h:04): another drive or motor would not be noticed by it"
+            ? "; it has no serial number (1018h:04): an exchanged drive or motor would not be noticed"
             : ""));
   if (!known.unused.empty() && !units.turn())
-    out.push_back(fmt::format(
-        "the counts of a turn that are kept are not used: {}; `units learn` measures anew", known.unused));
+    out.push_back(fmt::format("the kept counts per revolution are not used: {}; `units learn` measures again",
+                              known.unused));
   return out;
 }
 

@@ -8,16 +8,15 @@
 namespace servoctl::motion {
 
 std::string energised_notice(std::uint8_t node) {
-  return fmt::format("node {} IS ENERGISED and nothing watches over it; `disable -n {}` takes the power away",
-                     node, node);
+  return fmt::format("node {} IS ENERGISED and not supervised; `disable -n {}` de-energises it", node, node);
 }
 
 std::string disabled_notice(std::uint8_t node) {
-  return fmt::format("node {} was left energised; it is stopped and disabled now", node);
+  return fmt::format("node {} was still energised; it has been stopped and disabled", node);
 }
 
 std::string power_warning(std::uint8_t node, std::string_view why) {
-  return fmt::format("NODE {} MAY STILL BE ENERGISED: TAKE THE POWER AWAY: {}", node, why);
+  return fmt::format("NODE {} MAY STILL BE ENERGISED: SWITCH OFF THE SUPPLY: {}", node, why);
 }
 
 void tell_left_energised(show::Desk& desk) {
@@ -29,12 +28,12 @@ void tell_left_energised(show::Desk& desk) {
       desk.notices.push_back(energised_notice(node));
     else if (state && desk.session->energised().contains(node))
       desk.notices.push_back(fmt::format(
-          "node {} has lost its power by itself ({}) and may start again by itself: 6040h still says "
-          "\"enable operation\"; `disable -n {}` takes that back",
+          "node {} dropped out by itself ({}) and may restart by itself: 6040h still holds \"enable "
+          "operation\"; `disable -n {}` clears that",
           node, drive::name(*state), node));
     else if (!state && state.error().code != Errc::sdo_abort)
       desk.notices.push_back(
-          fmt::format("node {} MAY BE ENERGISED: it does not tell ({})", node, state.error().message));
+          fmt::format("node {} MAY BE ENERGISED: state not known ({})", node, state.error().message));
   }
 }
 

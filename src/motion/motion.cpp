@@ -79,8 +79,9 @@ bool Motion::add_setting(ObjectAddress object, double value, MotionPlan& plan) c
   plan.settings.emplace_back(object, *data);
   const auto held = units_->physical(object, *data);
   if (held && std::abs(held->value - value) > std::abs(value) * kChosenLoss)
-    plan.notes.push_back(fmt::format("{} is set to {} {}: the nearest it can hold to {}", to_string(object),
-                                     number_text(held->value), held->unit, number_text(value)));
+    plan.notes.push_back(fmt::format("{} is set to {} {}, the nearest possible value to {}",
+                                     to_string(object), number_text(held->value), held->unit,
+                                     number_text(value)));
   return true;
 }
 
@@ -197,8 +198,8 @@ Result<bool> Motion::watch(const std::function<Result<bool>(const MotionSample&)
   try {
     return supervise(done, longest);
   } catch (const std::bad_alloc&) {
-    return fail(error(Errc::bug, "the memory ran out, so the motion was ended",
-                      "give it more memory, or a shorter motion; end other programs"));
+    return fail(error(Errc::bug, "out of memory: the motion was stopped",
+                      "use a shorter motion, or free some memory"));
   }
 }
 
@@ -211,7 +212,7 @@ Result<bool> Motion::supervise(const std::function<Result<bool>(const MotionSamp
     if (!sample) return fail(sample.error());
     if (const auto fits = check_turn(*sample); !fits) return fail(fits.error());
     if (options_.unheard && options_.unheard())
-      return fail(error(Errc::interrupted, "nobody reads the output any more; the motion was ended"));
+      return fail(error(Errc::interrupted, "the output is no longer read: the motion was stopped"));
     const auto enough = done(*sample);
     if (!enough || *enough) return enough;
     if (session_->now() >= end) return false;
@@ -224,8 +225,8 @@ Result<void> Motion::wait_for_rest(Duration longest) {
       watch([this](const MotionSample& sample) -> Result<bool> { return stands_still(sample); }, longest);
   if (!rested) return fail(rested.error());
   if (*rested) return {};
-  return fail(error(Errc::negative, "did not come to rest in time; it is stopped now",
-                    "look at its deceleration (6084h) and its load"));
+  return fail(error(Errc::negative, "did not stop in time; it has been stopped now",
+                    "check its deceleration (6084h) and its load"));
 }
 
 MotionReport Motion::finish(Result<void> outcome) {
@@ -240,7 +241,7 @@ MotionReport Motion::finish(Result<void> outcome) {
   } catch (const std::bad_alloc&) {
     out.samples.clear();
     out.series.clear();
-    if (out.outcome) out.outcome = fail(error(Errc::bug, "the memory ran out: there are no samples to show"));
+    if (out.outcome) out.outcome = fail(error(Errc::bug, "out of memory: there are no samples to show"));
   }
   out.events = monitor_->events();
   out.by_pdo = monitor_->by_pdo();

@@ -28,7 +28,7 @@ void MotionGuard::put_node_back() {
   if (!std::exchange(started_, false)) return;
   if (!state_before_) {
     result_.notes.emplace_back(
-        "the node was started (NMT) and stays operational: its state before is not known");
+        "the node was started (NMT) and stays operational: its previous state is not known");
     return;
   }
   const auto sent = session_->network().request_state(node_, session::NodeState::pre_operational);
@@ -72,12 +72,10 @@ void MotionGuard::bring_down() {
   for (const auto& means : done.notes) result_.notes.push_back(means);
   if (done.ignored > 0)
     result_.left.push_back(fmt::format(
-        "it did not obey 0000h, which was written {} times: whatever state it is in now was not commanded",
-        done.ignored));
+        "it did not obey 0000h, written {} times: its present state was not commanded", done.ignored));
   else if (!done.outcome)
-    result_.left.push_back(
-        (powered_ ? "its power could not be taken away: " : "its last word was not taken: ") +
-        done.outcome.error().message);
+    result_.left.push_back((powered_ ? "it could not be de-energised: " : "controlword not accepted: ") +
+                           done.outcome.error().message);
   if (lost_) disarm();
 }
 
@@ -96,13 +94,13 @@ void MotionGuard::put_back() {
   for (auto changed = changed_.rbegin(); changed != changed_.rend(); ++changed) {
     // Its old targets and an old watchdog are nothing for a drive that still has its power.
     if (lost_ || powered_) {
-      result_.left.push_back(fmt::format("object {} was not put back to {}", to_string(changed->object),
+      result_.left.push_back(fmt::format("object {} was not restored to {}", to_string(changed->object),
                                          to_hex(changed->before)));
       continue;
     }
     if (stays_new(*changed)) {
       result_.notes.push_back(
-          fmt::format("object {} keeps its new value: the one before, {}, is out of its range",
+          fmt::format("object {} keeps its new value: its old value, {}, is out of its range",
                       to_string(changed->object), to_hex(changed->before)));
       continue;
     }
@@ -119,7 +117,7 @@ void MotionGuard::put_back(const Changed& changed) {
   while (!done && done.error().code == Errc::bus && link.comes_back(done.error()))
     done = session_->download(node_, changed.object, changed.before);
   const auto what =
-      fmt::format("object {} could not be put back to {}", to_string(changed.object), to_hex(changed.before));
+      fmt::format("object {} could not be restored to {}", to_string(changed.object), to_hex(changed.before));
   if (!done) {
     lost_ = lost_ || is_lost(done.error());
     return note(what, done.error());
@@ -136,8 +134,8 @@ void MotionGuard::put_back(const Changed& changed) {
 void MotionGuard::tell_foreign_writes() {
   for (const auto object : foreign_)
     result_.left.push_back(fmt::format(
-        "another master wrote object {} meanwhile: what it held before may be lost, and what it holds now is "
-        "not known to be right",
+        "another master wrote object {} meanwhile: its old value may be lost, and its present value may be "
+        "wrong",
         to_string(object)));
   foreign_.clear();
 }

@@ -47,9 +47,9 @@ class Homing {
     if (*ended) return {};
     return fail(
         motion_->error(Errc::negative,
-                       fmt::format("found no home in {} s; it is stopped now",
+                       fmt::format("no home found in {} s; it is stopped now",
                                    std::chrono::duration<double>(plan_->longest).count()),
-                       "does the switch or the index pulse come at all? `--within` gives it more time"));
+                       "check that the switch and the index pulse come; `--within` allows more time"));
   }
 
  private:
@@ -65,15 +65,15 @@ class Homing {
     if (is_error(sample.statusword) && !stale_error_)
       return fail(motion_->error(
           Errc::negative, fmt::format("ended homing with an error (statusword 0x{:04X})", sample.statusword),
-          "switch stuck, wrong method or a limit in the way; `fault show` may tell more"));
+          "switch stuck, wrong method or a limit in the way; see also `fault show`"));
     const bool done = is_done(sample.statusword);
     begun_ = begun_ || !done;
     if (done && begun_) return motion_->stands_still(sample);
     if (begun_ || sample.time - started_at_ < kStart) return false;
     if (takes_present_position(*plan_) && motion_->stands_still(sample) && is_at_offset(sample)) return true;
     return fail(motion_->error(Errc::negative,
-                               "does not begin to look for home: what it says is from an earlier run",
-                               "is this method one the drive knows (6098h)?"));
+                               "does not start homing: \"homing attained\" is from an earlier run",
+                               "does the drive support this method (6098h)?"));
   }
 
   /// Where it stands is home now, so its position is the offset; its sign differs from drive to drive.
@@ -125,8 +125,8 @@ Result<void> check_method(Motion& motion, MotionPlan& plan) {
   const auto& nothing = motion.rules().no_homing;
   if (number == kNoMethod || std::find(nothing.begin(), nothing.end(), number) != nothing.end())
     return fail(motion.error(
-        Errc::refused, fmt::format("homing method {} (6098h) does nothing: no home would be found", number),
-        fmt::format("say which: `home METHOD -n {}`; {}, `write 0x6098 METHOD` sets one", motion.node(),
+        Errc::refused, fmt::format("homing method {} (6098h) does nothing: no homing would occur", number),
+        fmt::format("give one: `home METHOD -n {}`; {}, `write 0x6098 METHOD` sets one", motion.node(),
                     meaning.labels != nullptr ? "`objects 0x6098` lists them" : "the manual lists them")));
   const auto* label = drive::label_of(meaning, *value);
   if (meaning.labels != nullptr && label == nullptr)
@@ -146,13 +146,14 @@ Result<Physical> speed_of(Motion& motion, ObjectAddress object, const MotionPlan
     return fail(motion.error(
         Errc::refused,
         fmt::format("its homing speed ({}) cannot be compared with its speed limit", to_string(object)),
-        motion.is_told_turn() ? ""
-                              : "add --turn (increments of 6064h in a turn), if the drive does not tell it"));
+        motion.is_told_turn()
+            ? ""
+            : "add --turn (6064h increments per revolution), if the drive does not report it"));
   if (const auto allowed = motion.check_speed(speed->value); !allowed) return fail(allowed.error());
   if (speed->value > 0 || takes_present_position(plan)) return *speed;
   const bool fast = object == objects::kHomingSpeedSwitch;
   return fail(motion.error(Errc::refused,
-                           fmt::format("its homing speed ({}) is {} {}: it would never get there",
+                           fmt::format("its homing speed ({}) is {} {}: homing would never end",
                                        to_string(object), number_text(speed->value), speed->unit),
                            fmt::format("add {}; `write {} …` sets it",
                                        fast ? "--speed 30rpm" : "--search 6rpm", to_string(object))));
@@ -172,8 +173,7 @@ Duration longest_homing(Motion& motion, double fast, double slow) {
 
 Result<MotionPlan> plan_home(Motion& motion, const Home& home) {
   const auto mode = motion.rules().homing;
-  if (!mode)
-    return fail(motion.error(Errc::refused, "this family cannot home by itself: it has no such mode"));
+  if (!mode) return fail(motion.error(Errc::refused, "this family has no homing mode"));
   MotionPlan plan;
   plan.mode = *mode;
   for (const auto& [object, text] :

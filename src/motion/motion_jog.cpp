@@ -31,7 +31,7 @@ class Jogging {
         motion_->watch([this](const MotionSample& s) { return look(s); }, jog_->length.value_or(longest()));
     if (!watched) return fail(watched.error());
     if (!*watched && jog_->turns)
-      return fail(motion_->error(Errc::negative, "did not turn that far in the time it needs",
+      return fail(motion_->error(Errc::negative, "did not turn that far in the expected time",
                                  "is it blocked, or is its speed limited?"));
     const auto stopped_at = motion_->session().now();
     auto rested = rest();
@@ -43,8 +43,8 @@ class Jogging {
  private:
   void judge(TimePoint told_at, TimePoint stopped_at) {
     if (left_alone_)
-      judgement_.unchecked.push_back(fmt::format("no key was held for {}: it has ended by itself",
-                                                 servoctl::to_string(kLongestWithoutKey)));
+      judgement_.unchecked.push_back(
+          fmt::format("no key was held for {}: the jog has ended", servoctl::to_string(kLongestWithoutKey)));
     if (jog_->keys) return;
     judgement_.judge_speed(*motion_, *plan_, told_at, stopped_at);
     if (jog_->turns) judgement_.judge_way(*motion_, *plan_);
@@ -112,9 +112,9 @@ class Jogging {
       return fail(motion_->error(Errc::negative,
                                  fmt::format("turns the wrong way: {} {} instead of {}", number_text(*speed),
                                              plan_->unit, number_text(wanted)),
-                                 "encoder direction, polarity (607Eh) or motor wiring"));
+                                 "check encoder direction, polarity (607Eh), motor wiring"));
     if (settled && std::abs(*speed) < std::abs(wanted) * kTurns)
-      return fail(motion_->error(Errc::negative, "does not turn although it was told to",
+      return fail(motion_->error(Errc::negative, "does not turn although commanded to",
                                  "is it blocked, is the brake on, or does a limit hold it back?"));
     return {};
   }
@@ -143,8 +143,8 @@ class Jogging {
 /// The way of so many turns in the unit of the position.
 Result<double> way_of(const Motion& motion, double turns) {
   if (motion.units().unit(objects::kPositionActual) == "deg") return std::abs(turns) * kDegrees;
-  return fail(motion.error(Errc::usage, "does not tell how many counts a turn of its motor has",
-                           "add --turn (increments of 6064h in a turn), or say --for TIME"));
+  return fail(motion.error(Errc::usage, "does not report its counts per motor revolution",
+                           "add --turn (6064h increments per revolution), or use --for TIME"));
 }
 
 std::string until_text(const Jog& jog) {
@@ -163,7 +163,7 @@ Result<MotionPlan> plan_jog(Motion& motion, const Jog& jog) {
   const auto data = motion.units().parse(objects::kTargetVelocity, jog.speed);
   if (!data) return fail(data.error());
   const auto& speed = data->value;
-  if (speed.value == 0) return fail(Errc::usage, "a speed of 0 does not move anything", "say how fast");
+  if (speed.value == 0) return fail(Errc::usage, "a speed of 0 moves nothing", "give a speed other than 0");
   if (const auto allowed = motion.check_speed(speed.value); !allowed) return fail(allowed.error());
   plan.command = data->data;
   plan.tell(data->rounding);

@@ -58,19 +58,19 @@ void MotionJudgement::judge_speed(const Motion& motion, const MotionPlan& plan, 
   const bool same_unit =
       motion.units().unit(objects::kVelocityActual) == motion.units().unit(objects::kTargetVelocity);
   if (!tells(samples, Channel::velocity) || !same_unit) {
-    unchecked.push_back("the speed was not measured: the drive does not tell it in the unit of its target");
+    unchecked.push_back("the speed was not checked: the drive does not report it in the unit of the target");
     return;
   }
   const auto values = values_at_end(samples, Channel::velocity, told_at, stopped_at);
   const bool speeding_up =
       motion.has_own_ramps() && values.size() >= kSamples && spread(values) > std::abs(plan.value) * kSteady;
   if (values.size() < kSamples || speeding_up) {
-    unchecked.push_back("the speed was not judged: the motion ended before its ramp was over");
+    unchecked.push_back("the speed was not checked: the motion ended during its ramp");
     return;
   }
   const double speed = mean(values);
   if (std::abs(speed - plan.value) <= std::abs(plan.value) * kSpeedTolerance + motion.standstill()) return;
-  differences.push_back(fmt::format("the speed was {} {}; {} {} was asked for", number_text(speed), plan.unit,
+  differences.push_back(fmt::format("the speed was {} {}; {} {} was commanded", number_text(speed), plan.unit,
                                     number_text(plan.value), plan.unit));
 }
 
@@ -87,21 +87,21 @@ void MotionJudgement::judge_way(const Motion& motion, const MotionPlan& plan) {
   if (std::abs(way - asked) <= plan.way * kWayTolerance + 2 * step) return;
   const auto unit = motion.units().unit(objects::kPositionActual);
   differences.push_back(
-      fmt::format("it went {} {}; {} {} was asked for", number_text(way), unit, number_text(asked), unit));
+      fmt::format("it moved {} {}; {} {} was commanded", number_text(way), unit, number_text(asked), unit));
 }
 
 void MotionJudgement::judge_target(const Motion& motion, const MotionPlan& plan, double near) {
   const auto& samples = motion.monitor().samples();
   const auto place = samples.empty() ? std::nullopt : samples.back()[Channel::position];
   if (!place) {
-    unchecked.push_back("where it stands was not measured: the drive does not tell its position");
+    unchecked.push_back("the position was not checked: the drive does not report it");
     return;
   }
   if (std::abs(*place - plan.value) <= near) return;
   const auto numbers = told_apart(*place, plan.value);
   differences.push_back(
-      fmt::format("it is at {} {}; {} {} was asked for (the position window, 6067h, is wider than that)",
-                  numbers.first, plan.unit, numbers.second, plan.unit));
+      fmt::format("it is at {} {}; {} {} was commanded (the position window, 6067h, is wider)", numbers.first,
+                  plan.unit, numbers.second, plan.unit));
 }
 
 void MotionJudgement::judge_torque(const Motion& motion, const MotionPlan& plan, TimePoint told_at,
@@ -111,20 +111,20 @@ void MotionJudgement::judge_torque(const Motion& motion, const MotionPlan& plan,
   const auto speeds = values_at_end(samples, Channel::velocity, told_at, stopped_at);
   const bool same_unit = motion.units().unit(objects::kTorqueActual) == plan.unit;
   if (!tells(samples, Channel::torque) || !same_unit) {
-    unchecked.push_back("the torque was not measured: the drive does not tell it in the unit of its target");
+    unchecked.push_back("the torque was not checked: the drive does not report it in the unit of the target");
     return;
   }
   if (values.size() < kSamples) {
-    unchecked.push_back("the torque was not judged: the motion ended before its slope was over");
+    unchecked.push_back("the torque was not checked: the motion ended during its slope");
     return;
   }
   const double torque = mean(values);
   const double noise = plan.unit == "Nm" ? kTorqueNoiseNm : kTorqueNoise;
   if (std::abs(torque - plan.value) <= std::abs(plan.value) * kTorqueTolerance + noise) return;
-  const auto text = fmt::format("the torque was {} {}; {} {} was asked for", number_text(torque), plan.unit,
+  const auto text = fmt::format("the torque was {} {}; {} {} was commanded", number_text(torque), plan.unit,
                                 number_text(plan.value), plan.unit);
   if (!speeds.empty() && std::abs(mean(speeds)) >= plan.speed * kAtLimit)
-    unchecked.push_back(text + ": the speed limit held it back");
+    unchecked.push_back(text + ": limited by the speed limit");
   else
     differences.push_back(text);
 }

@@ -107,7 +107,7 @@ class Learning {
     for (const auto& [object, data] : ramps.settings)
       if (const auto done = motion_->write(object, data); !done) return done;
     const auto data = motion_->units().bytes(objects::kTargetVelocity, wanted_);
-    if (!data) return fail(motion_->error(Errc::refused, "cannot be told a speed (60FFh)"));
+    if (!data) return fail(motion_->error(Errc::refused, "accepts no target velocity (60FFh)"));
     if (const auto done = motion_->write(objects::kTargetVelocity, *data); !done) return done;
     looks_.clear();
     if (const auto watched = watch(kSettling); !watched) return watched;
@@ -125,16 +125,16 @@ class Learning {
     const auto rpm = read_monitor();
     if (!rpm) return fail(rpm.error());
     if (std::abs(*rpm) > std::abs(learn_->rpm) * kTooFast + kNoise)
-      return fail(motion_->error(
-          Errc::negative,
-          fmt::format("turns too fast: {} shows {} rpm, and {} were wanted", learn_->monitor_name,
-                      number_text(*rpm), number_text(std::abs(learn_->rpm))),
-          "has its encoder fewer counts than the family's data says? " + std::string(kOtherWay)));
+      return fail(
+          motion_->error(Errc::negative,
+                         fmt::format("turns too fast: {} shows {} rpm instead of {}", learn_->monitor_name,
+                                     number_text(*rpm), number_text(std::abs(learn_->rpm))),
+                         "fewer encoder counts than the family's data says? " + std::string(kOtherWay)));
     const auto position = sample[Channel::position];
     if (!position)
-      return fail(motion_->error(Errc::negative, "does not tell its position (6064h) while it moves"));
+      return fail(motion_->error(Errc::negative, "does not report its position (6064h) while moving"));
     const auto speed = sample[Channel::velocity];
-    if (!speed) return fail(motion_->error(Errc::negative, "does not tell its speed (606Ch) while it moves"));
+    if (!speed) return fail(motion_->error(Errc::negative, "does not report its speed (606Ch) while moving"));
     looks_.push_back({sample.time, *position, *speed, *rpm});
     const bool wrong = !keeps_ && *speed * wanted_ < 0 && std::abs(*speed) > std::abs(wanted_) * kTurns;
     wrong_looks_ = wrong ? wrong_looks_ + 1 : 0;
@@ -168,23 +168,22 @@ class Learning {
     shown_ = rpm / count;
     error_ = std::sqrt(std::max(squares / count - shown_ * shown_, 0.0) / count);
     if (std::abs(speed / count) >= std::abs(wanted_) * kTurns) return {};
-    return fail(motion_->error(Errc::negative, "does not turn although it was told to",
+    return fail(motion_->error(Errc::negative, "does not turn although commanded to",
                                "is it blocked, is the brake on, or does a limit hold it back?"));
   }
 
   Error shows_nothing(double speed) const {
     return motion_->error(
         Errc::negative,
-        fmt::format("turns at {} inc/s by 606Ch, and {} shows {} rpm: nothing to measure by",
-                    number_text(speed), learn_->monitor_name, number_text(shown_)),
-        (fastest_ && speed >= *fastest_ ? "607Fh holds it back; " : "") + std::string(kOtherWay));
+        fmt::format("turns at {} inc/s by 606Ch, but {} shows {} rpm: not usable", number_text(speed),
+                    learn_->monitor_name, number_text(shown_)),
+        (fastest_ && speed >= *fastest_ ? "607Fh limits it; " : "") + std::string(kOtherWay));
   }
   Error lies(double speed) const {
     return motion_->error(
         Errc::negative,
         fmt::format(
-            "turns at {} inc/s by 606Ch, and {} shows {} rpm, which does not go with what it showed at other "
-            "speeds",
+            "turns at {} inc/s by 606Ch, but {} shows {} rpm, which contradicts its values at other speeds",
             number_text(speed), learn_->monitor_name, number_text(shown_)),
         std::string(kOtherWay));
   }
@@ -221,7 +220,7 @@ Result<void> check_units(const Motion& motion, const Learn& learn) {
   const auto& units = motion.units();
   if (units.unit(objects::kPositionActual) != "inc" || units.unit(objects::kTargetVelocity) != "inc/s" ||
       units.unit(learn.monitor) != "rpm")
-    return fail(motion.error(Errc::refused, "does not tell its position and speed in counts of its own",
+    return fail(motion.error(Errc::refused, "does not report its position and speed in counts",
                              "there is nothing to learn"));
   return {};
 }
@@ -235,15 +234,15 @@ Result<MotionPlan> plan_learn(Motion& motion, const Learn& learn) {
   if (const auto shown = motion.session().upload(motion.node(), learn.monitor); !shown) {
     if (shown.error().code != Errc::sdo_abort) return fail(shown.error());
     return fail(motion.error(Errc::refused,
-                             fmt::format("does not show the speed of its motor: {} ({}) cannot be read",
+                             fmt::format("does not show the motor speed: {} ({}) cannot be read",
                                          learn.monitor_name, to_string(learn.monitor)),
                              std::string(kOtherWay)));
   } else if (const auto rpm = motion.units().physical(learn.monitor, *shown);
              rpm && std::abs(rpm->value) > kRestRpm) {
     return fail(motion.error(
         Errc::refused,
-        fmt::format("has no power, and {} shows {} rpm", learn.monitor_name, number_text(rpm->value)),
-        "wait until the motor stands still; a monitor that lies cannot be measured by"));
+        fmt::format("is not energised, but {} shows {} rpm", learn.monitor_name, number_text(rpm->value)),
+        "wait until the motor stands still; a wrong monitor cannot be used to measure"));
   }
   MotionPlan plan;
   plan.mode = *mode;
@@ -256,12 +255,12 @@ Result<MotionPlan> plan_learn(Motion& motion, const Learn& learn) {
           motion.add_ramps(plan.value, {objects::kProfileAcceleration, objects::kProfileDeceleration}, plan);
       !ramps)
     return fail(ramps.error());
-  plan.summary = fmt::format("turn at {} rpm by {} for {}, about {} turns, found in steps from {} {} on",
+  plan.summary = fmt::format("turn at {} rpm by {} for {}, about {} turns, approached in steps from {} {}",
                              number_text(learn.rpm), learn.monitor_name, servoctl::to_string(learn.length),
                              turns_of(learn), number_text(std::round(plan.value)), plan.unit);
   plan.tell(fmt::format(
-      "60FFh and its ramps are written again and again, each time for at most {} times the last speed, until "
-      "{} shows {} rpm",
+      "60FFh and its ramps are raised in steps, by at most {} times the last speed each, until {} shows {} "
+      "rpm",
       number_text(kSpeedUp), learn.monitor_name, number_text(std::abs(learn.rpm))));
   plan.moving = {{objects::kTargetVelocity, plan.command},
                  {objects::kTargetVelocity, Bytes(plan.command.size(), 0)}};

@@ -42,9 +42,10 @@ Result<void> Motion::read_limits() {
     // Of a torque that is asked for it is the ceiling as well; other motions are refused by check_speed().
     if (row.channel == Channel::torque && !units_->has(object) && rules().torque) continue;
     if (!units_->has(object))
-      return fail(Errc::usage,
-                  fmt::format("this family does not tell its {} ({})", name(row.channel), to_string(object)),
-                  "leave this limit out");
+      return fail(
+          Errc::usage,
+          fmt::format("this family does not report its {} ({})", name(row.channel), to_string(object)),
+          "leave this limit out");
     const auto value = parse_limit(object, row.option, *row.text);
     if (!value) return fail(value.error());
     *row.out = *value;
@@ -53,8 +54,8 @@ Result<void> Motion::read_limits() {
   const auto ramp = units_->parse(objects::kProfileAcceleration, options_.acceleration);
   if (!ramp) return fail(ramp.error());
   if (ramp->value.value > 0) return {};
-  return fail(Errc::usage, fmt::format("--accel: '{}' is no ramp", options_.acceleration),
-              "a ramp is more than 0; it holds either way");
+  return fail(Errc::usage, fmt::format("--accel: '{}' is not a ramp", options_.acceleration),
+              "a ramp must be above 0, without a sign");
 }
 
 Result<double> Motion::parse_limit(ObjectAddress object, std::string_view option,
@@ -66,8 +67,8 @@ Result<double> Motion::parse_limit(ObjectAddress object, std::string_view option
     return fail(std::move(error));
   }
   if (value->value > 0) return value->value;
-  return fail(Errc::usage, fmt::format("{}: '{}' is no limit: it lets nothing move", option, text),
-              "a limit is more than 0; it holds either way");
+  return fail(Errc::usage, fmt::format("{}: '{}' is not a limit", option, text),
+              "a limit must be above 0, without a sign");
 }
 
 std::optional<double> Motion::read_as(ObjectAddress as, ObjectAddress object) const {
@@ -109,19 +110,18 @@ Result<void> Motion::check_turn(const MotionSample& sample) {
 Error Motion::quarrel(double shown, double speed) const {
   const auto& name = profile_->rules.learn.speed;
   if (units_->uses_learned())
-    return error(
-        Errc::negative,
-        fmt::format("turns at {} rpm by {}, and at {} rpm by the kept counts of a turn", number_text(shown),
-                    name, number_text(speed)),
-        "is it another motor or drive? `units learn` measures it, `units forget` drops what is kept");
+    return error(Errc::negative,
+                 fmt::format("turns at {} rpm by {}, but at {} rpm by the kept counts per rev",
+                             number_text(shown), name, number_text(speed)),
+                 "another motor or drive? `units learn` measures again, `units forget` deletes the counts");
   const auto pending = restart_note(*profile_, *units_->turn_way());
   return error(
       Errc::negative,
       fmt::format(
-          "turns at {} rpm by {}, and at {} rpm by the {} increments that its parameters tell of a turn",
+          "turns at {} rpm by {}, but at {} rpm by the {} increments per revolution in its parameters",
           number_text(shown), name, number_text(speed), plain_number(units_->turn().value_or(0), 12)),
       (pending.empty() ? "" : pending + "; ") +
-          "--turn says how many a turn has, and then it is not held against " + name);
+          "--turn gives increments per rev, and then it is not held against " + name);
 }
 
 std::optional<double> Motion::fastest() const {
@@ -142,7 +142,7 @@ Result<double> Motion::find_speed_cap() {
       return fail(error(Errc::refused,
                         fmt::format("the limit of {} {} is above what the drive allows, {} {}", numbers.first,
                                     unit, numbers.second, unit),
-                        "607Fh and 6080h hold it"));
+                        "607Fh and 6080h set it"));
     }
     return asked;
   }
@@ -152,13 +152,14 @@ Result<double> Motion::find_speed_cap() {
       most = std::min(*speed, most.value_or(*speed));
   if (unit == "rpm") return std::min(kSafeRpm, most.value_or(kSafeRpm));
   if (most) return *most * kSafePart;
-  return fail(Errc::usage, "what speed is safe cannot be told from this drive",
+  return fail(Errc::usage, "a safe speed cannot be derived from this drive",
               fmt::format("add --limit SPEED in {}", unit.empty() ? "the drive's own unit" : unit));
 }
 
 Result<void> Motion::check_speed(double speed) const {
   if (!options_.max_torque.empty() && !units_->has(objects::kTorqueActual))
-    return fail(Errc::usage, "this family does not tell its torque (6077h): nobody would watch --max-torque",
+    return fail(Errc::usage,
+                "this family does not report torque (6077h), so --max-torque cannot be monitored",
                 "leave this limit out");
   if (!speed_cap_) return fail(speed_cap_.error());
   if (std::abs(speed) <= *speed_cap_ * kRounding) return {};
@@ -172,10 +173,10 @@ Result<void> Motion::check_speed(double speed) const {
         Errc::refused,
         fmt::format("{} {} is above what the drive allows, {} {}", numbers.first, unit, numbers.second, unit),
         "607Fh and 6080h hold it"));
-  return fail(error(
-      Errc::refused,
-      fmt::format("{} {} is above the limit of {} {}", numbers.first, unit, numbers.second, unit),
-      fmt::format("`--limit {}{}` raises it, when the machine may move that fast", numbers.first, unit)));
+  return fail(
+      error(Errc::refused,
+            fmt::format("{} {} is above the limit of {} {}", numbers.first, unit, numbers.second, unit),
+            fmt::format("`--limit {}{}` raises it, if the machine may move that fast", numbers.first, unit)));
 }
 
 Result<double> Motion::torque_cap() const {
@@ -188,7 +189,7 @@ Result<double> Motion::torque_cap() const {
       return fail(error(Errc::refused,
                         fmt::format("--max-torque of {} {} is above what the drive allows, {} {}",
                                     numbers.first, unit, numbers.second, unit),
-                        "6072h holds it"));
+                        "6072h sets it"));
     }
     return asked;
   }
@@ -197,7 +198,7 @@ Result<double> Motion::torque_cap() const {
   if (const auto object = units_->object(rules().rated_torque))
     rated = read_as(objects::kTargetTorque, *object);
   if (rated) return std::min(*rated, most.value_or(*rated));
-  return fail(Errc::usage, "what torque is safe cannot be told from this drive",
+  return fail(Errc::usage, "a safe torque cannot be derived from this drive",
               fmt::format("add --max-torque TORQUE in {}", unit.empty() ? "the drive's own unit" : unit));
 }
 

@@ -132,13 +132,13 @@ Result<void> MotionMonitor::check_events() {
       const auto faults = drive::faults_of(profile.faults, profile.rules.emergency, told->code, told->vendor);
       const bool message = !faults.empty() && faults.front()->kind == drive::Fault::Kind::status;
       if (told->code != 0 && !message)
-        out = stopped_by(node_, fmt::format("sent an emergency, 0x{:04X}, while it moved", told->code),
-                         "`fault show` tells what it means");
+        out = stopped_by(node_, fmt::format("sent emergency 0x{:04X} while moving", told->code),
+                         "`fault show` explains it");
     }
     if (std::holds_alternative<session::NodeEvent::BootUp>(event.what))
-      out = stopped_by(node_, "restarted while it moved", "is its supply steady?");
+      out = stopped_by(node_, "restarted while moving", "is its supply steady?");
     if (std::holds_alternative<session::NodeEvent::Gone>(event.what))
-      out = fail(session::drive_error(Errc::timeout, node_, "its heartbeat was lost while it moved",
+      out = fail(session::drive_error(Errc::timeout, node_, "lost its heartbeat while moving",
                                       "check cable, termination and supply"));
   }
   return out;
@@ -148,9 +148,9 @@ Result<void> MotionMonitor::check_state(const MotionSample& sample) const {
   const auto state = drive::decode_state(sample.statusword);
   if (state == drive::DriveState::operation_enabled) return {};
   return stopped_by(node_,
-                    fmt::format("left \"operation enabled\" while it moved: {} (statusword 0x{:04X})",
+                    fmt::format("left \"operation enabled\" while moving: {} (statusword 0x{:04X})",
                                 drive::name(state), sample.statusword),
-                    "`fault show` tells a fault; an input, another master or the panel may have disabled it");
+                    "see `fault show`; an input, another master or the panel may have disabled it");
 }
 
 Result<void> MotionMonitor::check_limits(const MotionSample& sample) const {
@@ -159,9 +159,9 @@ Result<void> MotionMonitor::check_limits(const MotionSample& sample) const {
     if (!limit || !value || std::abs(*value - from) <= *limit) return Result<void>{};
     const auto numbers = told_apart(*value - from, *limit);
     return Result<void>(stopped_by(node_,
-                                   fmt::format("{} of {} {} is beyond its limit of {}", what, numbers.first,
+                                   fmt::format("{} of {} {} exceeds its limit of {}", what, numbers.first,
                                                units_->unit(object_of(channel)), numbers.second),
-                                   "the motion was stopped; raise the limit when it is meant"));
+                                   "the motion was stopped; raise the limit if this is intended"));
   };
   for (const auto& done :
        {beyond(Channel::torque, limits_.torque, 0, "the torque"),

@@ -49,7 +49,7 @@ class Moving {
     }
     return fail(
         motion_->error(Errc::negative,
-                       fmt::format("did not arrive at {} {} in the time it needs; it is at {}",
+                       fmt::format("did not reach {} {} in the expected time; it is at {}",
                                    number_text(plan_->value), plan_->unit, number_text(last_)),
                        "is it blocked, is its speed limited, or is the position window (6067h) too narrow?"));
   }
@@ -89,8 +89,8 @@ class Moving {
       if (!*answered)
         return fail(
             motion_->error(Errc::negative,
-                           taken ? "did not take the target: bit 12 of the statusword stayed low"
-                                 : "does not become ready for a target: bit 12 of the statusword stayed high",
+                           taken ? "target not accepted: statusword bit 12 (acknowledge) stayed 0"
+                                 : "is not ready for a target: statusword bit 12 (acknowledge) stayed 1",
                            "does another master command it?"));
     }
     return motion_->command(kEnabled);
@@ -140,7 +140,7 @@ Result<void> find_target(Motion& motion, const Move& move, MotionPlan& plan) {
   // Kept within limits silently it would go elsewhere.
   if (!said || std::abs(said->value - plan.value) > std::max(step, std::abs(plan.value) * 1e-6))
     return fail(motion.error(
-        Errc::usage, fmt::format("{} {} is beyond what 607Ah can hold", number_text(plan.value), plan.unit)));
+        Errc::usage, fmt::format("{} {} is out of the range of 607Ah", number_text(plan.value), plan.unit)));
   const double from = move.relative ? here.value : 0;
   // What was told must not be lost in a step; the zero it is counted from is one.
   const auto rounding = drive::judge_rounding({asked->value, said->value - from, step, plan.unit});
@@ -160,9 +160,9 @@ Result<void> check_start(Motion& motion, const MotionPlan& plan) {
   const auto here = motion.units().physical(objects::kPositionActual, *answer).value_or(Physical{});
   if (!plan.from || std::abs(here.value - *plan.from) <= near(plan)) return {};
   return fail(motion.error(Errc::refused,
-                           fmt::format("has moved since the way was told: it was at {} {} and is at {}",
+                           fmt::format("has moved since you were asked: it was at {} {} and is at {}",
                                        number_text(*plan.from), plan.unit, number_text(here.value)),
-                           "nothing was moved; say it again"));
+                           "nothing was moved; please repeat"));
 }
 
 }  // namespace
@@ -173,7 +173,7 @@ Result<MotionPlan> plan_move(Motion& motion, const Move& move) {
   const auto& units = motion.units();
   const auto speed_object = units.object(motion.rules().position_speed);
   if (!speed_object || !units.has(*speed_object))
-    return fail(motion.error(Errc::refused, "this family tells no object for the speed of a move"));
+    return fail(motion.error(Errc::refused, "this family has no known object for the speed of a move"));
   MotionPlan plan;
   plan.mode = *mode;
   if (const auto found = find_target(motion, move, plan); !found) return fail(found.error());

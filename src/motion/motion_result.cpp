@@ -61,9 +61,9 @@ Value end_record(const MotionEnd& end) {
 /// A drive that may still be energised is worse than whatever ended the motion.
 Error unverified(std::uint8_t node, const MotionReport& done) {
   auto text = end_text(done.end, done.watchdog);
-  if (!done.outcome) text += fmt::format("; the motion ended because {}", done.outcome.error().message);
+  if (!done.outcome) text += fmt::format("; the motion ended with: {}", done.outcome.error().message);
   return session::drive_error(done.outcome ? Errc::negative : done.outcome.error().code, node, text,
-                              "do not go near the machine before its power is off");
+                              "do not approach the machine before its supply is off");
 }
 
 std::string_view result_text(const MotionReport& done) {
@@ -86,8 +86,8 @@ std::string end_text(const MotionEnd& end, const WatchdogPlan& watchdog) {
                        end.quick_stop ? " after a quick stop" : "", end.statusword);
   std::string out =
       end.statusword == 0
-          ? "THE END STATE COULD NOT BE VERIFIED: TAKE THE POWER AWAY"
-          : fmt::format("IT IS IN {} (statusword 0x{:04X}), NOT WITHOUT POWER: TAKE THE POWER AWAY",
+          ? "THE FINAL STATE COULD NOT BE VERIFIED: SWITCH OFF THE SUPPLY"
+          : fmt::format("IT IS IN {} (statusword 0x{:04X}), NOT DE-ENERGISED: SWITCH OFF THE SUPPLY",
                         drive::name(end.state), end.statusword);
   if (watchdog.kind != WatchdogPlan::Kind::none)
     out += fmt::format(" (its watchdog should stop it within {} ms)",
@@ -105,12 +105,12 @@ Value motion_result(show::Desk& desk, std::uint8_t node, const MotionPlan& plan,
   else if (!done.differences.empty())
     desk.errors.push_back(session::drive_error(
         Errc::negative, node, fmt::format("done, but {}", fmt::join(done.differences, "; ")),
-        "look at the limits the drive has (`param list`, 607Fh, 6080h, 6072h), its gear and its load"));
+        "check the drive's limits (`param list`, 607Fh, 6080h, 6072h), its gear and its load"));
   for (const auto& text : done.unchecked) desk.notices.push_back(fmt::format("node {}: {}", node, text));
   for (const auto& left : done.end.left)
     desk.errors.push_back(session::drive_error(
         Errc::negative, node, left,
-        left.starts_with("object ") ? "write it by hand" : "look at the drive before it is used"));
+        left.starts_with("object ") ? "write it by hand" : "check the drive before using it"));
   for (const auto& note : done.end.notes) desk.notices.push_back(fmt::format("node {}: {}", node, note));
   for (const auto& event : done.events)
     desk.notices.push_back(show::notice_text(event, desk.profile, desk.chinese));

@@ -28,7 +28,7 @@ Result<void> limit_speed(const Motion& motion, double cap, MotionPlan& plan) {
     if (held->value > cap * (1 + drive::kMostLoss)) {
       const auto numbers = told_apart(cap, held->value);
       return fail(Errc::usage,
-                  fmt::format("--limit: {} {} is less than the drive can be limited to ({}): {} {}",
+                  fmt::format("--limit: {} {} is below the lowest limit the drive can hold ({}): {} {}",
                               numbers.first, unit, to_string(*object), numbers.second, held->unit),
                   "raise the limit");
     }
@@ -36,14 +36,14 @@ Result<void> limit_speed(const Motion& motion, double cap, MotionPlan& plan) {
     if (*object == objects::kTargetVelocity) plan.kept_target = *object;
     if (units.meaning(*object).effect == od::Effect::restart)
       plan.tell(fmt::format(
-          "the drive's speed limit in torque mode ({}) is set to {} {}, but may act after its next start "
-          "only: servoctl looks at the speed and stops above {} {}",
+          "the drive's speed limit in torque mode ({}) is set to {} {}, but may take effect only after a "
+          "restart: servoctl monitors the speed and stops above {} {}",
           to_string(*object), number_text(held->value), held->unit, number_text(cap * kOvershoot), unit));
   }
   if (!plan.settings.empty()) return {};
   plan.tell(fmt::format(
-      "the drive has no speed limit of its own in torque mode that the manual tells: servoctl looks at the "
-      "speed every {} ms and stops above {} {}",
+      "the manual gives no speed limit of the drive in torque mode: servoctl checks the speed every {} ms "
+      "and stops above {} {}",
       std::chrono::duration_cast<std::chrono::milliseconds>(MotionMonitor::kPeriod).count(),
       number_text(cap * kOvershoot), unit));
   return {};
@@ -56,17 +56,18 @@ void soften(const Motion& motion, double torque, MotionPlan& plan) {
 }
 
 Result<void> check_torque(const Motion& motion, const Physical& torque) {
-  if (torque.value == 0) return fail(Errc::usage, "a torque of 0 does nothing", "say how much");
+  if (torque.value == 0)
+    return fail(Errc::usage, "a torque of 0 has no effect", "give a torque other than 0");
   const auto cap = motion.torque_cap();
   if (!cap) return fail(cap.error());
   if (std::abs(torque.value) <= *cap * kRounding) return {};
   const auto numbers = told_apart(std::abs(torque.value), *cap);
-  return fail(motion.error(
-      Errc::refused,
-      fmt::format("{} {} is above the limit of {} {}", numbers.first, torque.unit, numbers.second,
-                  torque.unit),
-      fmt::format("`--max-torque {}{}` raises it, when machine and motor may take it; 6072h bounds it",
-                  numbers.first, torque.unit)));
+  return fail(
+      motion.error(Errc::refused,
+                   fmt::format("{} {} is above the limit of {} {}", numbers.first, torque.unit,
+                               numbers.second, torque.unit),
+                   fmt::format("`--max-torque {}{}` raises it, if machine and motor can take it, up to 6072h",
+                               numbers.first, torque.unit)));
 }
 
 }  // namespace
@@ -93,12 +94,12 @@ Result<MotionPlan> plan_torque(Motion& motion, const Torque& torque) {
   soften(motion, value.value, plan);
   if (!motion.supervise_speed(*cap * kOvershoot))
     return fail(motion.error(
-        Errc::refused, "tells its speed in another unit than its limit: nobody would watch it",
+        Errc::refused, "has its speed and limit in different units: it cannot be monitored",
         motion.is_told_turn() ? ""
                               : "add --turn (increments of 6064h in a turn), if the drive does not tell it"));
   motion.set_standstill(*cap);
-  plan.summary = fmt::format("push with {} {} for {}, no faster than {} {}", number_text(value.value),
-                             value.unit, servoctl::to_string(torque.length), number_text(*cap),
+  plan.summary = fmt::format("apply {} {} for {}, no faster than {} {}", number_text(value.value), value.unit,
+                             servoctl::to_string(torque.length), number_text(*cap),
                              motion.units().unit(objects::kTargetVelocity));
   return plan;
 }

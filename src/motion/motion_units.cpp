@@ -56,7 +56,7 @@ std::optional<double> MotionUnits::turn() const {
 Error MotionUnits::unknown_turn(ObjectAddress object, Error error) const {
   const auto what = meaning(object);
   if (what.measure == drive::Measure::increments_per_turn && !what.bridge)
-    error.hint += fmt::format("; --turn says how many increments of 6064h a turn has{}",
+    error.hint += fmt::format("; --turn gives the 6064h increments per revolution{}",
                               profile_->rules.learn.speed.empty() ? "" : ", `units learn` measures it");
   return error;
 }

@@ -48,7 +48,7 @@ Result<void> check_mode(session::Session& session, const drive::Profile& profile
   return fail(session::drive_error(
       Errc::refused, node,
       fmt::format("the drive does not support mode {} (6502h is 0x{:X})", mode_text(profile, mode), bits),
-      "6502h tells the modes it has: bit 0 is mode 1"));
+      "6502h lists its modes: bit 0 is mode 1"));
 }
 
 session::SdoRequest mode_write(const drive::Profile& profile, std::uint8_t node, std::int8_t mode) {
@@ -70,7 +70,7 @@ Result<void> set_mode(session::Session& session, const drive::Profile& profile, 
     if (session.now() >= end)
       return fail(
           session::drive_error(Errc::negative, node,
-                               fmt::format("was told mode {} and stays in mode {} (6061h)",
+                               fmt::format("was set to mode {} but stays in mode {} (6061h)",
                                            mode_text(profile, mode), mode_text(profile, *now_in)),
                                "is it in the control mode for CANopen motion? `info` names what it needs"));
     if (const auto paused = pause(session, kPause); !paused) return paused;

@@ -19,8 +19,8 @@ constexpr int kMostSteps = 12;
 
 Error enabled_by_others(std::uint8_t node, DriveState state) {
   return session::drive_error(Errc::refused, node,
-                              fmt::format("somebody else has enabled it: it is in {}", drive::name(state)),
-                              "nothing was moved; `disable` it when no other master commands it");
+                              fmt::format("it was enabled by somebody else: it is in {}", drive::name(state)),
+                              "nothing was moved; `disable` it if no other master controls it");
 }
 
 Result<void> pause(session::Session& session, Duration time) {
@@ -84,17 +84,17 @@ Result<bool> Power::wait_for(DriveState wanted) {
 
 Error Power::stuck(DriveState from, const drive::PowerStep& next) const {
   const auto now_in = drive::decode_state(statusword_);
-  auto what = fmt::format("does not go to {}; it is in {} (statusword 0x{:04X})", drive::name(next.reached),
+  auto what = fmt::format("does not reach {}; it is in {} (statusword 0x{:04X})", drive::name(next.reached),
                           drive::name(now_in), statusword_);
   std::string hint;
   if (now_in == DriveState::fault || now_in == DriveState::fault_reaction_active)
-    hint = "`fault show` tells the fault";
+    hint = "`fault show` shows the fault";
   else if (tells(kRemote) && (statusword_ & kRemote) == 0)
-    hint = "bit 9 (remote) is low: the drive obeys its panel or inputs, not the bus";
+    hint = "bit 9 (remote) is 0: the drive obeys its panel or inputs, not the bus";
   else if (tells(kVoltageEnabled) && (statusword_ & kVoltageEnabled) == 0)
-    hint = "bit 4 (voltage enabled) is low: is the main supply on?";
+    hint = "bit 4 (voltage enabled) is 0: is the main supply on?";
   else if (from == DriveState::switch_on_disabled)
-    hint = "emergency stop, main supply, enable input? The manual's enable conditions are not met";
+    hint = "the manual's enable conditions are not met: emergency stop, main supply, enable input?";
   else
     hint = "the manual's conditions for enabling are not met: inputs, main supply, brake, mode";
   return session::drive_error(Errc::negative, node_, what, hint);
@@ -122,9 +122,9 @@ Result<std::vector<drive::PowerStep>> Power::path_to(DriveState from, DriveState
   const bool fault = from == DriveState::fault || from == DriveState::fault_reaction_active;
   return fail(
       session::drive_error(Errc::refused, node_,
-                           fmt::format("is in {}: no command leads from there to {} (statusword 0x{:04X})",
+                           fmt::format("is in {}: no command leads to {} from there (statusword 0x{:04X})",
                                        drive::name(from), drive::name(goal), statusword_),
-                           fault ? "`fault show` tells the fault; when its cause is gone, `fault reset`"
+                           fault ? "`fault show` shows the fault; once its cause is gone, `fault reset`"
                                  : "power the drive off and on again"));
 }
 
@@ -138,9 +138,8 @@ Result<void> Power::reach(DriveState goal) {
     if (const auto done = step(*from, path->front()); !done) return done;
   }
   return fail(session::drive_error(
-      Errc::negative, node_,
-      fmt::format("changes its state by itself and never stays in {}", drive::name(goal)),
-      "does another master command it?"));
+      Errc::negative, node_, fmt::format("changes state by itself and never stays in {}", drive::name(goal)),
+      "does another master control it?"));
 }
 
 Result<void> Power::disable() { return take_down(PowerAim::disable); }

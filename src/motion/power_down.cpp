@@ -169,7 +169,7 @@ void PowerDown::on_silence(const Error& error, TimePoint now) {
     return;
   }
   result_.notes.emplace_back(
-      "it did not answer, and was sent NMT \"enter pre-operational\": a node that is stopped answers nothing");
+      "it did not answer and was sent NMT \"enter pre-operational\": a stopped node does not answer");
   back_to_ = cutting ? State::cut : State::quick_stop;
   state_ = State::wake;
 }

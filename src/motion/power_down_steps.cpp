@@ -162,7 +162,7 @@ void PowerDown::on_holding(const Result<Bytes>& answer, TimePoint now) {
   const bool enables = (word & kEnables) == kEnables;
   if (enables) {
     result_.written = false;
-    untaken_ = fmt::format("the write was acknowledged, and it still reads 0x{:04X}", word);
+    untaken_ = fmt::format("the write was acknowledged, but it still reads 0x{:04X}", word);
     if (++held_ < kTries) return enter(stops ? State::quick_stop : State::cut, now);
   }
   if (stops) return end_stop();
@@ -193,18 +193,18 @@ void PowerDown::end_stop() {
   if (!drive::is_energised(state) && !result_.written) {
     return finish(fail(session::drive_error(
         Errc::negative, plan_.node,
-        fmt::format("is in {}, and 6040h has not taken {:04X}h ({}): it may start again by itself",
+        fmt::format("is in {}, and 6040h did not accept {:04X}h ({}): it may restart by itself",
                     drive::name(state), kQuickStopWord, untaken_),
-        "`disable` it, or take the power away")));
+        "`disable` it, or switch off the supply")));
   }
   if (!drive::is_energised(state) || result_.stopped) return finish({});
   const bool followed = state == DriveState::quick_stop_active;
   finish(fail(session::drive_error(
       Errc::negative, plan_.node,
-      followed ? std::string("is in quick stop active and does not tell that it stands still")
+      followed ? std::string("is in quick stop active and does not report standstill")
                : fmt::format("does not follow the quick stop; it is in {} ({})", drive::name(state), word()),
-      followed ? "look at the motor; `disable` takes its power away"
-               : "does another master command it? `disable`, or take the power away")));
+      followed ? "check the motor; `disable` de-energises it"
+               : "does another master control it? `disable`, or switch off the supply")));
 }
 
 void PowerDown::end_cut() {
@@ -216,15 +216,15 @@ void PowerDown::end_cut() {
         Errc::negative, plan_.node,
         fmt::format("is in {}, and 6040h has not taken {:04X}h ({}): it may start again by itself",
                     drive::name(state), kDisableVoltageWord, untaken_),
-        "take the power away before anybody goes near the machine")));
+        "switch off the supply before anybody approaches the machine")));
   if (brakes(state))
     return finish(fail(session::drive_error(Errc::negative, plan_.node,
-                                            "still brakes after a fault, and may have its power",
+                                            "is still braking after a fault, and may be energised",
                                             "`status` shows its state")));
   finish(fail(session::drive_error(Errc::negative, plan_.node,
                                    fmt::format("does not obey 0000h, written {} times; it is in {} ({})",
                                                tries_, drive::name(state), word()),
-                                   "does another master command it? take the power away")));
+                                   "does another master control it? Switch off the supply")));
 }
 
 void PowerDown::finish(Result<void> outcome) {

@@ -58,14 +58,14 @@ class Preflight {
         fault || drive::is_energised(state) || state == drive::DriveState::not_ready_to_switch_on;
     auto text =
         fmt::format("{} (statusword 0x{:04X})", chinese_ ? drive::name_zh(state) : drive::name(state), *word);
-    if (fault) text += ": `fault show` tells why, `fault reset` resets it when its cause is gone";
-    if (!fault && drive::is_energised(state)) text += ": somebody has enabled it; `disable` it first";
+    if (fault) text += ": `fault show` says why, `fault reset` resets it once the cause is gone";
+    if (!fault && drive::is_energised(state)) text += ": it is already enabled; `disable` it first";
     add(bad ? Weight::stop : Weight::good, "state", std::move(text));
-    if ((*word & kWarning) != 0) add(Weight::caution, "warning", "bit 7 of the statusword is set");
+    if ((*word & kWarning) != 0) add(Weight::caution, "warning", "statusword bit 7 (warning) is set");
     if ((*word & kInternalLimit) != 0)
-      add(Weight::caution, "limit", "bit 11 of the statusword: an internal limit is active");
+      add(Weight::caution, "limit", "statusword bit 11: internal limit active");
     if (power.tells(kRemote) && (*word & kRemote) == 0)
-      add(Weight::stop, "remote", "bit 9 of the statusword is low: the drive obeys its panel, not the bus");
+      add(Weight::stop, "remote", "statusword bit 9 (remote) is 0: the drive obeys its panel, not the bus");
     const auto mode = read_mode(*session_, node_);
     if (!mode) return fail(mode.error());
     add(Weight::good, "mode", mode_text(units_->profile(), *mode, chinese_));
@@ -110,7 +110,7 @@ class Preflight {
     }
     if (text.empty()) text = "no limit, no home switch";
     if (rules.is_assumed("motion.inputs_active_low"))
-      text += " (assumed: the manual does not say which level means that)";
+      text += " (assumed: the manual does not state the active level)";
     add(limit ? Weight::caution : Weight::good, "inputs", fmt::format("60FDh is 0x{:08X}: {}", word, text));
   }
 
@@ -138,7 +138,7 @@ class Preflight {
         if (*now && !caution.holds(**now)) continue;
         if (!*now)
           unread = chinese_ ? fmt::format("{} 无法读取，请在面板上查看：", caution.name)
-                            : fmt::format("{} cannot be read (look at the panel): ", caution.name);
+                            : fmt::format("{} cannot be read (check the panel): ", caution.name);
       }
       add(Weight::caution, "",
           unread + (chinese_ && !caution.text_zh.empty() ? caution.text_zh : caution.text));

@@ -18,10 +18,10 @@ constexpr unsigned kMostRounds = 10;
 Error contested(std::uint8_t id) {
   return fail(Errc::refused,
               fmt::format(
-                  "another master sends heartbeats as node {} (0x{:03X}): the drive would not notice when "
-                  "servoctl dies",
+                  "another master sends heartbeats as node {} (0x{:03X}): the drive would not notice if "
+                  "servoctl died",
                   id, 0x700U + id),
-              fmt::format("end the other master, or give servoctl another number: --master-node {}",
+              fmt::format("stop the other master, or use another node-ID: --master-node {}",
                           id > 1 ? id - 1 : 127))
       .value();
 }

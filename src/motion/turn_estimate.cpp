@@ -84,8 +84,8 @@ std::string distance(double measured, double candidate) {
 
 Result<TurnMeasurement> measure_turn(std::span<const TurnLook> looks, double step) {
   if (looks.size() < kLeastLooks)
-    return no_number(fmt::format("answered {} times while it turned: too seldom to measure by", looks.size()),
-                     "measure for longer (--for 20s), or leave the bus to this command");
+    return no_number(fmt::format("answered only {} times while turning: too few samples", looks.size()),
+                     "measure for longer (--for 20s), or keep other traffic off the bus");
   const auto whole = stretch_of(looks);
   const bool one_way = std::all_of(looks.begin(), looks.end(),
                                    [&](const TurnLook& look) { return look.rpm * looks.front().rpm > 0; });
@@ -109,23 +109,21 @@ Result<TurnMeasurement> measure_turn(std::span<const TurnLook> looks, double ste
     const auto [least, most] = std::minmax_element(parts.begin(), parts.end());
     return no_number(
         fmt::format(
-            "shows a speed in rpm that does not go with its way: {} to {} increments a turn in parts of the "
-            "measurement",
+            "shows a speed that does not match its position: {} to {} increments per revolution in parts of "
+            "the measurement",
             std::llround(*least), std::llround(*most)),
         std::string("does the motor turn evenly? ") + std::string(kOtherWay));
   }
   out.by_speed = by_speed(looks, out.rpm);
   if (std::abs(out.by_speed / out.increments - 1) > kMostQuarrel)
-    return no_number(
-        fmt::format("tells two speeds: by 606Ch a turn has {} increments, by the way of 6064h {}",
-                    std::llround(out.by_speed), std::llround(out.increments)),
-        std::string(kOtherWay));
+    return no_number(fmt::format("reports two speeds: a revolution has {} increments by 606Ch, {} by 6064h",
+                                 std::llround(out.by_speed), std::llround(out.increments)),
+                     std::string(kOtherWay));
   out.uncertainty = step / out.rpm + 2 * spread / std::sqrt(static_cast<double>(kParts));
   if (out.uncertainty > kTurnTolerance)
-    return no_number(
-        fmt::format("has about {} increments a turn, but that may be {} % off, and 1 % is allowed",
-                    std::llround(out.increments), percent(out.uncertainty)),
-        fmt::format("measure for longer (--for 20s), or faster (--speed 30rpm); {}", kOtherWay));
+    return no_number(fmt::format("has about {} increments per revolution ± {} %; only 1 % is allowed",
+                                 std::llround(out.increments), percent(out.uncertainty)),
+                     fmt::format("measure for longer (--for 20s), or faster (--speed 30rpm); {}", kOtherWay));
   return out;
 }
 
@@ -134,33 +132,34 @@ Result<TurnCounts> counts_behind(double measured, double uncertainty, const Turn
     const auto told = std::llround(*expected.told);
     if (is_near(measured, *expected.told))
       return TurnCounts{*expected.told,
-                        fmt::format("said by --nameplate, {}", distance(measured, *expected.told))};
-    return no_number(fmt::format("has {} counts a turn as measured (± {} %), not the {} of --nameplate",
+                        fmt::format("given by --nameplate, {}", distance(measured, *expected.told))};
+    return no_number(fmt::format("has {} measured counts per rev (± {} %), not the {} of --nameplate",
                                  std::llround(measured), percent(uncertainty), told),
-                     "leave --nameplate out, or look at the nameplate of the motor");
+                     "leave --nameplate out, or check the motor's nameplate");
   }
   const int bits = static_cast<int>(std::lround(std::log2(measured)));
   if (const double power = std::ldexp(1, bits); is_near(measured, power))
     return TurnCounts{power, fmt::format("2^{}, {}", bits, distance(measured, power))};
   const double decimal = nearest_decimal(measured);
   const auto said =
-      fmt::format("has {} counts a turn as measured (± {} %)", std::llround(measured), percent(uncertainty));
+      fmt::format("has {} measured counts per rev (± {} %)", std::llround(measured), percent(uncertainty));
   if (!is_near(measured, decimal))
     return no_number(
         said + ": neither a power of two nor a round decimal number is within 1 % of it",
         fmt::format(
-            "look at the nameplate of the motor; `units learn -n {} --nameplate COUNTS` measures again, "
-            "holds its number against that and keeps it",
+            "check the motor's nameplate; `units learn -n {} --nameplate COUNTS` measures again, compares "
+            "COUNTS with the result and keeps it",
             expected.node));
   if (expected.disputed)
     return no_number(
         fmt::format(
-            "{}: {} is near, but the manual prints two scales for the monitor of the speed, and by the other "
-            "it would be {}",
+            "{}: {} is near, but the manual gives two scales for the speed monitor, and with the other it "
+            "would be {}",
             said, std::llround(decimal), plain_number(decimal / 10, 12)),
-        fmt::format("look at the nameplate of the motor; when it says so, `units learn -n {} --nameplate {}` "
-                    "measures again and keeps it",
-                    expected.node, std::llround(decimal)));
+        fmt::format(
+            "check the motor's nameplate; if it agrees, `units learn -n {} --nameplate {}` measures again "
+            "and keeps it",
+            expected.node, std::llround(decimal)));
   return TurnCounts{decimal, fmt::format("a round decimal number, {}; no power of two is near",
                                          distance(measured, decimal))};
 }

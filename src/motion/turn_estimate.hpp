@@ -15,7 +15,7 @@ namespace servoctl::motion {
 
 /// For those who cannot or do not measure.
 inline constexpr std::string_view kOtherWay =
-    "--turn of each motion says how many increments of 6064h a turn has";
+    "--turn gives the 6064h increments per revolution for each motion";
 
 /// A measurement that may be this far off (relative) is of no use, and a number that is farther away from
 /// what was measured was not measured.

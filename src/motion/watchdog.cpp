@@ -76,7 +76,7 @@ Result<WatchdogPlan> plan_heartbeat(session::Session& session, const drive::Prof
       producer ? Result<std::optional<std::uint8_t>>(producer) : free_producer(session, node, plan.watched);
   if (!id) return fail(id.error());
   if (!*id) {
-    plan.remark = "no node-ID is free for the heartbeat of servoctl";
+    plan.remark = "no node-ID is free for servoctl's heartbeat";
     return plan;
   }
   plan.kind = WatchdogPlan::Kind::heartbeat;
@@ -105,7 +105,7 @@ Result<std::string> against_guarding(session::Session& session, const drive::Pro
     const auto period = number(session, node, objects::kProducerHeartbeat);
     if (!period) return fail(period.error());
     // CiA 301, 7.2.8.2.2: one of the two protocols.
-    if (period->value_or(0) != 0) return "it sends heartbeats (1017h), so it does not answer node guarding";
+    if (period->value_or(0) != 0) return "it sends heartbeats (1017h), so node guarding is not possible";
   }
   const auto& name = profile.rules.nmt.guarding_alarm;
   if (name.empty()) return {};
@@ -115,7 +115,7 @@ Result<std::string> against_guarding(session::Session& session, const drive::Pro
   if (!on) return fail(on.error());
   if (on->value_or(0) != 0) return {};
   const bool at_restart = drive::meaning(*alarm, node).effect == od::Effect::restart;
-  return fmt::format("the end of life guarding is no alarm while {} is {}{}", name,
+  return fmt::format("a life guarding timeout is not an alarm while {} is {}{}", name,
                      *on ? "0" : "not readable",
                      at_restart ? " (a change takes effect when the drive starts)" : "");
 }
@@ -150,11 +150,10 @@ Result<WatchdogPlan> plan_watchdog(session::Session& session, const drive::Profi
                                    std::uint8_t node, std::optional<std::uint8_t> producer) {
   if (producer && *producer == node)
     return fail(Errc::usage, fmt::format("{} is the drive's own node-ID", node),
-                "give servoctl another one, such as 127");
+                "give servoctl a different one, such as 127");
   if (producer && session.watch().state(*producer))
-    return fail(Errc::refused,
-                fmt::format("--master-node {}: somebody was heard under this number", *producer),
-                "a node-ID belongs to one only; leave it out, and servoctl takes one that is free");
+    return fail(Errc::refused, fmt::format("--master-node {}: this node-ID is already in use", *producer),
+                "leave it out, and servoctl takes a free node-ID");
   auto plan = plan_heartbeat(session, profile, node, producer);
   if (!plan) return plan;
   if (plan->kind == WatchdogPlan::Kind::none && has(profile, objects::kGuardTime) &&
@@ -176,25 +175,25 @@ Result<WatchdogPlan> plan_watchdog(session::Session& session, const drive::Profi
 }
 
 std::string to_string(const WatchdogPlan& plan) {
-  auto then = plan.reaction.empty() ? std::string() : fmt::format("; it reacts with: {}", plan.reaction);
+  auto then = plan.reaction.empty() ? std::string() : fmt::format("; its reaction: {}", plan.reaction);
   if (!plan.remark.empty()) then += "; " + plan.remark;
-  if (plan.assumed) then += "; ASSUMED: its manual does not say what the motor does then";
+  if (plan.assumed) then += "; ASSUMED: the manual does not say what the motor then does";
   switch (plan.kind) {
     case WatchdogPlan::Kind::heartbeat:
       return fmt::format(
-          "heartbeat of servoctl as node {}: the drive stops by itself {} after the last one{}",
+          "servoctl sends heartbeats as node {}: the drive stops by itself {} after the last one{}",
           plan.producer, servoctl::to_string(plan.time), then);
     case WatchdogPlan::Kind::guarding:
-      return fmt::format("life guarding by servoctl: the drive stops by itself {} after the last question{}",
+      return fmt::format("life guarding by servoctl: the drive stops by itself {} after the last request{}",
                          servoctl::to_string(plan.time), then);
     case WatchdogPlan::Kind::none: break;
   }
   auto none =
       plan.alarms.empty()
-          ? std::string("none: nothing stops the drive when the cable is cut or servoctl dies")
+          ? std::string("none: nothing stops the drive if the cable is cut or servoctl dies")
           : fmt::format(
-                "none that servoctl can arm: the manual names alarm {} for a lost communication, but not "
-                "whether and when the motor stops; when servoctl alone dies it may keep turning",
+                "none that servoctl can arm: the manual names alarm {} for lost communication, but not "
+                "whether and when the motor stops; if only servoctl dies it may keep turning",
                 fmt::join(plan.alarms, ", "));
   return none + (plan.remark.empty() ? "" : "; " + plan.remark);
 }

@@ -37,7 +37,7 @@ class Reader {
   Result<Dcf> read() {
     for (const auto& section : ini_.sections) find_places(section);
     if (places_.empty() && out_.unusable.empty())
-      return fail(Errc::file, fmt::format("{}: there is no ParameterValue in it", file_),
+      return fail(Errc::file, fmt::format("{}: it contains no ParameterValue", file_),
                   "it is a data sheet (EDS), or a DCF in which nothing is configured");
     out_.node_id = eds_->node_id;
     out_.vendor_number = eds_->device.vendor_number;
@@ -98,9 +98,9 @@ class Reader {
     if (listed == listed_.end() || &places_[listed->second] == &place) return;
     auto& other = places_[listed->second];
     other.taken = true;
-    out_.passed_over.push_back(fmt::format(
-        "{}:{}: [{}] has a value of {} as well, which counts for nothing beside the one in line {}", file_,
-        other.key->line, other.section->name, to_string(entry.address), place.key->line));
+    out_.passed_over.push_back(
+        fmt::format("{}:{}: [{}] also has a value of {}, which is ignored in favour of line {}", file_,
+                    other.key->line, other.section->name, to_string(entry.address), place.key->line));
   }
 
   Place* place_of(const Entry& entry) {

@@ -91,7 +91,7 @@ void check_mandatory_objects(const PresentObjects& present, Findings& findings) 
   for (const auto& row : {Row{0x1000, "device type"}, Row{0x1001, "error register"}, Row{0x1018, "identity"}})
     if (!present.has(row.index))
       findings.add(Severity::warning, 1, 1, "missing-mandatory-object",
-                   fmt::format("{:04X} ({}) is missing: every device has it", row.index, row.name),
+                   fmt::format("{:04X} ({}) is missing: it is mandatory", row.index, row.name),
                    "add its sections");
 }
 

@@ -88,7 +88,7 @@ std::optional<LimitType> entry_type(const IniSection& section, const LimitTypes&
     return found->second;
   const auto type = data_type_from_cia(*code);
   if (!type) {
-    findings.error(*key, "unknown-data-type", fmt::format("0x{:04X} is no data type of CiA 301", *code),
+    findings.error(*key, "unknown-data-type", fmt::format("0x{:04X} is not a CiA 301 data type", *code),
                    "use one of 0x0001 to 0x001B (CiA 301, table 44)");
     return std::nullopt;
   }
@@ -115,7 +115,8 @@ const AccessRow& access_of(const IniKey& key, Findings& findings) {
   std::vector<std::string> words;
   for (const auto& row : kAccess) words.emplace_back(row.word);
   const auto guess = text.size() > 8 ? std::string() : did_you_mean(text, words);
-  findings.error(key, "unknown-access-type", fmt::format("'{}' is no access type; taken as ro", shown(text)),
+  findings.error(key, "unknown-access-type",
+                 fmt::format("'{}' is not an access type; taken as ro", shown(text)),
                  guess.empty() ? "write ro, rw, wo, const, rwr or rww" : guess);
   return kAccess[0];
 }
@@ -203,7 +204,7 @@ ObjectCode eds_object_code(const IniSection& section, Findings& findings) {
                                  [&](const NamedCode& row) { return row.code == *code; });
   if (known) return static_cast<ObjectCode>(*code);
   findings.error(*key, "unknown-object-type",
-                 fmt::format("'{}' is no object type; taken as VAR", shown(key->value)),
+                 fmt::format("'{}' is not an object type; taken as VAR", shown(key->value)),
                  "write 0x7 for a variable, 0x8 for an array, 0x9 for a record");
   return ObjectCode::var;
 }

@@ -56,7 +56,7 @@ std::vector<Diagnostic> Findings::take() {
     const auto more = rule.count - kMostOfARule;
     all_.push_back({rule.severity, last_line, 1, entry.first,
                     fmt::format("{} more of this rule {} left out", more, more == 1 ? "is" : "are"),
-                    "mend those that are shown, then check again", more});
+                    "correct those that are shown, then check again", more});
   }
   return std::move(all_);
 }

@@ -69,7 +69,7 @@ void tell(const IniSection& section, const IniKey& key, std::string_view meant, 
   if (findings.enough_of("misspelt-key")) return;
   const auto what = fmt::format("[{}] {}", shown(section.name), shown(key.key));
   findings.warn(key, "misspelt-key",
-                both ? fmt::format("{} is passed over: {} stands there as well", what, meant)
+                both ? fmt::format("{} is ignored: {} is also present", what, meant)
                      : fmt::format("{} is taken as {}", what, meant),
                 both ? std::string("remove one of them") : fmt::format("write {}", meant));
 }

@@ -43,7 +43,7 @@ class Checker {
     for (const auto& object : present_->sections)
       if (object.second != nullptr && listed_[object.first] == nullptr)
         findings_->add(Severity::warning, object.second->line, 1, "not-listed",
-                       fmt::format("[{}] is in none of the lists of objects", object.second->name),
+                       fmt::format("[{}] is in no object list", object.second->name),
                        "add it to MandatoryObjects, OptionalObjects or ManufacturerObjects");
   }
 
@@ -69,10 +69,10 @@ class Checker {
     const auto right = right_list(index);
     const bool wrong = right.empty() ? list == kLists[2] && index >= 0x1000 : list != right;
     if (wrong && !findings_->enough_of("wrong-list"))
-      findings_->warn(key, "wrong-list",
-                      fmt::format("0x{:04X} is in {}, and belongs into {}", index, list,
-                                  right.empty() ? kLists[1] : right),
-                      "move it to the list it belongs into");
+      findings_->warn(
+          key, "wrong-list",
+          fmt::format("0x{:04X} is in {} but belongs in {}", index, list, right.empty() ? kLists[1] : right),
+          "move it to the right list");
   }
 
   /// The index that a line of a list means, when there is such an object.

@@ -18,8 +18,7 @@ namespace {
 
 void tell_duplicate_key(const IniKey& key, Findings& findings) {
   if (!findings.enough_of("duplicate-key"))
-    findings.warn(key, "duplicate-key",
-                  fmt::format("{} stands here again; the last one counts", shown(key.key)),
+    findings.warn(key, "duplicate-key", fmt::format("{} appears again; the last one is used", shown(key.key)),
                   "remove one of them");
 }
 
@@ -91,10 +90,9 @@ void check_sub_number(const IniSection& section, const ObjectSections& sections,
   const auto* key = section.find("SubNumber");
   const auto count = sections.subs.size();
   if (count == 0) {
-    findings.add(
-        Severity::warning, section.line, 1, "no-sub-indexes",
-        fmt::format("[{}] has neither sub-indexes nor CompactSubObj; nothing of it is taken", section.name),
-        "add the sections of its sub-indexes, or write ObjectType=0x7 when it is one value");
+    findings.add(Severity::warning, section.line, 1, "no-sub-indexes",
+                 fmt::format("[{}] has neither sub-indexes nor CompactSubObj; it is ignored", section.name),
+                 "add the sections of its sub-indexes, or write ObjectType=0x7 when it is one value");
     return;
   }
   if (key == nullptr || key->value.empty()) {
@@ -121,7 +119,7 @@ void check_sub_0(const Object& object, const IniSection& main, const ObjectSecti
   constexpr std::uint8_t kStructure = 0xFF;  // Is no entry (CiA 301, 7.4.5.2).
   if (sections.subs.front().first != 0) {
     findings.add(Severity::warning, main.line, 1, "missing-sub-0",
-                 fmt::format("[{}] has no sub 0, which tells the highest sub-index", main.name),
+                 fmt::format("[{}] has no sub 0 (highest sub-index supported)", main.name),
                  "add the section of sub 0: a u8");
     return;
   }
@@ -172,7 +170,7 @@ void tell_var_with_subs(const IniSection& main, Findings& findings) {
   findings.add(Severity::warning, said ? key->line : main.line, said ? key->value_column : 1,
                "var-with-sub-indexes",
                fmt::format("[{}] {} and has sub-indexes; these are taken, the object is read as a record",
-                           main.name, said ? "is a VAR" : "says no ObjectType, which means VAR,"),
+                           main.name, said ? "is a VAR" : "has no ObjectType, which means VAR,"),
                "write ObjectType=0x9, or 0x8 for an array, or remove the sub-indexes");
 }
 
@@ -198,8 +196,8 @@ void check_duplicate_keys(const IniSection& section, Findings& findings) {
 void tell_duplicate(const IniSection& again, const IniSection& first, Findings& findings) {
   if (!findings.enough_of("duplicate-section"))
     findings.add(Severity::error, again.line, 1, "duplicate-section",
-                 fmt::format("[{}] stands here again, first in line {}; the first one counts",
-                             shown(again.name), first.line),
+                 fmt::format("[{}] appears again, first in line {}; the first one is used", shown(again.name),
+                             first.line),
                  "remove one of them");
 }
 

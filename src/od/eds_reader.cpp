@@ -75,7 +75,7 @@ class Reader {
         continue;
       } else if (text.starts_with("#") || text.starts_with("//")) {
         findings_.add(Severity::warning, stray.line, 1, "foreign-comment",
-                      fmt::format("'{}' is no comment of this format; skipped", shown(text)),
+                      fmt::format("'{}' is not a comment in this format; skipped", shown(text)),
                       "begin it with ;");
       } else if (!findings_.enough_of("stray-line")) {
         findings_.add(Severity::error, stray.line, 1, "stray-line",
@@ -118,10 +118,9 @@ class Reader {
                     fmt::format("[{}] is taken as [{}]", shown(section.name), *meant),
                     fmt::format("write [{}]", *meant));
     else if (describes_object(section))
-      findings_.add(
-          Severity::warning, section.line, 1, "unknown-section",
-          fmt::format("[{}] is no section of CiA 306; the object in it is not taken", shown(section.name)),
-          "name it after the index: [2000] or [2000sub1]");
+      findings_.add(Severity::warning, section.line, 1, "unknown-section",
+                    fmt::format("[{}] is not a CiA 306 section; its object is ignored", shown(section.name)),
+                    "name it after the index: [2000] or [2000sub1]");
     return meant ? parse_section_name(*meant) : std::nullopt;
   }
 
@@ -173,7 +172,7 @@ class Reader {
     if (id <= 127)
       out_.node_id = static_cast<std::uint8_t>(id);
     else if (id != kUnconfigured)
-      findings_.error(*key, "bad-number", fmt::format("NodeID: {} is no node-ID", id), "write 1 to 127");
+      findings_.error(*key, "bad-number", fmt::format("NodeID: {} is not a node-ID", id), "write 1 to 127");
   }
 
   void read_objects() {
@@ -254,15 +253,15 @@ std::size_t EdsFile::warning_count() const { return count_of(diagnostics, Severi
 Result<EdsFile> read_eds(std::string_view text, std::string_view file) {
   constexpr std::string_view kHint = "is it an EDS or DCF file (CiA 306)?";
   if (text.size() > kMostEdsBytes)
-    return refuse(file, fmt::format("{} MiB are too many for an EDS", text.size() >> 20U),
+    return refuse(file, fmt::format("{} MiB is too large for an EDS", text.size() >> 20U),
                   std::string(kHint));
-  if (is_binary(text)) return refuse(file, "this is no text", std::string(kHint));
+  if (is_binary(text)) return refuse(file, "not a text file", std::string(kHint));
   const auto decoded = to_utf8(text);
   auto out = Reader(decoded.text(text), findings_of(decoded)).read();
   if (!out.dictionary.empty()) return out;
   if (starts_with_nocase(trim(decoded.text(text)), "<"))
     return refuse(file, "this is XML, not an EDS or DCF file",
-                  "device descriptions in XML (XDD and XDC, CiA 311) are not read: take the device's EDS");
+                  "XML device descriptions (XDD and XDC, CiA 311) are not supported: use the device's EDS");
   const auto& all = out.diagnostics;
   const auto why = std::find_if(
       all.begin(), all.end(), [](const Diagnostic& finding) { return finding.severity == Severity::error; });

@@ -149,7 +149,7 @@ std::optional<std::uint64_t> eds_number(const IniKey& key, std::uint64_t max, Fi
   const auto number = parse_integer(text);
   if (!number || number->negative || number->magnitude > max) {
     findings.error(key, "bad-number",
-                   fmt::format("{}: '{}' is no number of 0 to {}", shown(key.key), shown(text), max),
+                   fmt::format("{}: '{}' is not a number from 0 to {}", shown(key.key), shown(text), max),
                    "write a number such as 7 or 0x7");
     return std::nullopt;
   }

@@ -39,8 +39,8 @@ tl::unexpected<Error> does_not_fit(DataType type, std::string_view text) {
 
 tl::unexpected<Error> not_a_value(DataType type, std::string_view text) {
   if (is_integer(type))
-    return fail(Errc::usage, fmt::format("'{}' is no number", text),
-                fmt::format("write an integer of {}: 100, 0x64 or 64h", range_of(type)));
+    return fail(Errc::usage, fmt::format("'{}' is not a number", text),
+                fmt::format("write an integer ({}): 100, 0x64 or 64h", range_of(type)));
   return fail(Errc::usage, fmt::format("'{}' is no {}", text, name(type)));
 }
 
@@ -138,7 +138,7 @@ Result<Bytes> encode(DataType type, const Value& value) {
 Result<Value> decode(DataType type, ByteSpan bytes) {
   const auto size = size_of(type);
   if (size && bytes.size() != *size)
-    return fail(Errc::protocol, fmt::format("{} bytes came, {} has {}", bytes.size(), name(type), *size),
+    return fail(Errc::protocol, fmt::format("{} bytes received, {} has {}", bytes.size(), name(type), *size),
                 "the dictionary in use may belong to another drive or firmware");
   if (is_signed(type)) return Value(sign_extended(load_le(bytes), bits_of(type)));
   if (is_unsigned(type)) return Value(load_le(bytes));

@@ -156,7 +156,7 @@ class Changing {
     std::string nodes;
     for (const auto& job : jobs_) append(nodes, fmt::format("{}", job.present.node));
     for (const auto& pdo : jobs_.front().wanted.pdos) append(pdos, canopen::name(pdo.direction, pdo.number));
-    return fmt::format("Change {} of node {}? Whoever sends or receives {} has to know.", pdos, nodes,
+    return fmt::format("Change {} of node {}? Other users of {} must be changed too.", pdos, nodes,
                        jobs_.front().wanted.pdos.size() == 1 ? "it" : "them");
   }
 
@@ -197,7 +197,7 @@ class Changing {
     }
     if (is_idle(job)) {
       before.settle();
-      return record(job, "as wanted already, nothing was written", {});
+      return record(job, "already as requested, nothing was written", {});
     }
     const auto outcome =
         session::change_pdos(*desk_->session, desk_->profile, job.present.node, job.present.values,
@@ -231,9 +231,9 @@ class Changing {
       error.code = Errc::negative;
       error.node = job.present.node;
       error.object = object;
-      error.message = fmt::format("node {}, object {}: it could not be shown to be as it was before",
-                                  job.present.node, to_string(object));
-      error.hint = "`pdo show` reads it when the node answers; a restart of the drive brings what is stored";
+      error.message = fmt::format("node {}, object {}: it may not hold its old value", job.present.node,
+                                  to_string(object));
+      error.hint = "`pdo show` reads it once the node answers; a restart of the drive loads the stored value";
       desk_->errors.push_back(std::move(error));
     }
   }
@@ -248,7 +248,7 @@ class Changing {
     const bool told = desk_->profile->rules.store.objects || copies_;
     if (outcome.kept == session::Kept::yes && !told) {
       desk_->notices.emplace_back(
-          "whether this drive keeps its PDOs is not stated: `pdo show` after a power cycle tells");
+          "whether this drive keeps its PDOs is not stated: use `pdo show` after a power cycle");
       return {};
     }
     return outcome.kept == session::Kept::yes;

@@ -94,17 +94,16 @@ class Neighbours {
     const auto id = show::can_id_text(pdo.cob_id);
     if (pdo.direction == PdoDirection::receive && theirs.direction == PdoDirection::transmit) {
       desk_->notices.push_back(
-          fmt::format("node {}: {} takes what {} of node {} sends with {}", node, mine, name, other, id));
+          fmt::format("node {}: {} receives what {} of node {} sends with {}", node, mine, name, other, id));
       return {};
     }
-    const auto what = pdo.direction == PdoDirection::receive ? "one frame would command both"
-                      : theirs.direction == PdoDirection::receive
-                          ? "what the one sends would command the other"
-                          : "both would send with it";
+    const auto what = pdo.direction == PdoDirection::receive      ? "one frame would control both"
+                      : theirs.direction == PdoDirection::receive ? "what one sends would control the other"
+                                                                  : "both would send it";
     return fail(session::drive_error(
         Errc::refused, node,
-        fmt::format("{}: CAN-ID {} is that of {} of node {}: {}", mine, id, name, other, what),
-        fmt::format("take another one, or `pdo disable {} -n {}` first", name, other)));
+        fmt::format("{}: CAN-ID {} is used by {} of node {}: {}", mine, id, name, other, what),
+        fmt::format("use another one, or `pdo disable {} -n {}` first", name, other)));
   }
 
   show::Desk* desk_;

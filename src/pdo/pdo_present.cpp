@@ -20,7 +20,7 @@ const Pdo* PresentPdos::find(const Pdo& like) const {
 Result<Pdo> find_pdo(const PresentPdos& present, std::string_view name) {
   const auto like = canopen::parse_pdo_name(name);
   if (!like)
-    return fail(Errc::usage, fmt::format("'{}' names no PDO", name), "RPDO1, TPDO2: as the drive sees them");
+    return fail(Errc::usage, fmt::format("'{}' is not a PDO", name), "RPDO1, TPDO2: as the drive sees them");
   if (const auto* found = present.find(*like)) return *found;
   std::string there;
   for (const auto& pdo : present.pdos) append(there, canopen::name(pdo.direction, pdo.number));

@@ -23,7 +23,7 @@ tl::unexpected<Error> of(const PdoRecipe& recipe, Error error) {
 Result<void> set_times(const PdoRecipe& recipe, Pdo& pdo) {
   if (recipe.inhibit_us) {
     if (*recipe.inhibit_us % 100 != 0 || *recipe.inhibit_us / 100 > 0xFFFF)
-      return fail(Errc::usage, fmt::format("an inhibit time of {} us is none", *recipe.inhibit_us),
+      return fail(Errc::usage, fmt::format("inhibit time {} us is not possible", *recipe.inhibit_us),
                   "in steps of 100 us, at most 6553500");
     pdo.inhibit = static_cast<std::uint16_t>(*recipe.inhibit_us / 100);
   }
@@ -109,7 +109,7 @@ Result<WantedPdos> follow(const drive::Profile& profile, const PresentPdos& pres
     if (std::any_of(out.pdos.begin(), out.pdos.end(), [&](const Pdo& other) {
           return other.direction == pdo->direction && other.number == pdo->number;
         }))
-      return of(recipe, Error{Errc::usage, "it stands there twice", {}, {}, {}, {}, {}});
+      return of(recipe, Error{Errc::usage, "it appears twice", {}, {}, {}, {}, {}});
     const bool linked = present.values.count({pdo->communication_index(), 1}) > 0;
     fixed = fixed || !linked;
     if (const auto done = set_mapping(profile, recipe, *pdo); !done) return of(recipe, done.error());

@@ -97,9 +97,9 @@ Result<std::optional<settings::RestoreJournal>> PdoRecord::take_up(const fs::pat
     if (!drive) return fail(drive.error());
     if (is_other_drive(backup->identity, *drive))
       return fail(Errc::refused,
-                  fmt::format("node {} is another drive ({}) than the one whose change was cut off ({})",
-                              node_, text_of(*drive), text_of(backup->identity)),
-                  "put that drive back to its node, or give this one the PDOs by `pdo save` and `pdo apply`");
+                  fmt::format("node {} ({}) is not the drive whose change was interrupted ({})", node_,
+                              text_of(*drive), text_of(backup->identity)),
+                  "reconnect that drive at its node-ID, or copy the PDOs by `pdo save` and `pdo apply`");
     mine_ = true;
     file_ = record;
     return settings::read_journal(*desk_, settings::journal_of(record));
@@ -120,12 +120,12 @@ std::string PdoRecord::notice_of(const fs::path& record, const std::optional<Ide
   const auto since = backup ? ", begun at " + backup->time + "," : std::string();
   if (backup && drive && is_other_drive(backup->identity, *drive))
     return fmt::format(
-        "node {}: a change of the PDOs of another drive that was node {} here ({}){} did not come to its "
-        "end; {} holds what they were, for that drive (delete the file when that is not wanted)",
+        "node {}: a PDO change of another drive that was node {} here ({}){} was interrupted; {} holds that "
+        "drive's old PDOs (delete the file if not needed)",
         node_, node_, text_of(backup->identity), since, record.string());
   return fmt::format(
-      "node {}: a change of its PDOs{} did not come to its end; `pdo apply {} -n {}{}` puts back what they "
-      "were (delete the file when that is not wanted)",
+      "node {}: a change of its PDOs{} was interrupted; `pdo apply {} -n {}{}` restores the old ones (delete "
+      "the file if not needed)",
       node_, since, record.string(), node_, backup ? " -d " + backup->family : "");
 }
 

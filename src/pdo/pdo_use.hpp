@@ -9,7 +9,7 @@
 /// What `pdo watch` and `pdo send` have in common.
 namespace servoctl::pdo {
 
-/// The PDOs of a node as the drive tells them.
+/// The PDOs of a node as read from the drive.
 Result<std::vector<show::PdoView>> read_views(show::Desk& desk, std::uint8_t node);
 
 /// The one of this name among the PDOs of a node. Errors as find_pdo().

@@ -239,9 +239,9 @@ tl::unexpected<Error> nested_too_deep(std::string_view text, std::size_t place, 
   const auto begin = text.substr(0, place).rfind('\n');
   auto error =
       fail(Errc::file,
-           fmt::format("{}:{}: column {}: lists and records stand in each other deeper than {} levels", file,
-                       line, begin == std::string_view::npos ? place + 1 : place - begin, kDeepestJson),
-           "no file of servoctl does: is it the right one?")
+           fmt::format("{}:{}: column {}: lists and records are nested deeper than {} levels", file, line,
+                       begin == std::string_view::npos ? place + 1 : place - begin, kDeepestJson),
+           "servoctl writes no such file: is it the right one?")
           .value();
   error.line = line;
   return fail(std::move(error));
@@ -257,7 +257,7 @@ Result<Value> parse_json(std::string_view text, std::string_view file) {
     Error error;
     error.code = Errc::file;
     error.line = line_at(text, problem.byte);
-    error.message = fmt::format("{}:{}: this is no JSON, or it ends too early", file, *error.line);
+    error.message = fmt::format("{}:{}: not JSON, or truncated", file, *error.line);
     return fail(std::move(error));
   } catch (const Json::exception& problem) {
     return fail(Errc::file, fmt::format("{}: {}", file, problem.what()));

@@ -183,8 +183,8 @@ std::optional<NodeEvent> CanNetwork::take_event() {
 Result<void> CanNetwork::request_state(std::uint8_t node, NodeState state) {
   const auto command = nmt_command(state);
   if (!command)
-    return fail(Errc::usage, fmt::format("no NMT command makes a node {}", name(state)),
-                "on CAN there are operational, pre-operational and stopped");
+    return fail(Errc::usage, fmt::format("no NMT command leads to state {}", name(state)),
+                "use operational, pre-operational or stopped");
   return send(canopen::nmt_frame(*command, node));
 }
 

@@ -19,7 +19,7 @@ Result<void> check_cob_id(const drive::Profile* profile, ObjectAddress object, B
   const auto conflict = canopen::cob_id_conflict(object, cob_id, node);
   if (conflict.empty()) return {};
   return fail(Errc::usage, conflict,
-              "CiA 301 keeps it for that service (7.3.5, table 40): this object cannot have it");
+              "CiA 301 reserves it for that service (7.3.5, table 40): not allowed here");
 }
 
 }  // namespace servoctl::session

@@ -123,8 +123,8 @@ FamilyVerdict judge_family(const Identity& identity, const drive::Profile& profi
   if (const auto* mark = violated(identity, rules, false)) {
     out.kind = FamilyVerdict::Kind::contradicted;
     out.object = mark->object;
-    out.why = fmt::format("its {} is {}, that of {} is {}", to_string(mark->object),
-                          drive_says(identity, *mark), profile.family, family_says(*mark));
+    out.why = fmt::format("its {} is {}, but {} has {}", to_string(mark->object), drive_says(identity, *mark),
+                          profile.family, family_says(*mark));
     return out;
   }
   if (own_objects(identity, rules) == Says::no) {
@@ -147,11 +147,11 @@ FamilyVerdict judge_family(const Identity& identity, const drive::Profile& profi
     out.why = fmt::format("its {} is {}, that of {} is {}", to_string(soft->object),
                           drive_says(identity, *soft), profile.family, family_says(*soft));
   else if (rules.identity.empty())
-    out.why = fmt::format("no identity of {} is known", profile.family);
+    out.why = fmt::format("{} has no known identity", profile.family);
   else if (fits(identity, rules))
-    out.why = fmt::format("{} fits, and others answer the same", held(identity, rules));
+    out.why = fmt::format("{} matches, but not uniquely", held(identity, rules));
   else
-    out.why = fmt::format("it does not tell all that {} would", profile.family);
+    out.why = fmt::format("it does not report all that {} would", profile.family);
   return out;
 }
 

@@ -8,7 +8,7 @@
 
 namespace servoctl::session {
 
-/// While it lives, tells each object of one node that another master begins to write. Where servoctl is the
+/// While it lives, reports each object of one node that another master starts to write. Where servoctl is the
 /// only master, as it is on any network but CAN, there is nothing to tell.
 class ForeignWrites {
  public:

@@ -143,11 +143,9 @@ Result<void> refuse_duplicate(Session& session, std::uint8_t node) {
   Error error;
   error.code = Errc::refused;
   error.node = node;
-  error.message =
-      fmt::format("two nodes answer as node {} ({}): nothing is written to them or moved", node, by);
+  error.message = fmt::format("two nodes answer as node {} ({}): writes and motion are refused", node, by);
   error.hint = fmt::format(
-      "take one of them off the bus and give it a number of its own, then `scan`; `disable -n {}` and `nmt "
-      "stop` reach both",
+      "disconnect one and give it another node-ID, then `scan`; `disable -n {}` and `nmt stop` reach both",
       node);
   return fail(std::move(error));
 }

@@ -26,7 +26,7 @@ class KnownIdentities {
     known.identity = std::move(identity);
   }
   void forget(std::uint8_t node) { known_.erase(node); }
-  /// Whether this is to be told of the node: true once, until it restarts.
+  /// Whether this is to be reported for the node: true once, until it restarts.
   bool is_news(std::uint8_t node, const std::string& what) {
     const auto found = known_.find(node);
     return found == known_.end() || found->second.told.insert(what).second;

@@ -6,7 +6,7 @@
 
 namespace servoctl::session {
 
-/// What servoctl tells a node once a period, so that the node notices when servoctl is gone.
+/// What servoctl sends a node once per period, so that the node notices if servoctl is gone.
 struct LifeSign {
   enum class Kind : std::uint8_t {
     heartbeat,  ///< A message of servoctl's own (CiA 301, 7.2.8.2.2.2).

@@ -29,7 +29,7 @@ bool LinkWait::comes_back(const Error& lost) {
   const auto since = session_->now();
   if (!first_) first_ = since;
   if (since - *first_ >= (only_failing_ ? kPatience : kMost)) return false;
-  tell(fmt::format("{}: {} is tried again for {}", lost.message, doing_, servoctl::to_string(kPatience)));
+  tell(fmt::format("{}: {} will be retried for {}", lost.message, doing_, servoctl::to_string(kPatience)));
   const auto end = since + kPatience;
   for (;;) {
     const auto asked = session_->now();
@@ -37,14 +37,14 @@ bool LinkWait::comes_back(const Error& lost) {
     const auto time = session_->now();
     if (back) {
       only_failing_ = only_failing_ && time - since < kFlicker;
-      tell(fmt::format("{} is back after {}: {} now", session_->url(), tenths(time - since), doing_));
+      tell(fmt::format("{} is back after {}: now {}", session_->url(), tenths(time - since), doing_));
       return true;
     }
     if (time >= end || time < asked + kPause) {
       tell(fmt::format("{} did not come back: {}", session_->url(), back.error().message));
       return false;
     }
-    tell(fmt::format("{} is still lost after {}: {} goes on being tried", session_->url(),
+    tell(fmt::format("{} is still lost after {}: {} is still being retried", session_->url(),
                      tenths(time - since), doing_));
   }
 }

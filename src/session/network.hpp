@@ -60,7 +60,7 @@ class ObjectChannel {
   virtual std::optional<std::size_t> total() const = 0;  ///< Bytes of the whole transfer, when known.
 };
 
-/// Values that one node tells by itself while this lives: what its TPDOs bring, or its part of a process
+/// Values that one node sends unasked while this lives: from its TPDOs, or its part of a process
 /// image.
 class ProcessValues {
  public:
@@ -82,7 +82,7 @@ class NodeRecords {
   virtual std::optional<NodeState> state(std::uint8_t node) const = 0;
   /// How often it was heard to start.
   virtual std::uint32_t boots(std::uint8_t node) const = 0;
-  /// How often it told its state otherwise: heartbeats and answers to guarding.
+  /// How often it reported its state otherwise: heartbeats and guarding responses.
   virtual std::uint32_t heartbeats(std::uint8_t node) const = 0;
   /// The last emergencies since its start or error reset, oldest first, at most eight.
   virtual const std::deque<canopen::Emergency>& emergencies(std::uint8_t node) const = 0;
@@ -116,10 +116,10 @@ class Network {
   virtual std::unique_ptr<ObjectChannel> object_channel(std::uint8_t node, Duration timeout) = 0;
 
   virtual const NodeRecords& records() const = 0;
-  /// What nodes told since the last call, in the order of time; empty when that is all.
+  /// What nodes sent since the last call, in order of time; empty if nothing is left.
   virtual std::optional<NodeEvent> take_event() = 0;
 
-  /// Tells the node to change its state; nothing confirms it. Errc::usage for a state that this network has
+  /// Commands a state change of the node; nothing confirms it. Errc::usage for a state that this network has
   /// no word for, Errc::bus when it is not sent.
   virtual Result<void> request_state(std::uint8_t node, NodeState state) = 0;
   /// Asks the node for its state where that is a question of its own; the answer goes to records().
@@ -132,7 +132,7 @@ class Network {
   /// without that is written to its objects, by the caller. Errc::usage for a sign that this network does not
   /// have.
   virtual Result<void> arm_watchdog(std::uint8_t node, const LifeSign& sign) = 0;
-  /// The node is told no more.
+  /// Ends the life sign.
   virtual void disarm_watchdog(std::uint8_t node) = 0;
   /// Sends the write of an object of two bytes and looks no further: for a way out on which nothing else
   /// works any more. Needs no memory.

@@ -10,14 +10,14 @@
 
 namespace servoctl::session {
 
-/// Something a node told without being asked, or stopped telling, on any network.
+/// Something a node sent unasked, or stopped sending, on any network.
 struct NodeEvent {
   /// It has started, with what it keeps by itself: whatever else was written is gone.
   struct BootUp {};
   struct StateChange {
     NodeState state;
   };
-  /// It is not heard any more; told once, until it is back.
+  /// It has fallen silent; reported once, until it is back.
   struct Gone {
     enum class Sign : std::uint8_t {
       heartbeat,  ///< What it sends by itself stays away.
@@ -27,7 +27,7 @@ struct NodeEvent {
     Duration silence;
     Sign sign = Sign::heartbeat;
   };
-  /// It answers again the question whether it lives. One whose heartbeat is back tells StateChange.
+  /// It answers guarding again. A node whose heartbeat is back gives StateChange.
   struct Back {
     NodeState state;
   };

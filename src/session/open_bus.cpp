@@ -24,7 +24,7 @@ Result<std::unique_ptr<can::Bus>> open_plain(std::string_view url, const BusOpti
   const std::string schemes[] = {"socketcan", "local", "sim", "replay"};
   auto hint = did_you_mean(scheme, schemes);
   if (hint.empty()) hint = "write can0, local:NAME, sim:FAMILY@NODE or replay:FILE";
-  return fail(Errc::usage, fmt::format("'{}' is no bus", url), std::move(hint));
+  return fail(Errc::usage, fmt::format("'{}' is not a bus", url), std::move(hint));
 }
 
 }  // namespace

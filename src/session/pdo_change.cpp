@@ -193,7 +193,7 @@ Result<void> check_not_energised(Session& session, std::uint8_t node) {
   Error error;
   error.code = Errc::refused;
   error.node = node;
-  error.message = fmt::format("node {} is energised: what its PDOs carry is not changed under it", node);
+  error.message = fmt::format("node {} is energised: its PDOs cannot be changed now", node);
   error.hint = "disable it first";
   return fail(std::move(error));
 }

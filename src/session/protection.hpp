@@ -16,11 +16,11 @@ enum class Care : std::uint8_t {
   guarded,    ///< A drive in motion, or on its way out of one.
 };
 
-/// Counts what must not be left alone. Whoever holds something asks for a Hold, and gives it back by its end:
+/// Counts what must not be left unattended. The holder takes a Hold and releases it by destroying it:
 /// so nobody can forget it, and nobody ends what another still needs. Outlives its holds.
 class Protection {
  public:
-  /// Told the worst whenever it becomes another: before a drive is energised, and after it is at rest.
+  /// Called with the highest care whenever it changes: before a drive is energised, and after it is at rest.
   using OnChange = std::function<void(Care worst)>;
 
   explicit Protection(OnChange on_change = {}) : on_change_(std::move(on_change)) {}

@@ -58,7 +58,7 @@ class Run {
       if (object.index >= 0x2000 && object.index < 0x6000 && (unlocked || locked.count(object) == 0))
         data = other_than(object, data);
     out_.notices.push_back(fmt::format(
-        "node {}: it worked in its RAM, so every value is written to its flash, not only those that differ",
+        "node {}: it was working in RAM, so every value is written to flash, not only those that differ",
         node_));
     return out;
   }
@@ -85,9 +85,9 @@ class Run {
       error.node = node_;
       error.object = object;
       error.message =
-          fmt::format("node {}, object {}: it was read back as written, and holds another value now", node_,
+          fmt::format("node {}, object {}: it was read back as written, but now holds another value", node_,
                       to_string(object));
-      error.hint = "did the drive restart in between? another master may write to it as well";
+      error.hint = "did the drive restart in between, or does another master write to it?";
       return fail(std::move(error));
     }
     return {};
@@ -99,8 +99,8 @@ class Run {
     Error error;
     error.code = Errc::negative;
     error.node = node_;
-    error.message = fmt::format("node {} restarted while it was written to", node_);
-    error.hint = "is its supply steady? what it does not keep by itself is lost then";
+    error.message = fmt::format("node {} restarted during the writes", node_);
+    error.hint = "is its supply stable? Values it does not keep by itself are lost";
     return fail(std::move(error));
   }
 

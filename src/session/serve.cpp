@@ -27,7 +27,7 @@ Result<void> flush(can::Bus& bus, sim::Cell& cell) {
 
 Result<void> serve(Session& session, sim::Cell& cell) {
   if (session.can() == nullptr)
-    return fail(Errc::usage, "these drives live on a CAN bus only", "name one: --bus can0 or local:NAME");
+    return fail(Errc::usage, "simulated drives need a CAN bus", "name one: --bus can0 or local:NAME");
   auto& bus = session.can()->bus();
   const auto& cancelled = session.options().cancelled;
   for (;;) {

@@ -48,7 +48,7 @@ struct Options {
   /// Told how many bytes of a long transfer have gone, of how many in all where that is known, on the bus's
   /// clock; may be empty.
   std::function<void(std::size_t done, std::optional<std::size_t> total, TimePoint now)> progress;
-  /// Told how many requests of a long list are done, of how many in all; may be empty.
+  /// Called with the number of requests done in a long list, and the total; may be empty.
   std::function<void(std::size_t done, std::size_t total, TimePoint now)> list_progress;
 };
 
@@ -78,7 +78,7 @@ class Session {
   /// Takes in whatever has arrived, without waiting.
   Result<void> listen();
 
-  /// What nodes told since the last call.
+  /// What nodes sent since the last call.
   std::vector<NodeEvent> take_events();
   /// What was heard of the nodes.
   const NodeRecords& watch() const { return network_->records(); }

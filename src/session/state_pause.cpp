@@ -55,10 +55,10 @@ Result<void> StatePause::leave(bool put_back) {
   if (!std::exchange(entered_, false)) return {};
   const bool known = before_ == NodeState::operational;
   if (known && put_back) return tell(*session_, node_, NodeState::operational);
-  notices_.push_back(fmt::format(
-      "node {}: it stays pre-operational, {}; `nmt start -n {}` starts it", node_,
-      known ? "because not all is as it was" : "because neither heartbeat nor guarding told its state before",
-      node_));
+  notices_.push_back(fmt::format("node {}: it stays pre-operational, {}; `nmt start -n {}` starts it", node_,
+                                 known ? "because a restore is incomplete"
+                                       : "because neither heartbeat nor guarding showed its previous state",
+                                 node_));
   return {};
 }
 

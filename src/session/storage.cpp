@@ -52,8 +52,8 @@ Result<std::vector<SdoRequest>> store_writes(const drive::Profile* profile, std:
   const auto& rules = profile->rules.store;
   if (!rules.store.empty()) return writes_of(*profile, node, rules.store);
   auto hint = rules.flash_switch.empty()
-                  ? std::string("its manual describes no way; look whether values survive a power cycle")
-                  : fmt::format("values are kept while they are written: `param set … --keep` switches {}",
+                  ? std::string("its manual describes no method; check whether values survive a power cycle")
+                  : fmt::format("values are kept only when written: `param set … --keep` switches {}",
                                 rules.flash_switch);
   return fail(
       drive_error(Errc::negative, node, "this family cannot store all values at once", std::move(hint)));
@@ -74,8 +74,7 @@ Result<std::vector<SdoRequest>> restore_writes(const drive::Profile* profile, st
   if (!rules.restore.empty()) return writes_of(*profile, node, rules.restore);
   const drive::Setting at_start[] = {{rules.restore_at_start, 1}};
   if (!rules.restore_at_start.empty()) return writes_of(*profile, node, at_start);
-  return fail(drive_error(Errc::negative, node,
-                          "this family has no way to go back to factory values over the bus",
+  return fail(drive_error(Errc::negative, node, "this family cannot restore factory values over the bus",
                           "use its panel or the vendor's software"));
 }
 
@@ -124,8 +123,7 @@ Result<void> StorageScope::choose_memory() {
   if (const auto done = set(rules.flash_switch, *value, memory_); !done) return done;
   if (memory_ && !keep_ && rehearsal_ == nullptr)
     notices_.push_back(fmt::format(
-        "node {}: {} is {} now, so that trials go to the RAM and are lost at power-off; --keep makes values "
-        "stay",
+        "node {}: {} is now {}: values go to RAM and are lost at power-off; --keep makes them permanent",
         node_, rules.flash_switch, *value));
   return {};
 }
@@ -147,7 +145,7 @@ Result<void> StorageScope::prepare(bool unlock, bool choose) {
   const bool has_password = password != nullptr && password->object && rules.unlock_open;
   // Refused before anything is written.
   if (unlock && !has_password)
-    return fail(drive_error(Errc::usage, node_, "this family has no password that the bus can give", {}));
+    return fail(drive_error(Errc::usage, node_, "this family has no password over the bus", {}));
   if (choose)
     if (const auto chosen = choose_memory(); !chosen) return chosen;
   return unlock ? set(rules.unlock, *rules.unlock_open, password_) : Result<void>();
@@ -157,7 +155,7 @@ void StorageScope::tell_wear(std::size_t writes) {
   if (!profile_->rules.store.wears || writes == 0) return;
   auto& all = session_->flash_writes(node_);
   all += writes;
-  notices_.push_back(fmt::format("node {}: {} written to its flash{}; every write wears it", node_,
+  notices_.push_back(fmt::format("node {}: {} written to its flash{}; each write wears it", node_,
                                  writes == 1 ? "1 value was" : fmt::format("{} values were", writes),
                                  all == writes ? "" : fmt::format(" ({} since the bus was opened)", all)));
 }
@@ -180,12 +178,11 @@ Result<Kept> StorageScope::close(bool all_written, std::size_t writes) {
   };
   if (keep_ && has_switch && rehearsal_ == nullptr) tell_wear(writes);
   if (keep_ && all_written && !has_switch)
-    note(store_all(), "the values are written, but keeping them failed",
-         "whether the drive keeps them by itself is seen after a power cycle; `store` tries again");
-  note(put_back(password_), "the password could not be taken back, the drive may still be unlocked", {});
+    note(store_all(), "the values are written, but not kept",
+         "a power cycle shows whether the drive keeps them by itself; `store` tries again");
+  note(put_back(password_), "the password could not be withdrawn: the drive may still be unlocked", {});
   // A switch that chose the RAM stays there: the next trial wants it, and writing it back wears the flash.
-  if (keep_ || !all_written)
-    note(put_back(memory_), "the switch that chooses the memory could not be put back", {});
+  if (keep_ || !all_written) note(put_back(memory_), "the RAM/flash switch could not be restored", {});
   if (wrong) return fail(std::move(*wrong));
   if (has_switch) return keep_ && all_written ? Kept::yes : Kept::no;
   return keep_ && all_written ? Kept::yes : Kept::unknown;

@@ -56,7 +56,7 @@ class StorageScope {
   /// communication objects, the switch itself. Errc::usage when `unlock` is wanted and the family has no
   /// password. After an error what had been changed is put back, or the message says that it is not.
   Result<void> open(bool keep, bool unlock, bool choose);
-  /// After them. Stores only when `all_written`, and only if open() was told to keep. `writes` is their
+  /// After them. Stores only if `all_written`, and only if open() was asked to keep. `writes` is their
   /// number: where each wears the flash, it is told. The error says all that went wrong: values that are
   /// written but not kept, a password or a switch that could not be put back.
   Result<Kept> close(bool all_written, std::size_t writes);

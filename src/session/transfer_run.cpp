@@ -15,11 +15,11 @@ constexpr std::size_t kLongList = 128;
 /// A heartbeat says that a node is stopped; of one that sends none nobody knows.
 std::string silence_hint(const NodeRecords& watch, std::uint8_t node) {
   if (watch.state(node) == NodeState::stopped)
-    return fmt::format("node {} is stopped (its heartbeat says so) and answers no SDO: `nmt preop -n {}`",
+    return fmt::format("node {} is stopped (NMT, by its heartbeat) and cannot answer SDO: `nmt preop -n {}`",
                        node, node);
   return fmt::format(
-      "is node {} powered and connected, does it run at this bitrate and is this its node-ID? `scan` shows "
-      "who answers; one that is stopped does not: `nmt preop -n {}`",
+      "is node {} powered, connected, at this bitrate and node-ID? `scan` shows which nodes answer; a "
+      "stopped node does not: `nmt preop -n {}`",
       node, node);
 }
 
@@ -137,7 +137,7 @@ void TransferRun::skip_rest(Channel& channel, const Error& reason, bool reads_to
       continue;
     }
     Error error = reason;  // Keeps the object that failed: that is the cause.
-    error.message = fmt::format("node {}, object {}: not tried after {} failed", requests_[index].node,
+    error.message = fmt::format("node {}, object {}: skipped because {} failed", requests_[index].node,
                                 to_string(requests_[index].object),
                                 reason.object ? to_string(*reason.object) : "an object");
     results_[index] = fail(std::move(error));

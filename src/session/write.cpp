@@ -29,14 +29,14 @@ bool answer_lost(const Error& error, const SdoRequest& request) {
 }
 
 Result<Written> after_lost_answer(const SdoRequest& request, const Error& lost, const Result<Bytes>& found) {
-  const std::string_view what = lost.code == Errc::timeout ? "the write was sent, the answer never came"
-                                                           : "the write was sent, the answer was none";
+  const std::string_view what = lost.code == Errc::timeout ? "the write was sent, but no answer came"
+                                                           : "the write was sent, its answer was invalid";
   if (!found)
     return fail(about(request, lost.code, fmt::format("{}, and the value cannot be read back", what),
-                      "it is unknown whether the value was written: read it when the node answers again"));
+                      "whether the value was written is unknown: read it when the node answers again"));
   if (*found != *request.data)
     return fail(about(request, lost.code,
-                      fmt::format("{}, and it had no effect: the object still holds {}", what, shown(*found)),
+                      fmt::format("{}, and it had no effect: the object holds {}", what, shown(*found)),
                       "write it again"));
   Written done;
   done.answer_lost = true;
@@ -53,7 +53,7 @@ Result<Written> after_answer(const SdoRequest& request, const Result<Bytes>& fou
   if (*found != *request.data)
     return fail(
         about(request, Errc::negative,
-              fmt::format("the drive acknowledged {} and holds {}", shown(*request.data), shown(*found)),
+              fmt::format("the drive acknowledged {} but holds {}", shown(*request.data), shown(*found)),
               "the drive limits or rounds the value, or another setting overrides it"));
   Written done;
   done.read_back = *found;

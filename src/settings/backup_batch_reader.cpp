@@ -31,7 +31,7 @@ class Reader {
   Result<void> check_choice() {
     if (!line_->family.empty() && line_->family != profile_->family)
       return refuse(fmt::format("is for {}, not for {}", line_->family, profile_->family),
-                    "name the family of the file with -d when the drive really is one");
+                    "give the file's family with -d if the drive really is one");
     if (line_->nodes.empty()) return {};
     if (line_->nodes.size() != 1 || line_->nodes.front() == 0 ||
         (out_.identity.node != 0 && out_.identity.node != line_->nodes.front()))
@@ -53,7 +53,7 @@ class Reader {
       return refuse(fmt::format("the manual does not tell the length of {}", name_of(*target)),
                     "write it with a type: write OBJECT VALUE --type i32");
     if (drive::needs_bridge(meaning, text))
-      return refuse(fmt::format("what '{}' is only the drive itself can tell", text), "write the raw number");
+      return refuse(fmt::format("only the drive itself can convert '{}'", text), "write the raw number");
     const auto value = drive::parse_quantity(meaning, text);
     const auto bytes = value ? od::encode(meaning.type, *value) : Result<Bytes>(fail(value.error()));
     if (!bytes)

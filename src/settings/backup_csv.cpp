@@ -83,7 +83,7 @@ class Reader {
     if (cell("node").empty()) return {};
     const auto number = parse_digits(cell("node"), 10);
     if (!number || *number < canopen::kFirstNode || *number > canopen::kLastNode)
-      return refuse(fmt::format("'{}' is no node-ID", clip(cell("node"), 40)), "1 to 127");
+      return refuse(fmt::format("'{}' is not a node-ID", clip(cell("node"), 40)), "1 to 127");
     if (node != 0 && node != *number)
       return refuse(fmt::format("is of node {}, the rows before are of node {}", *number, node),
                     "a table holds the settings of one drive");
@@ -95,7 +95,7 @@ class Reader {
     auto written = std::string(cell("index"));
     if (!cell("sub").empty()) written += fmt::format(":{}", cell("sub"));
     const auto object = parse_object_address(written);
-    if (!object) return refuse(fmt::format("'{}' is no index and sub-index", written), "0x2005,0x01");
+    if (!object) return refuse(fmt::format("'{}' is not an index and sub-index", written), "0x2005,0x01");
     entry.object = *object;
     const auto target = drive::target_at(profile_, *object);
     if (cell("raw").empty() && cell("value").empty()) {
@@ -110,7 +110,7 @@ class Reader {
     const auto raw = cell("raw");
     entry.bytes = parse_hex_bytes(starts_with_nocase(raw, "hex:") ? raw.substr(4) : raw);
     if (!entry.bytes)
-      return refuse(fmt::format("raw: '{}' is no bytes in hexadecimal", clip(raw, 40)), "hex:58 02");
+      return refuse(fmt::format("raw: '{}' is not hexadecimal bytes", clip(raw, 40)), "hex:58 02");
     return check_value(entry, target);
   }
 
@@ -147,9 +147,8 @@ class Reader {
     if (cells.value.empty() || (trim(cells.value) == cell("value") && cells.unit == cell("unit"))) return {};
     const auto bytes = bytes_of(meaning);
     if (bytes && *bytes == *entry.bytes) return {};
-    return refuse(
-        fmt::format("value {} and raw {} ({}) are not the same", quantity(), cell("raw"), cells.value),
-        "correct one of them, and empty the other");
+    return refuse(fmt::format("value {} and raw {} ({}) differ", quantity(), cell("raw"), cells.value),
+                  "correct one of them, and empty the other");
   }
 
   tl::unexpected<Error> refuse(std::string_view what, std::string hint) const {

@@ -62,7 +62,7 @@ bool fits_a_dcf(const od::Value& value) {
 std::string missing(const drive::Profile& profile, const Backup& backup, const Backup::Entry& entry) {
   const auto range = range_missed(profile, backup.identity.node, entry.object, *entry.bytes);
   return fmt::format("{} {} {} ({}): use JSON to keep it", to_string(entry.object), entry.name,
-                     range.empty() ? std::string("cannot stand in a DCF as the drive holds it")
+                     range.empty() ? std::string("cannot be stored in a DCF unchanged")
                                    : fmt::format("is outside of its limits {} and not in the DCF", range),
                      entry.bytes->empty() ? std::string("\"\"") : to_hex(*entry.bytes));
 }
@@ -73,7 +73,7 @@ Result<std::string> dcf_text(const drive::Profile& profile, const Backup& backup
                              const std::string& file_name, std::vector<std::string>& notices) {
   if (profile.data_sheet.empty())
     return fail(Errc::usage, fmt::format("{} has no data sheet (EDS) to make a DCF of", profile.family),
-                "take --format json, csv or batch");
+                "use --format json, csv or batch");
   const auto eds = read_file(profile.data_sheet, od::kMostEdsBytes);
   if (!eds) return fail(eds.error());
   od::DcfSettings settings;

@@ -101,14 +101,14 @@ void tell(show::Desk& desk, const BackupSource& source, const Backup& backup) {
   // That it fits itself says nothing.
   const auto fits =
       backup.family == source.file ? std::string() : "; its objects and values fit " + backup.family;
-  desk.notices.push_back(fmt::format("{} is a {}: it proves neither its drive nor that it is whole{}",
+  desk.notices.push_back(fmt::format("{} is a {}: it proves neither its drive nor its completeness{}",
                                      source.file, title_of(source.format), fits));
   constexpr std::size_t kMostNamed = 4;
   for (std::size_t i = 0; i < std::min(kMostNamed, backup.passed_over.size()); ++i)
     desk.notices.push_back(backup.passed_over[i]);
   if (backup.passed_over.size() > kMostNamed)
     desk.notices.push_back(
-        fmt::format("{}: {} more of that kind", source.file, backup.passed_over.size() - kMostNamed));
+        fmt::format("{}: {} more like this", source.file, backup.passed_over.size() - kMostNamed));
   std::size_t left_out = 0;
   std::string names;
   for (const auto& entry : backup.entries) {
@@ -116,8 +116,7 @@ void tell(show::Desk& desk, const BackupSource& source, const Backup& backup) {
     append(names, fmt::format("{} {} ({})", to_string(entry.object), entry.name, entry.left_out));
   }
   if (left_out > kMostNamed) names += fmt::format(" and {} more", left_out - kMostNamed);
-  if (left_out > 0)
-    desk.notices.push_back(fmt::format("{}: no settings, and left out: {}", source.file, names));
+  if (left_out > 0) desk.notices.push_back(fmt::format("{}: not settings, left out: {}", source.file, names));
 }
 
 /// All are named, none is left out without being told to.
@@ -240,7 +239,7 @@ Result<Backup> read_backup(show::Desk& desk, const BackupSource& source, const d
                            std::uint8_t node, bool skip_invalid) {
   if (source.format == BackupFormat::json) return read_json_backup(source.text, source.file);
   if (profile == nullptr)
-    return fail(Errc::usage, fmt::format("{} does not say of which family it is", source.file),
+    return fail(Errc::usage, fmt::format("{} does not name its drive family", source.file),
                 "add -d FAMILY; `drives` lists families");
   auto backup = read_foreign(source, *profile, node);
   if (!backup) return backup;

@@ -80,7 +80,7 @@ struct BackupSource {
   LineReader* lines = nullptr;  ///< Who understands command lines; null: nobody.
 };
 
-/// Reads the file and tells its format by what stands in it. Errc::file.
+/// Reads the file and recognises its format by its content. Errc::file.
 Result<BackupSource> open_backup(const std::filesystem::path& file, LineReader* lines);
 
 /// The family the file names; empty when it names none.

@@ -68,7 +68,7 @@ Result<Backup::Entry> read_entry(const Value& record, std::uint32_t line, std::s
   } else if (out.left_out.empty()) {
     fields.refuse("bytes");
   }
-  if (fields.error()) return fail(Errc::file, *fields.error(), "take the backup anew");
+  if (fields.error()) return fail(Errc::file, *fields.error(), "make the backup again");
   return out;
 }
 
@@ -90,7 +90,7 @@ Result<void> read_entries(const Value& document, std::uint32_t line, std::string
     if (!entry) return fail(entry.error());
     if (!seen.insert(entry->object).second)
       return fail(Errc::file,
-                  fmt::format("{}:{}: {} stands here twice", file, entry->line, to_string(entry->object)));
+                  fmt::format("{}:{}: {} appears twice", file, entry->line, to_string(entry->object)));
     out.entries.push_back(std::move(*entry));
   }
   return {};
@@ -130,11 +130,11 @@ Result<Backup> read_json_backup(std::string_view text, const std::string& file) 
   if (!document) return fail(document.error());
   show::FieldReader fields(*document, file);
   const auto version = fields.number("servoctl_backup", true);
-  if (!version) return fail(Errc::file, fmt::format("{}: this is no backup of servoctl", file));
+  if (!version) return fail(Errc::file, fmt::format("{}: this is not a servoctl backup", file));
   if (*version > static_cast<std::uint64_t>(kVersion))
     return fail(
         Errc::file,
-        fmt::format("{}: its version {} is newer than this program knows ({})", file, *version, kVersion),
+        fmt::format("{}: its version {} is newer than this program supports ({})", file, *version, kVersion),
         "read it with the servoctl that wrote it, or a newer one");
   Backup out;
   out.tool = fields.text("tool");
@@ -149,9 +149,10 @@ Result<Backup> read_json_backup(std::string_view text, const std::string& file) 
   if (const auto read = read_entries(*document, first_entry_line(text), file, out); !read)
     return fail(read.error());
   if (sum != checksum(out))
-    return fail(Errc::file,
-                fmt::format("{}: its checksum does not fit: the file was changed after it was written", file),
-                "take the backup anew");
+    return fail(
+        Errc::file,
+        fmt::format("{}: its checksum does not match: the file was changed after it was written", file),
+        "take the backup anew");
   out.proven = true;
   return out;
 }

@@ -72,7 +72,7 @@ void settle(Backup& backup, const std::string& file, const drive::Profile& profi
                     "is it a file of this drive family? remove the entry when it is");
     if (!procedure || !is_of_procedure(entry.object))
       if (const auto first = entries.find(entry.object); first != entries.end())
-        return refuse(file, entry, fmt::format("stands here again, first in {}", first->second.line),
+        return refuse(file, entry, fmt::format("appears again, first in {}", first->second.line),
                       "remove one of them");
     entry.id = target.parameter != nullptr ? target.parameter->id : std::string();
     entry.name = target.parameter != nullptr ? target.parameter->name : target.label();

@@ -25,9 +25,9 @@ Result<drive::Meaning> learn_size(show::Desk& desk, std::uint8_t node, const dri
   const auto bytes = desk.session->upload(node, target.address);
   if (!bytes) {
     auto error = bytes.error();
-    error.message = "the object's size is not known and reading it to learn it failed: " + error.message;
+    error.message = "the object's size is not known, and reading it failed: " + error.message;
     const bool absent = error.abort_code == kNoSuchObject;
-    error.hint = desk.profile == nullptr ? "say the type: --type i32, or the drive family: -d FAMILY"
+    error.hint = desk.profile == nullptr ? "give the type: --type i32, or the drive family: -d FAMILY"
                  : absent ? fmt::format("`objects -d {}` lists the objects it has", desk.profile->family)
                           : std::string("say the type: --type i32");
     return fail(std::move(error));
@@ -35,13 +35,13 @@ Result<drive::Meaning> learn_size(show::Desk& desk, std::uint8_t node, const dri
   auto learned = drive::fitted(meaning, bytes->size());
   if (!meaning.type_known) learned.type = show::type_of({node, target, {}, *bytes}, *bytes);
   if (learned.type != meaning.type || !meaning.type_known)
-    desk.notices.push_back(fmt::format("node {}, object {}: taken as {} by the length of what it holds", node,
+    desk.notices.push_back(fmt::format("node {}, object {}: type taken as {} from its length", node,
                                        to_string(target.address), od::name(learned.type)));
   if (const auto size = od::size_of(learned.type); size && *size != bytes->size())
-    return fail(Errc::negative,
-                fmt::format("the object holds {} bytes, and {} is none of that length", bytes->size(),
-                            od::name(learned.type)),
-                "say the type: --type i32");
+    return fail(
+        Errc::negative,
+        fmt::format("the object has {} bytes, which does not fit {}", bytes->size(), od::name(learned.type)),
+        "say the type: --type i32");
   return learned;
 }
 
@@ -63,8 +63,8 @@ void warn_of_gear(show::Desk& desk, std::uint8_t node, drive::Measure measure) {
   if (ids.empty()) return;
   const auto names = fmt::to_string(fmt::join(ids, ", "));
   const auto notice = fmt::format(
-      "node {}: the unit is converted by {}, right only if the drive was restarted since they were changed",
-      node, names);
+      "node {}: the unit is converted by {}, valid only if the drive was restarted after they changed", node,
+      names);
   if (std::find(desk.notices.begin(), desk.notices.end(), notice) == desk.notices.end())
     desk.notices.push_back(notice);
 }
@@ -132,11 +132,11 @@ std::string_view reason_to_ask(const drive::Profile* profile, const Change& chan
   const auto index = change.target.address.index;
   if (index == objects::kStoreIndex || index == objects::kRestoreIndex ||
       (entry != nullptr && entry->command) || (parameter != nullptr && parameter->command))
-    return "It starts an action or stores or restores parameters.";
-  if (enables(change)) return "It enables the drive: the motor is energised and may move.";
+    return "This starts an action, or stores or restores parameters.";
+  if (enables(change)) return "This enables the drive: the motor is energised and may move.";
   if (profile != nullptr && (is_parameter(*profile, change, profile->rules.nmt.node_id) ||
                              is_parameter(*profile, change, profile->rules.nmt.bitrate)))
-    return "After a restart the drive is found under another address.";
+    return "After a restart the drive has another node-ID.";
   return {};
 }
 
@@ -157,7 +157,7 @@ Error with_password_hint(const show::Desk& desk, const Change& change, Error err
   const auto* password = desk.profile->parameter(store.unlock);
   const bool vendor_object = change.target.address.index >= 0x2000 && change.target.address.index < 0x6000;
   if (password == nullptr || !password->object || !store.unlock_open || !vendor_object) return error;
-  error.hint = fmt::format("it may be locked: `param set {} {}` opens", password->id, *store.unlock_open);
+  error.hint = fmt::format("it may be locked: `param set {} {}` unlocks", password->id, *store.unlock_open);
   if (store.unlock_closed) error.hint += fmt::format(", {} closes", *store.unlock_closed);
   return error;
 }
@@ -275,9 +275,9 @@ Result<Value> write_changes(show::Desk& desk, std::span<const Change> changes, c
     table.rows.push_back(change_row(changes[i], written[i], keeping.kept(changes[i]), desk));
     if (!written[i]) desk.errors.push_back(with_password_hint(desk, changes[i], written[i].error()));
     if (written[i] && written[i]->answer_lost)
-      desk.notices.push_back(fmt::format(
-          "node {}, object {}: the answer to the write was lost; the value read back is the one written",
-          changes[i].node, to_string(changes[i].target.address)));
+      desk.notices.push_back(
+          fmt::format("node {}, object {}: the answer to the write was lost; the value read back is correct",
+                      changes[i].node, to_string(changes[i].target.address)));
   }
   return table;
 }

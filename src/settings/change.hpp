@@ -30,7 +30,7 @@ std::string name_of(const drive::Target& target);
 Result<Change> make_change(show::Desk& desk, std::uint8_t node, const drive::Target& target,
                            std::string_view value, std::optional<od::DataType> type);
 
-/// Whether make_change() would take the value, as far as the dictionary alone can tell.
+/// Whether make_change() would accept the value, judged by the dictionary alone.
 Result<void> check_change(const show::Desk& desk, std::uint8_t node, const drive::Target& target,
                           std::string_view value, std::optional<od::DataType> type);
 
@@ -52,7 +52,7 @@ struct WriteOptions {
 Result<report::Value> planned_changes(show::Desk& desk, std::span<const Change> changes,
                                       const WriteOptions& options);
 
-/// Writes the changes and tells of each: written, read back, kept, when it takes effect. Failures go to
+/// Writes the changes and reports for each: written, read back, kept, when it takes effect. Failures go to
 /// `desk.errors`.
 Result<report::Value> write_changes(show::Desk& desk, std::span<const Change> changes,
                                     const WriteOptions& options);

@@ -18,7 +18,7 @@ Result<report::Value> read_to_file(show::Desk& desk, std::uint8_t node, const dr
 Result<Change> change_from_file(const drive::Profile* profile, std::uint8_t node, const drive::Target& target,
                                 const std::filesystem::path& file);
 
-/// Makes the changes and tells how many bytes went where, and whether they are kept. Failures go to
+/// Makes the changes and reports how many bytes went where, and whether they are kept. Failures go to
 /// `desk.errors`.
 Result<report::Value> write_from_file(show::Desk& desk, std::span<const Change> changes,
                                       const std::filesystem::path& file, const WriteOptions& options);

@@ -25,7 +25,7 @@ class KeepingNodes {
   /// `desk.errors`.
   void close(std::span<const Result<session::Written>> written);
 
-  /// Whether a value that was written survives power-off; null where no manual tells.
+  /// Whether a written value survives power-off; null where the manual does not state it.
   report::Value kept(const Change& change) const;
 
  private:

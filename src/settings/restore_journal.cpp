@@ -27,9 +27,8 @@ constexpr std::string_view kKeys[] = {"servoctl_journal", "checksum", "node", "w
                                       "unlock",           "means",    "seal"};
 
 tl::unexpected<Error> no_journal(std::string message) {
-  return fail(
-      Errc::file, std::move(message),
-      "it says what a restore that was cut off has to put back; take it away when that is not wanted");
+  return fail(Errc::file, std::move(message),
+              "it belongs to an interrupted restore; delete it if that is not to be resumed");
 }
 
 Record body_of(const RestoreJournal& journal) {
@@ -64,7 +63,7 @@ Result<RestoreJournal> parse_journal(const Value& document, const std::string& f
   show::FieldReader fields(document, file);
   if (const auto version = fields.number("servoctl_journal", true); version && *version != kVersion)
     return no_journal(
-        fmt::format("{}: its version {} is not the one of this program ({})", file, *version, kVersion));
+        fmt::format("{}: its version {} is not that of this program ({})", file, *version, kVersion));
   RestoreJournal out;
   out.checksum = fields.text("checksum", true);
   const auto node = fields.number("node", true).value_or(0);
@@ -83,7 +82,7 @@ Result<RestoreJournal> parse_journal(const Value& document, const std::string& f
   if (fields.error()) return no_journal(*fields.error());
   if (seal != seal_of(out))
     return no_journal(
-        fmt::format("{}: its seal does not fit: the file was changed after it was written", file));
+        fmt::format("{}: its seal does not match: the file was changed after it was written", file));
   return out;
 }
 
@@ -108,7 +107,7 @@ Result<void> check_means(const drive::Profile& profile, const RestoreJournal& jo
     const auto known = check_mean(profile, journal.node, object, bytes);
     if (twice || !known)
       return no_journal(fmt::format("{}: {}: {}", file, to_string(object),
-                                    twice ? std::string("stands there twice") : known.error().message));
+                                    twice ? std::string("appears twice") : known.error().message));
   }
   return {};
 }

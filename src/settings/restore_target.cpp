@@ -43,7 +43,7 @@ Result<void> RestoreTarget::check_identity() {
   if (backup_->family != desk_->profile->family && !force)
     return fail(Errc::refused,
                 fmt::format("{} is of {}, not of {}", title_, backup_->family, desk_->profile->family),
-                "--force restores what fits all the same");
+                "--force restores what fits anyway");
   const std::uint8_t nodes[] = {node_};
   const auto found = session::scan(*desk_->session, nodes);
   if (!found) return fail(found.error());
@@ -52,14 +52,13 @@ Result<void> RestoreTarget::check_identity() {
   identity_ = found->front();
   const auto& drive = identity_;
   if (const auto what = show::other_kind(backup_->identity, drive); !what.empty() && !force)
-    return fail(Errc::refused,
-                fmt::format("node {} is another drive than that of {}: {} differs", node_, title_, what),
+    return fail(Errc::refused, fmt::format("node {} is not the drive of {}: {} differs", node_, title_, what),
                 "--force restores what fits all the same");
   const bool says_firmware = backup_->identity.revision || !backup_->identity.software_version.empty();
   if (says_firmware && (backup_->identity.revision != drive.revision ||
                         backup_->identity.software_version != drive.software_version))
-    desk_->notices.push_back(fmt::format(
-        "node {}: the firmware differs from that of the backup: compare the values that matter", node_));
+    desk_->notices.push_back(
+        fmt::format("node {}: its firmware differs from the backup's: check the important values", node_));
   return {};
 }
 
@@ -69,13 +68,13 @@ Result<void> RestoreTarget::check_standstill() const {
   if (!word && word.error().code != Errc::sdo_abort) return fail(word.error());
   if (!word || !drive::is_energised(drive::decode_state(static_cast<std::uint16_t>(load_le(*word)))))
     return {};
-  return fail(Errc::refused, fmt::format("node {} is energised, its settings are not changed now", node_),
-              "`disable` takes its power away; make sure that the load is held");
+  return fail(Errc::refused, fmt::format("node {} is energised: its settings cannot be changed now", node_),
+              "`disable` de-energises it; make sure that the load is held");
 }
 
 /// Only what this drive's own data calls a setting is ever written, whatever the file says.
 Result<void> RestoreTarget::leave_out(const Backup::Entry& entry, std::string_view reason) {
-  const auto what = fmt::format("{}:{}: {} is no setting of this drive: {}", title_, entry.line,
+  const auto what = fmt::format("{}:{}: {} is not a setting of this drive: {}", title_, entry.line,
                                 to_string(entry.object), reason);
   if (!choice_.force) return fail(Errc::refused, what, "nothing was written; --force restores the rest");
   desk_->notices.push_back(what + "; it is left out");
@@ -123,7 +122,7 @@ Result<void> RestoreTarget::read_present() {
       return fail(
           Errc::negative,
           fmt::format("{}:{}: {} of the backup: {}", title_, line_of(entry.object), to_string(entry.object),
-                      entry.bytes ? "the drive's has another length" : entry.left_out),
+                      entry.bytes ? "the length in the drive differs" : entry.left_out),
           "nothing was written; --force restores the rest");
     wanted_.erase(entry.object);
   }
@@ -178,9 +177,7 @@ Result<void> RestoreTarget::check_values() {
       return fail(std::move(error));
     }
     error.message += "; node " + fmt::format("{} keeps {}", node_, to_hex(present_.at(object)));
-    error.hint =
-        skipped ? ""
-                : "what the drive itself came with is not known to be taken back: `write` it when it matters";
+    error.hint = skipped ? "" : "the drive may not accept its own original value again: `write` it if needed";
     left_.push_back(std::move(error));
     wanted_.erase(object);
     present_.erase(object);

@@ -51,7 +51,7 @@ class Restoring {
       if (!*taken)
         return fail(Errc::refused,
                     fmt::format("another servoctl is restoring {} into node {}", title_, node_),
-                    "wait for its end, or look with `ps` who it is");
+                    "wait until it ends, or find it with `ps`");
       out.push_back(std::move(**taken));
     }
     return out;
@@ -82,14 +82,13 @@ class Restoring {
     const auto found = read_journal(*desk_, journal());
     if (!found) return fail(found.error());
     if (*found && !options_.resume)
-      return fail(Errc::refused,
-                  fmt::format("a restore of {} into node {} was cut off before its end", title_, node_),
-                  fmt::format("--resume goes on with it; `restore {} -n {}` puts back what was there before",
+      return fail(Errc::refused, fmt::format("a restore of {} to node {} was interrupted", title_, node_),
+                  fmt::format("--resume continues it; `restore {} -n {}` restores the old values",
                               before_.string(), node_));
     if (!*found && options_.resume)
       return fail(Errc::usage,
-                  fmt::format("there is nothing to go on with: {} does not exist", journal().string()),
-                  "leave --resume away");
+                  fmt::format("there is nothing to resume: {} does not exist", journal().string()),
+                  "leave --resume out");
     if (options_.resume) return resume(**found);
     if (undoes_.empty()) return {};
     const auto undone = read_journal(*desk_, undoes_);
@@ -104,11 +103,9 @@ class Restoring {
 
   Result<void> resume(const RestoreJournal& found) {
     if (found.checksum != checksum(*backup_) || found.node != node_)
-      return fail(
-          Errc::refused, fmt::format("{} is not what was being restored into node {}", title_, node_),
-          fmt::format(
-              "the same values are needed to go on; `restore {} -n {}` puts back what was there before",
-              before_.string(), node_));
+      return fail(Errc::refused, fmt::format("{} is not the file being restored to node {}", title_, node_),
+                  fmt::format("resuming needs the same values; `restore {} -n {}` restores the old ones",
+                              before_.string(), node_));
     left_ = found;
     options_.choice = {found.with_address, found.force, options_.choice.skip_invalid};
     options_.keep = found.keep;
@@ -118,8 +115,9 @@ class Restoring {
 
   std::string question(std::size_t different) const {
     if (different == 0)
-      return fmt::format("All values of node {} are those of {}. {}?", node_, title_,
-                         options_.keep ? "Make it keep them" : "Put its memory switch and password back");
+      return fmt::format(
+          "All values of node {} already match {}. {}?", node_, title_,
+          options_.keep ? "Store them in the drive" : "Put its memory switch and password back");
     return fmt::format("Write {} values of {} to node {}?", different, title_, node_);
   }
 
@@ -160,15 +158,14 @@ class Restoring {
         session::restore(*desk_->session, desk_->profile, node_, target.present(), target.wanted(),
                          {.roll_back = options_.roll_back, .keep = options_.keep, .unlock = options_.unlock});
     for (const auto& notice : outcome.notices) desk_->notices.push_back(notice);
-    desk_->notices.push_back(fmt::format("what node {} held before is in {}", node_, before_.string()));
+    desk_->notices.push_back(fmt::format("the old values of node {} are in {}", node_, before_.string()));
     if (!outcome.failure) return take_away_journals(result(std::move(record), said("restored"), outcome));
     desk_->errors.push_back(*outcome.failure);
     add_astray(outcome);
     auto out = result(std::move(record), failed_state(outcome), outcome);
     // Undone to the end: nothing is left to go on with. What is being taken back itself stays begun.
     if (outcome.rolled_back && left_.checksum.empty()) return take_away_journals(std::move(out));
-    desk_->notices.push_back(
-        fmt::format("node {}: --resume goes on with it when the cause is removed", node_));
+    desk_->notices.push_back(fmt::format("node {}: --resume continues once the cause is removed", node_));
     return out;
   }
 
@@ -178,9 +175,9 @@ class Restoring {
       error.code = Errc::negative;
       error.node = node_;
       error.object = object;
-      error.message = fmt::format(
-          "node {}, object {}: neither the value of the backup nor the one from before is certain", node_,
-          to_string(object));
+      error.message =
+          fmt::format("node {}, object {}: it may hold neither the value of the backup nor its old one",
+                      node_, to_string(object));
       desk_->errors.push_back(std::move(error));
     }
   }

@@ -6,7 +6,7 @@ namespace servoctl::settings {
 
 tl::unexpected<Error> writes_no_value(std::string_view command) {
   return fail(Errc::file, fmt::format("'{}' writes no value", command),
-              "to be read as settings, a batch file holds `param set` and `write` lines");
+              "a batch file read as settings may only contain `param set` and `write`");
 }
 
 }  // namespace servoctl::settings

@@ -249,7 +249,7 @@ Record rules_record(const drive::Profile& profile, bool chinese) {
              {"cautions", cautions(rules, chinese), Show::json},
              {"assumed", text_list(rules.assumed), Show::everywhere, "not in the manual"},
              {"contradicted", report::text_or_null(od::to_text(rules.contradicted)), Show::text,
-              "the manual says two things of"},
+              "the manual is inconsistent on"},
              {"contradicted", marks_record(rules.contradicted), Show::json}};
   return out;
 }

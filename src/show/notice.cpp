@@ -26,13 +26,13 @@ struct Words {
       case Sign::guarding: return fmt::format("node guarding lost: no answer for {} ms", silence);
       case Sign::toggle: break;
     }
-    return fmt::format("node guarding lost: its answers do not change their toggle bit, for {} ms", silence);
+    return fmt::format("node guarding lost: toggle bit unchanged for {} ms", silence);
   }
   std::string operator()(const session::NodeEvent::Back& back) const {
     return fmt::format("answers node guarding again, {}", session::name(back.state));
   }
   std::string operator()(const session::NodeEvent::Doubled& doubled) const {
-    return (chinese ? "两个节点使用同一个节点号: " : "two nodes answer under this number: ") + doubled.by;
+    return (chinese ? "两个节点使用同一个节点号: " : "two nodes answer under this node-ID: ") + doubled.by;
   }
   std::string operator()(const session::NodeEvent::StateError& error) const {
     return fmt::format("{} 0x{:04X}: {}", chinese ? "状态错误" : "state error", error.code, error.text);
@@ -50,7 +50,7 @@ struct Words {
 
 std::string notice_text(const session::NodeEvent& event, const drive::Profile* profile, bool chinese) {
   auto out = fmt::format("node {}: {}", event.node, std::visit(Words{event, profile, chinese}, event.what));
-  if (event.times > 1) out += fmt::format("; {} times in succession", event.times);
+  if (event.times > 1) out += fmt::format("; {} times in a row", event.times);
   return out;
 }
 

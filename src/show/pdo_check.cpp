@@ -39,9 +39,9 @@ bool fits_direction(const od::Entry& entry, PdoDirection direction) {
 
 std::string direction_hint(const od::Entry& entry) {
   switch (entry.pdo) {
-    case od::PdoMapping::no: return "this drive maps it into no PDO";
-    case od::PdoMapping::rpdo: return "it can be received only: an RPDO";
-    case od::PdoMapping::tpdo: return "it can be sent only: a TPDO";
+    case od::PdoMapping::no: return "this drive cannot map it into a PDO";
+    case od::PdoMapping::rpdo: return "it can be mapped only into an RPDO";
+    case od::PdoMapping::tpdo: return "it can be mapped only into a TPDO";
     case od::PdoMapping::both: return "it is read-only";
   }
   return {};
@@ -67,7 +67,7 @@ Result<void> check_entry(const drive::Profile& profile, const Pdo& pdo, const Pd
   if (bits && sure && *bits != entry.bits)
     return no(pdo, fmt::format("{} has {} bits, not {}", name, *bits, entry.bits));
   if (profile.rules.pdo.whole_bytes && entry.bits % 8 != 0)
-    return no(pdo, fmt::format("{}: {} bits are no whole bytes", name, entry.bits),
+    return no(pdo, fmt::format("{}: {} bits are not whole bytes", name, entry.bits),
               "this drive maps bytes only");
   return {};
 }
@@ -101,7 +101,7 @@ Result<void> check_type(const drive::Profile& profile, const Pdo& pdo) {
   if (reserved || (remote && !transmit))
     return no(pdo, fmt::format("there is no transmission type {}", pdo.type), types_text(profile, pdo));
   if (transmit && std::count(refused.begin(), refused.end(), pdo.type) > 0)
-    return no(pdo, fmt::format("this drive does not know transmission type {}", pdo.type),
+    return no(pdo, fmt::format("this drive does not support transmission type {}", pdo.type),
               types_text(profile, pdo));
   return {};
 }
@@ -123,10 +123,10 @@ Result<void> check_bits(const drive::Profile& profile, const Pdo& present, const
   const bool other_id = (may_change & kBasicCanId) != 0;
   if (other_id && (wanted.cob_id & canopen::kPdoExtended) != 0)
     return no(wanted,
-              fmt::format("the CAN-IDs of this drive have 11 bits, {} has 29", can_id_text(wanted.cob_id)),
+              fmt::format("this drive has 11-bit CAN-IDs, {} is a 29-bit one", can_id_text(wanted.cob_id)),
               "write one up to 0x7FF");
-  return no(wanted, fmt::format("this drive keeps its COB-ID {}", can_id_text(present.cob_id)),
-            "it can be enabled and disabled only");
+  return no(wanted, fmt::format("this drive has the fixed COB-ID {}", can_id_text(present.cob_id)),
+            "it can only be enabled and disabled");
 }
 
 Result<void> check_can_id(const Pdo& wanted, std::span<const Pdo> all) {
@@ -137,7 +137,7 @@ Result<void> check_can_id(const Pdo& wanted, std::span<const Pdo> all) {
   for (const auto& other : all) {
     const bool same = other.direction == wanted.direction && other.number == wanted.number;
     if (!same && other.is_valid() && other.can_id() == wanted.can_id())
-      return no(wanted, fmt::format("CAN-ID {} is that of {} of the same node", text, name_of(other)),
+      return no(wanted, fmt::format("CAN-ID {} is used by {} of the same node", text, name_of(other)),
                 fmt::format("`pdo disable {}` frees it", name_of(other)));
   }
   return {};
@@ -158,7 +158,7 @@ Result<void> check_mapping(const drive::Profile& profile, const Pdo& pdo) {
   const auto& rules = profile.rules.pdo;
   if (is_fixed(profile, pdo))
     return no(pdo, fmt::format("its mapping 0x{:04X} is fixed", pdo.mapping_index()),
-              "`pdo enable` chooses it, `pdo show` lists what it carries");
+              "`pdo enable` selects it, `pdo show` lists what it carries");
   if (pdo.entries.size() > rules.most_entries)
     return no(pdo, fmt::format("{} objects are too many, {} fit", pdo.entries.size(), rules.most_entries));
   for (const auto& entry : pdo.entries)

@@ -100,13 +100,12 @@ Record doubts_record(const od::Doubts& doubts) {
   const auto reason = [](const std::vector<od::Mark>& marks, std::string_view why) {
     return report::text_or_null(marks.empty() ? "" : od::to_text(marks) + ": " + std::string(why));
   };
-  return {
-      {"assumed", reason(doubts.assumed, "the manual does not state it"), Show::text},
-      {"contradicted", reason(doubts.contradicted, "the manual states another value as well"), Show::text},
-      {"assumed", !doubts.assumed.empty(), Show::json},
-      {"assumed_fields", marks_record(doubts.assumed), Show::json},
-      {"contradicted", !doubts.contradicted.empty(), Show::json},
-      {"contradicted_fields", marks_record(doubts.contradicted), Show::json}};
+  return {{"assumed", reason(doubts.assumed, "the manual does not state it"), Show::text},
+          {"contradicted", reason(doubts.contradicted, "the manual also states another value"), Show::text},
+          {"assumed", !doubts.assumed.empty(), Show::json},
+          {"assumed_fields", marks_record(doubts.assumed), Show::json},
+          {"contradicted", !doubts.contradicted.empty(), Show::json},
+          {"contradicted_fields", marks_record(doubts.contradicted), Show::json}};
 }
 
 Value error_record(const Error& error, std::string_view abort_words) {

@@ -48,7 +48,7 @@ class Axis {
   bool has_following_error() const { return following_error_; }
   void clear_error() { following_error_ = false; }
   AxisFaults& faults() { return faults_; }
-  /// Counts of its own in a turn, which no object tells: where the family's rules say `learned`.
+  /// Counts per revolution that no object gives: where the family's rules say `learned`.
   double& own_counts() { return own_counts_; }
   Track& track() { return track_; }
 

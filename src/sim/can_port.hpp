@@ -36,7 +36,7 @@ class CanPort final : public Device, private DrivePort {
   std::optional<can::Frame> take_frame() override;
   TimePoint deadline() const override;
 
-  /// Sends what the drive has to tell beside its answers; is done with every frame and in on_time() as well.
+  /// Sends what the drive sends unasked; is done with every frame and in on_time() as well.
   void collect_emergencies(TimePoint now);
   WireFaults& faults() { return faults_; }
   void fall_silent_at(TimePoint time) { planned_silence_ = time; }

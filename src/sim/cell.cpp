@@ -32,7 +32,7 @@ Result<Place> parse_place(std::string_view text) {
   if (at == std::string_view::npos) return place;
   const auto node = parse_digits(text.substr(at + 1), 10);
   if (!node || *node < canopen::kFirstNode || *node > canopen::kLastNode)
-    return bad_spec(fmt::format("'{}' is no node-ID (1..127)", text.substr(at + 1)));
+    return bad_spec(fmt::format("'{}' is not a node-ID (1..127)", text.substr(at + 1)));
   place.node = static_cast<std::uint8_t>(*node);
   return place;
 }
@@ -82,7 +82,7 @@ bool has_own_counts(const drive::Profile& profile) {
 Result<void> set_counts(Cell& cell, std::string_view text) {
   const auto counts = parse_digits(text, 10);
   if (!counts || *counts < 2)
-    return bad_spec(fmt::format("'counts={}' is no number of counts in a turn: 2 or more", text));
+    return bad_spec(fmt::format("'counts={}': counts per revolution must be 2 or more", text));
   bool taken = false;
   for (const auto& drive : cell.drives) {
     if (!has_own_counts(drive->profile())) continue;
@@ -90,7 +90,7 @@ Result<void> set_counts(Cell& cell, std::string_view text) {
     taken = true;
   }
   if (taken) return {};
-  return bad_spec(fmt::format("'counts={}': no drive here has counts of a turn that it does not tell", text));
+  return bad_spec(fmt::format("'counts={}': all drives here report their counts per revolution", text));
 }
 
 Result<void> apply_option(Cell& cell, std::string_view option, TimePoint now) {
@@ -103,7 +103,7 @@ Result<void> apply_option(Cell& cell, std::string_view option, TimePoint now) {
   const auto time = read_duration(value);
   if (key != "silent" && key != "delay") {
     const std::string keys[] = {"state", "fault", "silent", "delay", "counts"};
-    return bad_spec(fmt::format("'{}' is no option of a simulated bus: there are {}", key, one_of(keys)));
+    return bad_spec(fmt::format("'{}' is not an option of a simulated bus: use {}", key, one_of(keys)));
   }
   if (!time) return bad_spec(fmt::format("{}: {}; {}", key, time.error().message, time.error().hint));
   for (const auto& drive : cell.drives) {

@@ -39,7 +39,7 @@ struct Alarm {
   std::array<std::uint8_t, 5> vendor{};
 };
 
-/// What a drive tells once of an error that begins, or by code 0000h of one that is over (CiA 301, 7.2.7.1).
+/// What a drive sends once when an error occurs, or with code 0000h when it is over (CiA 301, 7.2.7.1).
 struct Emergency {
   std::uint16_t code = 0;
   std::uint8_t error_register = 0;  ///< 1001h when it happened.

@@ -41,7 +41,7 @@ Result<void> Memory::parse(std::string_view text) {
     if (!object || !bytes)
       return fail(Errc::file,
                   fmt::format("{}:{}: expected a drive, an object and its bytes", file_.string(), number),
-                  "mend the line or delete the file");
+                  "correct the line or delete the file");
     drives_[std::string(words[0])][*object] = *bytes;
   }
   return {};

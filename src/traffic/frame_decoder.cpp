@@ -162,7 +162,7 @@ void FrameDecoder::decode_pdo(const can::Frame& frame, std::uint8_t node, const 
   out_.service = "pdo";
   out_.node = node;
   if (frame.remote) {
-    out_.text = fmt::format("PDO 0x{:03X} asked for by a remote frame", frame.id);
+    out_.text = fmt::format("PDO 0x{:03X} requested by a remote frame", frame.id);
     return;
   }
   const auto data = frame.payload();
@@ -191,7 +191,7 @@ void FrameDecoder::decode_error_control(const can::Frame& frame) {
   out_.node = node_of(frame, canopen::kErrorControl);
   if (frame.remote) {
     out_.service = "guarding";
-    out_.text = "node guarding asks";
+    out_.text = "node guarding request";
     return;
   }
   const auto message = canopen::parse_error_control(frame);

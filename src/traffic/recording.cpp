@@ -64,8 +64,8 @@ std::vector<std::string> notices(std::string_view path, const Strays& strays) {
 }
 
 tl::unexpected<Error> no_frames(std::string_view path) {
-  return fail(Errc::file, fmt::format("{} holds no frame", path),
-              "recordings are in a form of candump (`--trace FILE` makes that of `candump -L`) or .asc");
+  return fail(Errc::file, fmt::format("{} contains no frames", path),
+              "a recording is a candump file (`--trace FILE` writes `candump -L`) or .asc");
 }
 
 }  // namespace servoctl::traffic

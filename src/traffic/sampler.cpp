@@ -55,7 +55,7 @@ std::optional<Quantity> quantity(const Channel& channel, ByteSpan bytes) {
 Error no_number(const Channel& channel, const std::string& why) {
   Error error;
   error.code = Errc::usage;
-  error.message = fmt::format("{} is no number that could be drawn: {}", channel.name, why);
+  error.message = fmt::format("{} is not numeric, cannot be plotted: {}", channel.name, why);
   error.hint = "`read` and `watch` show it";
   return show::located(std::move(error), channel.node, channel.target.address);
 }

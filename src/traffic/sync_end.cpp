@@ -20,8 +20,8 @@ std::string warning(session::Session& session, std::uint8_t node) {
   const bool known = mode && mode->size() == 1;
   if (known && (mode->front() < kFirstCyclicMode || mode->front() > kLastCyclicMode)) return {};
   return fmt::format(
-      "node {} is energised{}: without SYNC it gets no new targets, and by its own rules holds, runs on or "
-      "raises a fault; `disable -n {}`",
+      "node {} is energised{}: without SYNC it gets no new targets and, depending on the drive, holds, runs "
+      "on or faults; `disable -n {}`",
       node, known ? " in a mode that follows SYNC" : ", and its mode cannot be read", node);
 }
 
@@ -36,7 +36,7 @@ SyncEnd end_sync(session::Session& session) {
   const auto& production = *session.can()->sync();
   if (production.foreign > 0)
     out.warnings.push_back(fmt::format(
-        "somebody else sent {} SYNCs meanwhile: drives took both, in no steady period", production.foreign));
+        "another producer sent {} SYNCs meanwhile: the period was irregular for drives", production.foreign));
   out.table.columns = rhythm_columns();
   out.table.columns.push_back({"missed"});
   auto row = rhythm_cells(production.rhythm);

@@ -77,7 +77,7 @@ class Communication {
     if (sent_ < test_.count) lost.note += say(", then given up", "，之后放弃");
     out_.criteria.push_back(std::move(lost));
     out_.criteria.push_back(
-        report::at_most("wrong_answers", say("answers against the protocol", "违反协议的应答"), wrong_, 0));
+        report::at_most("wrong_answers", say("protocol violations", "违反协议的应答"), wrong_, 0));
     if (round_trips_.empty()) return;
     std::sort(round_trips_.begin(), round_trips_.end());
     const auto at = [&](double part) {
@@ -134,8 +134,7 @@ class Communication {
     if (heard.size() < 2) return {};
     const auto allowed = std::max<Duration>(
         std::chrono::duration_cast<Duration>(period * kHeartbeatTolerance), kLeastTolerance);
-    out_.criteria.push_back(report::at_most("heartbeat_period",
-                                            say("heartbeat off its period", "心跳周期偏差"),
+    out_.criteria.push_back(report::at_most("heartbeat_period", say("heartbeat period error", "心跳周期偏差"),
                                             milliseconds_of(worst), milliseconds_of(allowed), "ms"));
     return {};
   }
@@ -156,7 +155,7 @@ class Communication {
     const auto link = session::link_of(session_->url());
     if (!link || !link->health) {
       out_.criteria.push_back(
-          report::skipped("controller", std::move(name), say("this bus does not tell it", "该总线不提供")));
+          report::skipped("controller", std::move(name), say("not available on this bus", "该总线不提供")));
       return;
     }
     const auto wanted = can::LinkHealth::error_active;

@@ -75,7 +75,7 @@ std::optional<TestResult> test_of(const Value& value) {
 }
 
 tl::unexpected<Error> no_tests(std::string_view file) {
-  return fail(Errc::file, fmt::format("{} holds no results of tests", file),
+  return fail(Errc::file, fmt::format("{} contains no test results", file),
               "such a file is written by `test … --json >FILE`");
 }
 
@@ -97,7 +97,7 @@ std::optional<std::string> otherness(const show::Desk& desk, const TestResult& t
                                      const session::Identity& drive) {
   const Value origin(test.origin);
   const auto family = text(find(origin, "family"));
-  if (!family.empty() && family != desk.profile->family) return fmt::format("it was of {}", family);
+  if (!family.empty() && family != desk.profile->family) return fmt::format("it was a {}", family);
   const auto* record = find(origin, "identity");
   const auto identity = record == nullptr ? std::nullopt : show::identity_of(*record, test.node);
   if (!identity || record->is_null()) return std::nullopt;
@@ -112,9 +112,9 @@ Error other_drive(const TestResult& test, const std::string& what) {
   error.code = Errc::refused;
   error.node = test.node;
   const auto time = text(find(Value(test.origin), "time"));
-  error.message = fmt::format("node {}: the test {}{} was made of another drive: {}", test.node, test.test,
+  error.message = fmt::format("node {}: `test {}`{} was run on another drive: {}", test.node, test.test,
                               time.empty() ? "" : " of " + time, what);
-  error.hint = "leave this --tests out, or test the drive that is there now";
+  error.hint = "leave this --tests out, or test the present drive";
   return error;
 }
 
@@ -152,8 +152,8 @@ Result<void> check_tested(show::Desk& desk, const std::vector<TestResult>& tests
       if (test.node != drive.node) continue;
       const auto what = otherness(desk, test, drive);
       if (!what)
-        desk.notices.push_back(fmt::format("node {}: the test {} does not tell of which drive it was made",
-                                           test.node, test.test));
+        desk.notices.push_back(
+            fmt::format("node {}: `test {}` does not say which drive it was run on", test.node, test.test));
       else if (!what->empty())
         return fail(other_drive(test, *what));
     }

@@ -42,15 +42,15 @@ class Homings {
   TestResult judged(const motion::MotionReport& done) const {
     TestResult out;
     out.test = "home";
-    out.criteria.push_back(report::at_least("found", say("homings that found home", "成功回零次数"),
+    out.criteria.push_back(report::at_least("found", say("successful homings", "成功回零次数"),
                                             static_cast<double>(found_.size()), test_->repeat));
     judge_motion(*desk_, done, out);
     std::string unit;
     for (const auto& series : done.series)
       if (series.name == motion::name(Channel::position)) unit = series.unit;
-    judge_spread("spread", say("spread of the position at rest", "停止位置的离散"), &Found::position, unit,
+    judge_spread("spread", say("spread of the final position", "停止位置的离散"), &Found::position, unit,
                  out);
-    judge_spread("encoder_spread", say("spread of home against the encoder", "原点相对编码器的离散"),
+    judge_spread("encoder_spread", say("spread of home in encoder counts", "原点相对编码器的离散"),
                  &Found::encoder, unit, out);
     out.figures.push_back({"homings", table(unit), report::Show::everywhere, say("homings", "各次回零")});
     return out;
@@ -88,7 +88,7 @@ class Homings {
       out.criteria.push_back(report::skipped(
           std::move(id), std::move(name),
           found_.size() < 2 ? say("fewer than two homings", "回零少于两次")
-                            : say("not told in the unit of the position; --encoder COUNTS may help",
+                            : say("not available in the position unit; --encoder COUNTS may help",
                                   "驱动器未以位置单位提供该数据，可试 --encoder")));
       return;
     }

@@ -45,8 +45,8 @@ class InputNames {
       words.push_back(id(bit));
     }
     auto hint = did_you_mean(word, words);
-    if (hint.empty()) hint = "there are negative-limit, positive-limit, home, and bit0 to bit31 of 60FDh";
-    return fail(Errc::usage, fmt::format("'{}' is no input", word), std::move(hint));
+    if (hint.empty()) hint = "use negative-limit, positive-limit, home, or bit0 to bit31 of 60FDh";
+    return fail(Errc::usage, fmt::format("'{}' is not an input", word), std::move(hint));
   }
 
  private:
@@ -91,7 +91,7 @@ class InputWatch {
     if (answer) return static_cast<std::uint32_t>(load_le(*answer));
     auto error = answer.error();
     if (error.code == Errc::sdo_abort)
-      error.hint = "this drive does not show its inputs at 60FDh; a parameter of the family may";
+      error.hint = "this drive does not show its inputs in 60FDh; a parameter of the family may";
     return fail(std::move(error));
   }
 

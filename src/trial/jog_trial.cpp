@@ -95,8 +95,8 @@ class Direction {
     return {};
   }
   void skip(std::string_view name, std::string title_text) {
-    out_->criteria.push_back(report::skipped(
-        id(name), std::move(title_text), say(*desk_, "the drive does not tell it", "驱动器不提供该数据")));
+    out_->criteria.push_back(report::skipped(id(name), std::move(title_text),
+                                             say(*desk_, "not reported by the drive", "驱动器不提供该数据")));
   }
 
   /// The change of a quantity from the first to the last of these samples that have it.
@@ -113,7 +113,7 @@ class Direction {
   }
 
   void judge_direction() {
-    auto name = title("way in the direction commanded", "按指令方向的位移");
+    auto name = title("travel in commanded direction", "按指令方向的位移");
     const auto way = change(turning_, Channel::position);
     if (!way) return skip("direction", std::move(name));
     const double along = commanded() < 0 ? -*way : *way;
@@ -125,7 +125,7 @@ class Direction {
   }
 
   void judge_speed() {
-    auto name = title("speed off the command", "速度偏差");
+    auto name = title("speed deviation", "速度偏差");
     double worst = -1;
     for (const auto* sample : steady_)
       if (const auto speed = (*sample)[Channel::velocity])

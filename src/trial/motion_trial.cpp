@@ -36,9 +36,9 @@ void judge_motion(const show::Desk& desk, const motion::MotionReport& done, repo
     criterion.note = std::move(note);
     out.criteria.push_back(std::move(criterion));
   };
-  add("completed", say(desk, "ran to its end", "运行完成"), done.outcome.has_value(),
+  add("completed", say(desk, "motion completed", "运行完成"), done.outcome.has_value(),
       done.outcome ? std::string() : done.outcome.error().message);
-  add("left_without_power", say(desk, "left without power", "结束后已断使能"), done.end.verified,
+  add("left_without_power", say(desk, "left de-energised", "结束后已断使能"), done.end.verified,
       motion::end_text(done.end, done.watchdog));
 }
 

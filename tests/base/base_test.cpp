@@ -105,7 +105,7 @@ TEST(Duration, OfABareNumberIsAskedForItsUnit) {
     EXPECT_NE(time.error().hint.find(std::string(text) + "ms"), std::string::npos);
   }
   EXPECT_EQ(read_duration("2s").value(), 2s);
-  EXPECT_EQ(read_duration("soon").error().message, "'soon' is no time");
+  EXPECT_EQ(read_duration("soon").error().message, "'soon' is not a time");
 }
 
 TEST(Duration, IsReadWithItsUnit) {
@@ -190,7 +190,7 @@ TEST(Csv, ThatIsBrokenIsRefusedWithItsLine) {
       {"a,b\n1\n", "t.csv:2: 1 cells, but the header names 2 columns"},
       {"a,b\n1,2,3\n", "t.csv:2: 3 cells, but the header names 2 columns"},
       {"a\n1\n\"open\n", "t.csv:3: a quote is opened here and never closed"},
-      {"a,a\n", "t.csv:1: column 'a' stands here twice"},
+      {"a,a\n", "t.csv:1: column 'a' appears twice"},
       {"", "t.csv:1: the file is empty; a line with column names is expected"}};
   for (const auto& row : rows) {
     const auto table = parse_csv(row.first, "t.csv");

@@ -225,7 +225,7 @@ TEST_F(SocketCan, SaysWhatToDoWhenTheTransmitQueueStaysFull) {
   auto result = bus_->send(frame_of("080#"));
   while (result) result = bus_->send(frame_of("080#"));
   EXPECT_EQ(result.error().code, Errc::bus);
-  EXPECT_EQ(result.error().message, "the transmit queue of can0 stays full");
+  EXPECT_EQ(result.error().message, "the transmit queue of can0 remains full");
   EXPECT_NE(result.error().hint.find("txqueuelen 1000"), std::string::npos);
   while (sent()) {
   }

@@ -28,13 +28,13 @@ TEST(CobIdRules, LeaveEveryOtherServiceItsPlace) {
     EXPECT_FALSE(cob_id_conflict({0x1801, 1}, id, 1).empty()) << id;
   EXPECT_EQ(cob_id_conflict({0x1005, 0}, 0x80, 1), "");
   EXPECT_EQ(cob_id_conflict({0x1005, 0}, 0x4000'0080, 1), "");
-  EXPECT_EQ(cob_id_conflict({0x1005, 0}, 0x100, 1), "CAN-ID 0x100 is that of TIME");
+  EXPECT_EQ(cob_id_conflict({0x1005, 0}, 0x100, 1), "CAN-ID 0x100 belongs to TIME");
   EXPECT_EQ(cob_id_conflict({0x1012, 0}, 0x8000'0100, 1), "");
   EXPECT_EQ(cob_id_conflict({0x1014, 0}, 0x85, 5), "");
-  EXPECT_EQ(cob_id_conflict({0x1014, 0}, 0x84, 5), "CAN-ID 0x084 is that of EMCY of another node");
-  EXPECT_EQ(cob_id_conflict({0x1014, 0}, 0x80, 5), "CAN-ID 0x080 is that of SYNC");
+  EXPECT_EQ(cob_id_conflict({0x1014, 0}, 0x84, 5), "CAN-ID 0x084 belongs to EMCY of another node");
+  EXPECT_EQ(cob_id_conflict({0x1014, 0}, 0x80, 5), "CAN-ID 0x080 belongs to SYNC");
   EXPECT_EQ(cob_id_conflict({0x1200, 1}, 0x601, 1), "");
-  EXPECT_EQ(cob_id_conflict({0x1280, 2}, 0x701, 1), "CAN-ID 0x701 is that of error control");
+  EXPECT_EQ(cob_id_conflict({0x1280, 2}, 0x701, 1), "CAN-ID 0x701 belongs to error control");
 }
 
 TEST(CobIdRules, TakeWhatIsNotInUseWhatIsFreeAndWhatHas29Bits) {

@@ -82,7 +82,7 @@ TEST_F(DuplicateWatchTest, IsCertainWhenThreeOfEightAnswersCameTwice) {
   play({kAskStatus, kStatus, kStatus, kAskMode, kMode, kMode, kAskStatus, kStatus});
   EXPECT_EQ(noticed(), "");
   play({kStatus});
-  EXPECT_EQ(noticed(), "3 of its last 3 SDO answers came twice");
+  EXPECT_EQ(noticed(), "3 of its last 3 SDO responses came twice");
 }
 
 TEST_F(DuplicateWatchTest, CountsSecondAnswersThatComeWhileTheNextRequestWaits) {
@@ -145,7 +145,7 @@ TEST_F(DuplicateWatchTest, LeavesBlockTransfersOut) {
 
 TEST_F(DuplicateWatchTest, NoticesTwoBootUpsThatNobodyAskedFor) {
   play({"< 701#00", "+ 100ms", "< 701#00"});
-  EXPECT_EQ(noticed(), "two boot-ups within 101 ms, unless it is one that starts over and over");
+  EXPECT_EQ(noticed(), "two boot-ups within 101 ms, unless one node keeps restarting");
 }
 
 TEST_F(DuplicateWatchTest, TakesResetsDoubledFramesAndSlowRestartsForOneNode) {
@@ -158,7 +158,7 @@ TEST_F(DuplicateWatchTest, TakesResetsDoubledFramesAndSlowRestartsForOneNode) {
 
 TEST_F(DuplicateWatchTest, NoticesTwoBootUpsAfterOneReset) {
   play({"> 000#8201", "+ 100ms", "< 701#00", "+ 30ms", "< 701#00"});
-  EXPECT_EQ(noticed(), "two boot-ups within 31 ms, unless it is one that starts over and over");
+  EXPECT_EQ(noticed(), "two boot-ups within 31 ms, unless one node keeps restarting");
 }
 
 TEST_F(DuplicateWatchTest, KnowsItOfTheNodeAloneUntilItIsToForget) {

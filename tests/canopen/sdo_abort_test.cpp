@@ -56,7 +56,7 @@ TEST(SdoAbort, OfAVendorIsNamedByItsClass) {
   EXPECT_EQ(sdo_abort_text(0x0606'0010), "access error not listed in CiA 301");
   EXPECT_EQ(sdo_abort_text(0x0801'0000), "other error not listed in CiA 301");
   for (const std::uint32_t code : {0x0F00'1234U, 0x0400'0000U, 0x0700'0000U, 0x0900'0000U, 0U})
-    EXPECT_EQ(sdo_abort_text(code), "code of the vendor, not listed in CiA 301");
+    EXPECT_EQ(sdo_abort_text(code), "vendor-specific code, not listed in CiA 301");
   EXPECT_EQ(sdo_abort_hint(0x0504'0022), "look the code up in the drive's manual");
   EXPECT_EQ(sdo_abort_hint(0x0504'0002), "");
 }

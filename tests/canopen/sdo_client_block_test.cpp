@@ -106,7 +106,7 @@ TEST_F(ClientBlockTest, RefusesCommandsOutOfPlaceInARead) {
   upload({{"> 602#A40020017F000000"},
           {"< 582#C200200202000000"},
           {"< 582#C300200102000000", "> 602#8000200101000405"}});
-  EXPECT_EQ(outcome(), "it answered the request of a block transfer with command 0xC3");
+  EXPECT_EQ(outcome(), "it answered the block transfer request with command 0xC3");
   upload({{"> 602#A40020017F000000", "< 582#C200200102000000", "> 602#A300000000000000"},
           {"< 582#8101020000000000", "> 602#A2017F0000000000"},
           {"< 582#C000000000000000", "> 602#8000200101000405"}});
@@ -119,7 +119,7 @@ TEST_F(ClientBlockTest, RefusesCommandsOutOfPlaceInAWrite) {
   download(9, {{"> 602#C600200109000000"},
                {"< 582#A00020027F000000"},
                {"< 582#A10020017F000000", "> 602#8000200101000405"}});
-  EXPECT_EQ(outcome(), "it answered the request of a block transfer with command 0xA1");
+  EXPECT_EQ(outcome(), "it answered the block transfer request with command 0xA1");
   download(9, {{"> 602#C600200109000000", "< 582#A000200180000000", "> 602#8000200102000405"}});
   EXPECT_EQ(outcome(), "it asks for blocks of 128 segments");
   download(9, {start, {"< 582#A00020017F000000"}, {"< 582#A00020027F000000", "> 602#8000200101000405"}});

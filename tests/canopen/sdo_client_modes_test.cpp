@@ -83,7 +83,7 @@ TEST_F(SdoClientModeTest, ReadsAsItIsAskedTo) {
   upload({"> 602#4000200100000000", "< 582#4100200105000000", "> 602#8000200100000106"}, Transfer::expedited);
   EXPECT_EQ(failure(), "it does not answer this read in one frame");
   upload({"> 602#A40020017F000000", "< 582#4300200101020304", "> 602#8000200101000405"}, Transfer::block);
-  EXPECT_EQ(failure(), "it answered the request of a block transfer with command 0x43");
+  EXPECT_EQ(failure(), "it answered the block transfer request with command 0x43");
 }
 
 TEST_F(SdoClientModeTest, TakesTheKnownSizeWhereTheAnswerSaysNone) {
@@ -257,13 +257,13 @@ TEST_F(SdoClientModeTest, NamesAnotherMasterWhenNoAnswerComes) {
   tell("602#4000100000000000");
   EXPECT_TRUE(client.busy());
   play(client, now, {"+ 500ms", "> 602#8000200100000405"});
-  EXPECT_EQ(result().error().hint, "another master talks to this node by SDO as well");
+  EXPECT_EQ(result().error().hint, "another master is also using SDO with this node");
   upload({"> 602#4000200100000000", "+ 500ms", "> 602#8000200100000405"});
   EXPECT_EQ(result().error().hint, "");
   download(1, Transfer::automatic, {"> 602#2F00200101000000"});
   tell("602#4000100000000000");
   play(client, now, {"+ 500ms", "> 602#8000200100000405"});
-  EXPECT_EQ(result().error().hint, "another master talks to this node by SDO as well");
+  EXPECT_EQ(result().error().hint, "another master is also using SDO with this node");
   download(1, Transfer::automatic, {"> 602#2F00200101000000", "+ 500ms", "> 602#8000200100000405"});
   EXPECT_EQ(result().error().hint, "");
 }
@@ -295,10 +295,10 @@ TEST_F(SdoClientModeTest, SaysThatABlockTransferWasNotAnswered) {
   upload({"> 602#A40020017F000000", "+ 500ms", "> 602#8000200100000405"}, Transfer::domain);
   const auto read = result();
   EXPECT_EQ(read.error().message,
-            "node 2, object 0x2000:1: no answer to the request of a block transfer within 500 ms");
-  EXPECT_EQ(read.error().hint, "when the node answers `read 0x1000`, try --transfer segmented");
+            "node 2, object 0x2000:1: no answer to the block transfer request within 500 ms");
+  EXPECT_EQ(read.error().hint, "if the node answers `read 0x1000`, try --transfer segmented");
   download(9, Transfer::block, {"> 602#C600200109000000", "+ 500ms", "> 602#8000200100000405"});
-  EXPECT_EQ(failure(), "no answer to the request of a block transfer within 500 ms");
+  EXPECT_EQ(failure(), "no answer to the block transfer request within 500 ms");
 }
 
 }  // namespace

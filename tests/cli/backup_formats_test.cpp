@@ -197,7 +197,7 @@ TEST_F(BackupTest, OfAConciseDcfIsRestored) {
       {concise(one + procedure, 3), "11 bytes stand behind the last of 3 entries"},
       {concise(one.substr(0, one.size() - 1), 1), "bad.cdc:1: the file ends within this entry, of 1"},
       {concise("", 0), "there is no entry in it"},
-      {concise(one + one, 2), "bad.cdc:2: 0x1017:0 stands here again, first in 1"},
+      {concise(one + one, 2), "bad.cdc:2: 0x1017:0 appears again, first in 1"},
       {concise(entry(0x100C, 0, 500, 2) + entry(0x605A, 0, 500, 4), 2), "bad.cdc:2: 0x605A:0"},
       {concise(entry(0x5FFF, 0, 0, 4), 1), "bad.cdc:1: 0x5FFF:0 is unknown to gsd600"}};
   for (const auto& [bytes, said] : wrong) {
@@ -229,7 +229,7 @@ TEST_F(BackupTest, AsATableIsEditedInASpreadsheet) {
   };
   spill("edited.csv", with("Speed loop gain 1,u16,45,Hz,hex:58 02"));
   EXPECT_EQ(run("restore %edited.csv --yes"), 7);
-  EXPECT_NE(console.err_text.find("value 45 Hz and raw hex:58 02 (60) are not the same"), std::string::npos)
+  EXPECT_NE(console.err_text.find("value 45 Hz and raw hex:58 02 (60) differ"), std::string::npos)
       << console.err_text;
   spill("edited.csv", with("Speed loop gain 1,u16,45.0,Hz,"));
   ASSERT_EQ(run("restore %edited.csv --yes"), 0) << console.err_text;
@@ -279,21 +279,21 @@ TEST_F(BackupTest, InAFormatWithoutChecksumIsRefusedByLineAndEntry) {
   };
   const Case cases[] = {
       {"x.csv", head + "0x5FFF,0,1\n", "x.csv:2: 0x5FFF:0 is unknown to gsd600"},
-      {"x.csv", head + "0x100C,0,500\n0x100C,0,600\n", "x.csv:3: 0x100C:0 stands here again, first in 2"},
+      {"x.csv", head + "0x100C,0,500\n0x100C,0,600\n", "x.csv:3: 0x100C:0 appears again, first in 2"},
       {"x.csv", head + "0x100C,0,70000\n", "x.csv:2: value: 70000 does not fit u16"},
       {"x.csv", head + "0x2000,0x32,128\n", "x.csv:2: value: 128 is out of range: 1..127"},
-      {"x.csv", head + "heartbeat,0,1\n", "x.csv:2: 'heartbeat:0' is no index and sub-index"},
+      {"x.csv", head + "heartbeat,0,1\n", "x.csv:2: 'heartbeat:0' is not an index and sub-index"},
       {"x.csv", "index,sub,raw\n0x100C,0,hex:01\n", "x.csv:2: 0x100C:0 (Guard time): has 1 bytes"},
       {"x.csv", "index,sub,raw\n0x1017,0,hex:1\n", "x.csv:2: raw: 'hex:1' is no bytes"},
       {"x.csv", "node,index,value\n1,0x100C,1\n2,0x1005,1\n", "x.csv:3: is of node 2, the rows before"},
-      {"x.csv", "node,index,value\n128,0x1017,1\n", "x.csv:2: '128' is no node-ID"},
+      {"x.csv", "node,index,value\n128,0x1017,1\n", "x.csv:2: '128' is not a node-ID"},
       {"x.csv", "index,sub\n0x1017,0\n", "has the columns index and raw or value"},
       {"x.csv", head + "0x1017,0\n", "x.csv:2:"},
       {"x.dcf", replaced(kForeign, "0x1F4", "0x1F400"), "x.dcf:8: ParameterValue: 0x1F400 does not fit u16"},
       {"x.dcf", replaced(kForeign, "[1017]", "[5FFF]"), "x.dcf:8: 0x5FFF:0 is unknown to gsd600"},
       {"x.dcf", slurp("all.json").substr(0, 300), "this is no"},
       {"x.txt", "param set Pn0214=450\nparam set Pn214=451\n",
-       "x.txt:2: 0x2001:F stands here again, first in 1"},
+       "x.txt:2: 0x2001:F appears again, first in 1"},
       {"x.txt", "param set Pn0214=999999\n", "x.txt:1: Pn0214 Speed loop gain 1: 999999"},
       {"x.txt", "param set Pn9999=1\n", "x.txt:1: "},
       {"x.txt", "write 0x100C 5\nstore\n", "x.txt:2: 'store' writes no value"},

@@ -219,7 +219,7 @@ TEST(ABackup, LeavesOutACobIdThatNoDriveMayHaveAndIsTaken) {
   const auto backup = world.backup();
   settings::tell_left_out(world.context, backup);
   ASSERT_EQ(world.context.notices.size(), 1U);
-  EXPECT_NE(world.context.notices[0].find("CAN-ID 0x601 is that of SDO"), std::string::npos)
+  EXPECT_NE(world.context.notices[0].find("CAN-ID 0x601 belongs to SDO"), std::string::npos)
       << world.context.notices[0];
   const auto done =
       world.restore(world.read(world.text(backup, BackupFormat::json).value(), BackupFormat::json).value());

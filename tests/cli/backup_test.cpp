@@ -95,7 +95,7 @@ TEST_F(BackupTest, ThatWasEditedCutOrIsForeignIsRefusedWithTheReason) {
       {good.substr(0, good.size() / 2), "this is no JSON, or it ends too early"},
       {replaced(good, "\"servoctl_backup\":1", "\"servoctl_backup\":2"), "newer than this program knows"},
       {replaced(good, "\"index\":4108,\"sub\":0", "\"index\":4101,\"sub\":0"),
-       "bad.json:5: 0x1005:0 stands here twice"},
+       "bad.json:5: 0x1005:0 appears twice"},
       {replaced(good, "\"type\":\"u32\"", "\"type\":\"u33\""), "bad.json:4: 'type' is missing or wrong"},
       {replaced(good, "\"bytes\":\"80 00 00 00\"", "\"bytes\":\"80 00 00\""),
        "bad.json:4: 'bytes' is missing or wrong"},

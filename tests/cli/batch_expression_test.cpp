@@ -85,7 +85,7 @@ TEST(Expectation, OfAFieldOfAListHasToHoldForEveryElement) {
   EXPECT_EQ(refusal(".state == \"operation enabled\""),
             "[1].state is \"switched on\", expected == \"operation enabled\"");
   EXPECT_EQ(refusal(".value != 40"), "[1].value is 40, expected != 40");
-  EXPECT_EQ(refusal(".value == 1", List{}), "the result is an empty list: nothing can be compared");
+  EXPECT_EQ(refusal(".value == 1", List{}), "the result is an empty list: nothing to compare");
 }
 
 TEST(Expectation, NeedsAllItsParts) {
@@ -99,7 +99,7 @@ TEST(Expectation, CountsElements) {
   EXPECT_EQ(refusal("count(.) == 2"), "");
   EXPECT_EQ(refusal("count([0].bits) > count([1].bits)"), "");
   EXPECT_EQ(refusal("count == 0", List{}), "");
-  EXPECT_EQ(refusal("count([0].value) == 1"), "[0].value is no list: nothing can be counted");
+  EXPECT_EQ(refusal("count([0].value) == 1"), "[0].value is not a list and cannot be counted");
 }
 
 TEST(Expectation, OfWhatIsNotThereDoesNotHold) {

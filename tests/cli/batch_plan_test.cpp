@@ -104,7 +104,7 @@ TEST(BatchLoop, TakesTheLinesOfACsvFileBesideIt) {
   EXPECT_EQ(said("for AXIS in axes.csv\nread ${AXIS.volts}\nend"),
             Words{"2! nothing is known of ${AXIS.volts} [AXIS=axes.csv:2]"});
   EXPECT_EQ(said("for AXIS in nobody.csv\nend").size(), 1U);
-  EXPECT_EQ(said("for AXIS in axes.csv 1\nend"), Words{"1! a CSV file is the only word of its list"});
+  EXPECT_EQ(said("for AXIS in axes.csv 1\nend"), Words{"1! a CSV file must stand alone in its list"});
 }
 
 TEST(BatchLoop, WithoutSenseIsRefused) {
@@ -138,7 +138,7 @@ TEST(BatchVariables, DoNotMakeAFileWithoutEnd) {
   const auto made = plan(line);
   ASSERT_EQ(made.errors.size(), 1U);
   EXPECT_EQ(made.errors[0].message.substr(0, 64),
-            "with its variables filled in the file has more than 16 MiB [A=20");
+            "with its variables expanded the file exceeds 16 MiB [A=20");
   EXPECT_LT(made.steps.size(), 2'200U);
 }
 
@@ -171,8 +171,8 @@ TEST(BatchStatement, WaitPauseAndOnErrorAreTakenApart) {
 TEST(BatchStatement, ErrorsNameTheirLinesAllAtOnce) {
   EXPECT_EQ(said("wait\nwait soon\non-error\non-error go\nset A\nset\nread \"open\nexpect\nexpect .a = 5\n"
                  "4 r 0x1000\nscan"),
-            (Words{"11 scan", "1! 'wait' takes a time", "2! wait: 'soon' is no time",
-                   "3! 'on-error' takes one word", "4! 'on-error' takes one word", "5! 'A' is no NAME=VALUE",
+            (Words{"11 scan", "1! 'wait' takes a time", "2! wait: 'soon' is not a time",
+                   "3! 'on-error' takes one argument", "4! 'on-error' takes one argument", "5! 'A' is not NAME=VALUE",
                    "6! 'set' needs NAME=VALUE", "7! the quote \" is not closed",
                    "8! a value is missing in the expression", "9! '=' compares nothing",
                    "10! CiA 309-3: a read takes INDEX SUB [TYPE]"}));
@@ -183,8 +183,8 @@ TEST(BatchStatement, ThatALoopRepeatsIsRefusedOnceWithItsRound) {
   EXPECT_EQ(said("for N in 1-2\nfor AXIS in axes.csv\nset A=${N}${AXIS.volts} ${AXIS.node}\nset "
                  "${AXIS.node}\nend\nend"),
             (Words{"3! nothing is known of ${AXIS.volts} [N=1 AXIS=axes.csv:2]",
-                   "4! '1' is no NAME=VALUE [N=1 AXIS=axes.csv:2]",
-                   "4! '2' is no NAME=VALUE [N=1 AXIS=axes.csv:3]"}));
+                   "4! '1' is not NAME=VALUE [N=1 AXIS=axes.csv:2]",
+                   "4! '2' is not NAME=VALUE [N=1 AXIS=axes.csv:3]"}));
   const auto made = plan("for AXIS in axes.csv\nread 0x1000\nend\nscan");
   EXPECT_EQ(made.steps.at(1).round, "AXIS=axes.csv:3");
   EXPECT_EQ(made.steps.at(2).round, "");

@@ -57,7 +57,7 @@ TEST_F(BatchTest, ThatStopsInTheMiddleLeavesNoDriveEnergised) {
   for (const auto* up : {"enable -y", "write 0x6040 6\nwrite 0x6040 7\nwrite 0x6040 15 -y",
                          "nmt start -y\npdo send RPDO1 6 -y\npdo send RPDO1 7 -y\npdo send RPDO1 15 -y"}) {
     EXPECT_EQ(run(std::string("use 1\n") + up + "\nread 0x5FFF\nread 0x6061"), 5) << console.err_text;
-    EXPECT_TRUE(told("notice: node 1 was left energised; it is stopped and disabled now\n"));
+    EXPECT_TRUE(told("notice: node 1 was still energised; it has been stopped and disabled\n"));
     EXPECT_EQ(run("use 1\nstatus\nexpect .energised == false"), 0) << console.out_text << console.err_text;
     EXPECT_FALSE(told("left energised"));
   }
@@ -111,10 +111,10 @@ TEST_F(BatchTest, TellsAllErrorsBeforeTheFirstLineIsRun) {
           "run other.txt\nread 0x6041 -n 1 --type u7"),
       2);
   for (const auto* text :
-       {":2: Pn0202 Position loop gain 1: 30000 is out of range", ":3: 'fly' is no command",
+       {":2: Pn0202 Position loop gain 1: 30000 is out of range", ":3: 'fly' is not a command",
         ":4: 'read' needs a node", ":5: ", ":6: ", ":7: write: there is no option '--colour'",
-        ":8: Statusword is read-only", ":9: wait: 'x' is no time", ":10: '200' is no node-ID",
-        ":11: 'run' cannot be a line of a batch file", ":12: "})
+        ":8: Statusword is read-only", ":9: wait: 'x' is not a time", ":10: '200' is not a node-ID",
+        ":11: 'run' is not allowed in a batch file", ":12: "})
     EXPECT_TRUE(told("standard input" + std::string(text))) << text << "\n" << console.err_text;
   EXPECT_FALSE(told(":1:"));
   EXPECT_EQ(shell.session(), nullptr);
@@ -139,7 +139,7 @@ TEST_F(BatchTest, ChecksWithoutABus) {
 TEST_F(BatchTest, SaysWhichFamilyIsMissing) {
   shell.defaults().drive.clear();
   EXPECT_EQ(run("use 1\nparam get Pn0214"), 2);
-  EXPECT_TRUE(told(":2: 'param get' needs to know the drive family"));
+  EXPECT_TRUE(told(":2: 'param get' needs the drive family"));
   EXPECT_EQ(run("use 1\ndrive gsd600\nparam get Pn0214"), 0);
   EXPECT_EQ(run("use 1\nparam get Pn0214 -d gsd600"), 0);
   EXPECT_EQ(run("use 1\nparam get Pn0214", {"-d", "gsd600"}), 0);
@@ -165,7 +165,7 @@ TEST_F(BatchTest, TakesItsOptionsAsTheDefaultsOfAllLines) {
   EXPECT_EQ(run("param set Pn0214 ${GAIN}\nexpect .value == ${GAIN}", {"-n", "2", "--var", "GAIN=44"}), 1);
   EXPECT_EQ(run("read ${A} ${B}", {"-n", "2", "--var", "A=0x1000", "--var", "B=0x1001"}), 0);
   EXPECT_EQ(run("scan", {"--var", "A"}), 2);
-  EXPECT_TRUE(told("error: --var: 'A' is no NAME=VALUE"));
+  EXPECT_TRUE(told("error: --var: 'A' is not NAME=VALUE"));
 }
 
 TEST_F(BatchTest, LeavesTheDefaultsOfThePromptAsTheyWere) {
@@ -189,7 +189,7 @@ TEST_F(BatchTest, WaitsOnTheClockOfTheBusAndTellsWhatItHearsMeanwhile) {
 
 TEST_F(BatchTest, PausesOnATerminalOnly) {
   EXPECT_EQ(run("pause \"remove the load\""), 0);
-  EXPECT_TRUE(told("notice: no terminal, not paused: remove the load\n"));
+  EXPECT_TRUE(told("notice: no terminal, pause skipped: remove the load\n"));
   EXPECT_TRUE(console.pauses.empty());
   console.person = true;
   EXPECT_EQ(run("pause \"remove the load\""), 0);
@@ -238,7 +238,7 @@ TEST_F(BatchTest, EndsAtExit) {
 TEST_F(BatchTest, RunsFromThePromptButNotFromItsOwnInput) {
   LineRunner runner(shell);
   EXPECT_EQ(runner.run("run -"), 2);
-  EXPECT_TRUE(told("standard input is where these lines come from"));
+  EXPECT_TRUE(told("standard input already supplies these lines"));
   EXPECT_EQ(runner.run("run no/such/file"), 7);
   EXPECT_EQ(runner.run("run"), 2);
   EXPECT_EQ(runner.run("run --help"), 0);
@@ -269,7 +269,7 @@ TEST_F(BatchTest, SyncEndsWithTheFile) {
 TEST_F(BatchTest, ThereIsOneSyncAtATime) {
   for (const auto* second : {"sync start -y", "sync once -y", "sync start --for 10ms -y"}) {
     EXPECT_EQ(run(std::string("sync start --period 5ms -y\n") + second), 8);
-    EXPECT_TRUE(told("SYNC is produced already, every 5 ms"));
+    EXPECT_TRUE(told("SYNC is already being produced, every 5 ms"));
   }
   EXPECT_EQ(run("sync start --period 5ms -y\nsync stop\nsync once -y\nsync start --for 10ms -y"), 0);
 }

@@ -56,7 +56,7 @@ TEST_F(ForeignInput, NamesTheEntriesThatCannotBeUsedAndLeavesThemOutWhenItIsTold
   EXPECT_EQ(run("restore %t.dcf --yes"), 7);
   EXPECT_NE(console.err_text.find("--skip-invalid leaves these 2 out"), std::string::npos)
       << console.err_text;
-  EXPECT_NE(console.err_text.find("'many' is no number"), std::string::npos) << console.err_text;
+  EXPECT_NE(console.err_text.find("'many' is not a number"), std::string::npos) << console.err_text;
   EXPECT_NE(console.err_text.find("0x5FFF:0 is unknown to gsd600"), std::string::npos) << console.err_text;
   EXPECT_EQ(run("diff %t.dcf factory"), 7);
   EXPECT_EQ(run("diff %t.dcf factory --skip-invalid"), 1) << console.err_text;

@@ -66,7 +66,7 @@ TEST(ParseLine, TakesEveryWordBehindTwoDashesAsAValue) {
   ASSERT_TRUE(many) << many.error().message;
   const auto all = many->arguments.all("object");
   EXPECT_EQ(Words(all.begin(), all.end()), (Words{"a", "[b,c]", "--", "--yes"}));
-  EXPECT_EQ(parse_line({"write", "a", "b", "--", "c"}).error().message, "write: 'c' is one word too many");
+  EXPECT_EQ(parse_line({"write", "a", "b", "--", "c"}).error().message, "write: unexpected argument 'c'");
   EXPECT_EQ(parse_line({"write", "a", "{}"})->arguments.text("value"), "{}");
 }
 
@@ -173,7 +173,7 @@ TEST_F(ShellTest, TellsATraceThatCannotBeWrittenAndDoesWhatItWasAskedFor) {
   EXPECT_EQ(run("read 0x6041 -n 1 --trace /dev/full"), 7);
   EXPECT_NE(console.out_text.find("0x6041"), std::string::npos) << console.out_text;
   EXPECT_NE(console.err_text.find("error: cannot write the trace /dev/full: No space left on device\n"
-                                  "  hint: the trace ends here; the bus goes on without it\n"),
+                                  "  hint: the trace ends here; the command continues without it\n"),
             std::string::npos)
       << console.err_text;
   EXPECT_EQ(run("read 0x6041 -n 1 --trace /dev/full"), 0) << "the bus goes on without it";

@@ -166,7 +166,7 @@ with tempfile.TemporaryDirectory() as state:
         t.see(r"ENERGISED, and stays so")
         if ending == "exit":
             t.type("exit\n")
-            t.see(r"node 1 was left energised; it is stopped and disabled now")
+            t.see(r"node 1 was still energised; it has been stopped and disabled")
         else:
             os.close(t.fd)
         end = time.monotonic() + 10

@@ -148,7 +148,7 @@ with tempfile.TemporaryDirectory() as work:
     servoctl("report", f"{work}/en.html", "-n", "1,2", "-b", "sim:gsd600@1,gsd600@2?fault=0xFF00@1ms", "-d", "gsd600",
              "--title", "Press 3 <b>", "--tests", f"{work}/jog.json")
     dom, text = look_at(f"{work}/en.html", ["Press 3 &lt;b&gt;", "Summary", "Bus", "Node 1", "Node 2", "Identity", "State",
-                                            "Faults", "Settings that differ from the factory's",
+                                            "Faults", "Settings that differ from factory values",
                                             "Process data (PDO)", "Tests"], 1)
     check("the paper carries the title", "Press 3 <b>" in text)
     for value in ("0x00020192", "Servo alarm", "servoctl 0.", "Controlword"):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A motion goes to its end, and the drive is left without power, when whoever reads the output does not read it, is a
+"""A motion goes to its end, and the drive is left de-energised, when whoever reads the output does not read it, is a
 terminal held by Ctrl-S, or a socket; what was not read then comes afterwards.
 usage: stalled_reader_test.py SERVOCTL"""
 import fcntl

@@ -211,7 +211,7 @@ TEST_F(WrongFamily, RefusesNoWayOut) {
 
 TEST_F(WrongFamily, RefusesWhatTheIssueNames) {
   EXPECT_EQ(run("jog 60rpm --turn 131072 --for 600ms", "da200", "gsd600"), 8);
-  EXPECT_NE(said.find("its 0x1000:0 is 0x04020200, that of gsd600 is 0x00020192"), std::string::npos) << said;
+  EXPECT_NE(said.find("its 0x1000:0 is 0x04020200, but gsd600 has 0x00020192"), std::string::npos) << said;
   EXPECT_NE(said.find("add -d da200"), std::string::npos) << said;
   EXPECT_EQ(run("jog 60rpm --turn 10000 --for 600ms", "gsd600", "da200"), 8);
   EXPECT_EQ(run("backup %b.json", "dm", "gsd600"), 8);

@@ -38,11 +38,11 @@ TEST_F(Neighbours, TwoTpdosDoNotGetOneCanId) {
 
 TEST_F(Neighbours, ATpdoDoesNotCommandAnotherDrive) {
   expect_refused("TPDO1", "statusword", "0x202",
-                 "RPDO1 of node 2: what the one sends would command the other");
+                 "RPDO1 of node 2: what one sends would control the other");
 }
 
 TEST_F(Neighbours, TwoDrivesAreNotCommandedByOneFrame) {
-  expect_refused("RPDO1", "controlword", "0x202", "RPDO1 of node 2: one frame would command both");
+  expect_refused("RPDO1", "controlword", "0x202", "RPDO1 of node 2: one frame would control both");
 }
 
 TEST_F(Neighbours, ALinkFromTheTpdoOfAnotherIsTold) {
@@ -66,7 +66,7 @@ TEST_F(Neighbours, SeveralNodesAreNotGivenOneCanIdByAFile) {
   const auto result = run("pdo apply", {{"file", file.string()}});
   ASSERT_FALSE(result);
   EXPECT_EQ(result.error().code, Errc::refused) << result.error().message;
-  EXPECT_NE(result.error().message.find("one frame would command both"), std::string::npos)
+  EXPECT_NE(result.error().message.find("one frame would control both"), std::string::npos)
       << result.error().message;
 }
 

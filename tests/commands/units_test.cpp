@@ -138,14 +138,14 @@ TEST_F(Units, GiveWayToWhatIsSaidAndToWhatTheDriveTells) {
   EXPECT_EQ(notices.find("kept"), std::string::npos) << notices;
   EXPECT_NE(
       notices.find(
-          "a turn is 131072 increments of 6064h by what the drive's parameters are set to; Pn0458, Pn0456, "
+          "131072 increments of 6064h per revolution, from the drive's parameters; Pn0458, Pn0456, "
           "Pn0462, Pn0464 take effect when the drive is restarted"),
       std::string::npos)
       << notices;
   ASSERT_TRUE(jog({{"--turn", "131072"}})) << error;
   EXPECT_EQ(notices.find("restarted"), std::string::npos) << notices;
   EXPECT_FALSE(learn());
-  EXPECT_NE(error.find("its own parameters tell that a turn has 131072 increments when they are in force"),
+  EXPECT_NE(error.find("its own parameters tell that a turn has 131072 increments once they take effect"),
             std::string::npos)
       << error;
 }

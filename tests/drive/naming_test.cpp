@@ -101,7 +101,7 @@ TEST(Resolve, RefusesAParameterThatHasNoObject) {
   const auto p = profile();
   const auto target = resolve(&p, "Xn9");
   ASSERT_FALSE(target);
-  EXPECT_EQ(target.error().message, "Xn0009 (Panel brightness) has no object on the bus");
+  EXPECT_EQ(target.error().message, "Xn0009 (Panel brightness) has no CANopen object");
   EXPECT_TRUE(resolve_parameter(p, "Xn9"));
 }
 

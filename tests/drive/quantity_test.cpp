@@ -63,12 +63,12 @@ TEST(Quantity, WithAUnitIsConvertedExactly) {
 }
 
 TEST(Quantity, ThatDoesNotComeOutExactIsRefusedWithTheNearest) {
-  expect_refused(hertz(), "40.05Hz", "'40.05Hz' is 400.5 steps of 0.1 Hz: not a whole number",
+  expect_refused(hertz(), "40.05Hz", "'40.05Hz' is 400.5 steps of 0.1 Hz, not a whole number",
                  "the nearest value is 40 Hz");
 }
 
 TEST(Quantity, InAForeignUnitIsRefused) {
-  expect_refused(hertz(), "45rpm", "'45rpm': the unit of this object is Hz, which rpm cannot be converted to",
+  expect_refused(hertz(), "45rpm", "'45rpm': the unit of this object is Hz; rpm cannot be converted to it",
                  "write a value in Hz or the raw number");
   auto plain = hertz();
   plain.unit = "";
@@ -94,7 +94,7 @@ TEST(Quantity, ThatIsNeitherNothingNorEnoughIsRefused) {
                    "0 switches it off");
   period.least_assumed = true;
   expect_refused(period, "1", "1 is out of range: 0, or at least 1000",
-                 "0 switches it off; that 1000 is the least is assumed: its manual may mean the step");
+                 "0 switches it off; the minimum 1000 is assumed: the manual may mean the step size");
   period.max = od::Value(std::uint64_t{5000});
   EXPECT_EQ(range_text(period), "0, or 1000..5000");
   expect_refused(period, "5001", "5001 is out of range: 0, or 1000..5000", "");
@@ -114,7 +114,7 @@ TEST(Quantity, MayBeALabelInEitherLanguage) {
   const auto mode = labelled(labels);
   EXPECT_EQ(unsigned_of(parse_quantity(mode, "canopen")), 8U);
   EXPECT_EQ(unsigned_of(parse_quantity(mode, "位置模式")), 0U);
-  expect_refused(mode, "speed", "'speed' is no value of this object", "values: 0 Position mode, 8 CANopen");
+  expect_refused(mode, "speed", "'speed' is not a value of this object", "values: 0 Position mode, 8 CANopen");
   ASSERT_NE(label_of(mode, od::Value(std::uint64_t{8})), nullptr);
   EXPECT_EQ(label_of(mode, od::Value(std::uint64_t{1})), nullptr);
 }

@@ -24,7 +24,7 @@ Look look(MotionBench& bench) {
 TEST(Cautions, AboutParametersThatNobodyCanReadAreToldAlways) {
   MotionBench bench("sv2");
   const auto told = look(bench);
-  EXPECT_TRUE(told.has("PA-20 cannot be read (look at the panel): PA-20 = 1 ignores the limit inputs"));
+  EXPECT_TRUE(told.has("PA-20 cannot be read (check the panel): PA-20 = 1 ignores the limit inputs"));
   EXPECT_TRUE(told.has("PA-74 cannot be read"));
 }
 
@@ -66,7 +66,7 @@ TEST(LostCommunication, ThatTheManualNamesAnAlarmForIsNotSaidToStopNothing) {
     EXPECT_FALSE(told.has("none: nothing stops the drive")) << family;
   }
   WatchdogPlan nothing;
-  EXPECT_EQ(to_string(nothing), "none: nothing stops the drive when the cable is cut or servoctl dies");
+  EXPECT_EQ(to_string(nothing), "none: nothing stops the drive if the cable is cut or servoctl dies");
   nothing.alarms = {"AL.20"};
   EXPECT_NE(to_string(nothing).find("alarm AL.20 for a lost communication"), std::string::npos);
 }

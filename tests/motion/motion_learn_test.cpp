@@ -176,7 +176,7 @@ TEST(Learn, RefusesAMonitorThatShowsASpeedAtRest) {
   LearnBench bench(131072);
   bench.lie([](double) { return 300.; });
   const auto done = bench.learn();
-  expect_refused(bench, done, "has no power, and Pn1002 shows 30 rpm");
+  expect_refused(bench, done, "is not energised, but Pn1002 shows 30 rpm");
   EXPECT_FALSE(done.motion.begun);
 }
 
@@ -188,7 +188,7 @@ TEST(Learn, StopsAtOnceWhenTheMotorTurnsFasterThanWanted) {
 TEST(Learn, NoticesAMotorThatDoesNotTurn) {
   LearnBench bench(131072);
   bench.drive().axis_faults().stalled = true;
-  expect_refused(bench, bench.learn(), "does not turn although it was told to");
+  expect_refused(bench, bench.learn(), "does not turn although commanded to");
 }
 
 TEST(Learn, LeavesTheDriveWithoutPowerWhenItIsInterruptedAnywhere) {

@@ -97,7 +97,7 @@ TEST_F(MotionTrouble, AValueTheDriveWouldRefuseIsNotPutBackButTold) {
   EXPECT_EQ(own.drive().power_state(), DriveState::switch_on_disabled);
   ASSERT_EQ(done.end.notes.size(), 1U);
   EXPECT_EQ(done.end.notes[0],
-            "object 0x6098:0 keeps its new value: the one before, 00, is out of its range");
+            "object 0x6098:0 keeps its new value: its old value, 00, is out of its range");
 }
 
 TEST_F(MotionTrouble, AMethodThatMeansNoHomingIsRefused) {

@@ -136,7 +136,7 @@ TEST_F(Measured, AJogAtHalfItsSpeedIsDoneBut) {
   const auto done = bench.jog(jog_for("60rpm", 2s));
   ASSERT_TRUE(done.outcome) << done.outcome.error().message;
   ASSERT_EQ(done.differences.size(), 1U);
-  EXPECT_EQ(done.differences.front(), "the speed was 30 rpm; 60 rpm was asked for");
+  EXPECT_EQ(done.differences.front(), "the speed was 30 rpm; 60 rpm was commanded");
   EXPECT_FALSE(bench.energised());
 }
 
@@ -191,7 +191,7 @@ TEST_F(Measured, KeysThatNobodyHoldsForFiveSecondsEndTheJog) {
   EXPECT_GT(took, 9s);
   EXPECT_LT(took, 13s);
   ASSERT_EQ(done.unchecked.size(), 1U);
-  EXPECT_EQ(done.unchecked.front(), "no key was held for 5 s: it has ended by itself");
+  EXPECT_EQ(done.unchecked.front(), "no key was held for 5 s: the jog has ended");
   EXPECT_FALSE(bench.energised());
 }
 

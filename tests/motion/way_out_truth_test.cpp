@@ -105,7 +105,7 @@ TEST_P(WayOutInTrouble, AWordThatIsAcknowledgedAndNotTakenIsNoEnd) {
   const auto done = bench.jog(jog_for("60rpm", 3s));
   ASSERT_FALSE(done.end.left.empty());
   EXPECT_NE(done.end.left.front().find(
-                "6040h has not taken 0000h (the write was acknowledged, and it still reads 0x"),
+                "6040h has not taken 0000h (the write was acknowledged, but it still reads 0x"),
             std::string::npos)
       << done.end.left.front();
 }

@@ -100,21 +100,21 @@ TEST(Dcf, NeverLosesAValueSilently) {
   const auto with = [](std::string_view from, std::string_view to) { return replaced(kSheet, from, to); };
   EXPECT_EQ(refusal(kSheet), "taken");
   EXPECT_EQ(refusal(with("ParameterValue=7", "ParameterValue=seven")),
-            "x.dcf:49: ParameterValue: 'seven' is no number");
+            "x.dcf:49: ParameterValue: 'seven' is not a number");
   EXPECT_EQ(refusal(with("ParameterValue=7", "ParameterValue=0x1FFFFFFFF")),
             "x.dcf:49: ParameterValue: 0x1FFFFFFFF does not fit i32 (-2147483648..2147483647)");
   EXPECT_EQ(refusal(with("ParameterValue=7", "ParameterValue=7\nParameterValue=8")),
             "x.dcf:50: [6065] has a second ParameterValue");
   EXPECT_EQ(refusal(with("DataType=4\nAccessType=rw\n", "AccessType=rw\n")).substr(0, 9), "x.dcf:45:");
   EXPECT_EQ(refusal(kSheet + "[6065]\nParameterValue=9\n"),
-            "x.dcf:58: [6065] stands here again, first in line 45; the first one counts");
+            "x.dcf:58: [6065] appears again, first in line 45; the first one is used");
   EXPECT_EQ(refusal(kSheet + "[Elsewhere]\nParameterValue=9\n"),
             "x.dcf:59: [Elsewhere] describes no object that could hold the value");
   EXPECT_EQ(refusal(kSheet + "[1600Value]\n4=9\n"),
             "x.dcf:59: [1600Value] describes no object that could hold the value");
   EXPECT_EQ(refusal(kSheet + "[1600Value]\n1=9\n01=8\n"), "x.dcf:60: [1600Value] has a second entry 1");
   EXPECT_EQ(refusal(kSheet + "[1600Value]\none=9\n"), "x.dcf:59: [1600Value] has no entry 'one'");
-  EXPECT_EQ(refusal(with("ParameterValue=7\n", "")), "x.dcf: there is no ParameterValue in it");
+  EXPECT_EQ(refusal(with("ParameterValue=7\n", "")), "x.dcf: it contains no ParameterValue");
 }
 
 /// Entries of an array, each with its own section, or as a compact list.

@@ -27,7 +27,7 @@ TEST(EdsBounds, RefuseAFileAboveTheLimitUnread) {
   const auto file = read_in_time(std::string(kMostEdsBytes + 1, 'x'));
   ASSERT_FALSE(file);
   EXPECT_EQ(file.error().code, Errc::file);
-  EXPECT_EQ(file.error().message, "x.eds: 32 MiB are too many for an EDS");
+  EXPECT_EQ(file.error().message, "x.eds: 32 MiB is too large for an EDS");
 }
 
 TEST(EdsBounds, ReadAFileAtTheLimit) {
@@ -42,7 +42,7 @@ TEST(EdsBounds, RefuseBytesThatAreNoText) {
   for (auto& c : text) c = static_cast<char>(random());
   const auto file = read_in_time(text);
   ASSERT_FALSE(file);
-  EXPECT_EQ(file.error().message, "x.eds: this is no text");
+  EXPECT_EQ(file.error().message, "x.eds: not a text file");
 }
 
 TEST(EdsBounds, HoldForOneLongLine) {

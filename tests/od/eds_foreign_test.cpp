@@ -214,9 +214,9 @@ TEST(EdsSheet, HasADeviceAndTheObjectsOfEveryDevice) {
   };
   EXPECT_EQ(missing(variable("2000", "7", "")),
             (std::vector<std::string>{"there is no [DeviceInfo]",
-                                      "1000 (device type) is missing: every device has it",
-                                      "1001 (error register) is missing: every device has it",
-                                      "1018 (identity) is missing: every device has it"}));
+                                      "1000 (device type) is missing: it is mandatory",
+                                      "1001 (error register) is missing: it is mandatory",
+                                      "1018 (identity) is missing: it is mandatory"}));
   EXPECT_EQ(missing("[DeviceInfo]\nVendorName=A\n" + variable("1000", "7", "") + variable("1001", "5", "") +
                     "[1018]\nParameterName=I\nObjectType=9\nSubNumber=2\n" +
                     variable("1018sub0", "5", "DefaultValue=1") + variable("1018sub1", "7", "")),
@@ -237,7 +237,7 @@ TEST(EdsList, WithAnObjectTwiceOrInTheWrongListIsTold) {
       (Rules{"3:3 listed-twice", "8:3 listed-twice"}));
   const auto file = read("[OptionalObjects]\n1=0x2000\n" + variable("2000", "7", ""));
   EXPECT_EQ(file.diagnostics.front().message,
-            "0x2000 is in OptionalObjects, and belongs into ManufacturerObjects");
+            "0x2000 is in OptionalObjects but belongs in ManufacturerObjects");
 }
 
 /// A TPDO that maps this, by default, beside 2000h (u16), 2001h (bool) and 2002h (string).

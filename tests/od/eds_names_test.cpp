@@ -111,7 +111,7 @@ TEST(EdsAccess, ThatIsNoneIsReadOnly) {
   };
   EXPECT_EQ(with("constxyz").diagnostics.front().remedy, "did you mean const?");
   EXPECT_EQ(with("whatever").diagnostics.front().remedy, "write ro, rw, wo, const, rwr or rww");
-  EXPECT_EQ(with("whatever").diagnostics.front().message, "'whatever' is no access type; taken as ro");
+  EXPECT_EQ(with("whatever").diagnostics.front().message, "'whatever' is not an access type; taken as ro");
   for (const auto* word : {"whatever", ""}) {
     EXPECT_EQ(with(word).dictionary.find({0x2000, 0})->access, Access::ro);
     EXPECT_EQ(with(word).dictionary.find({0x2000, 0})->pdo, PdoMapping::tpdo);

@@ -93,7 +93,7 @@ TEST(Parameters, WithABadCellAreRefusedWithFileLineAndColumn) {
 }
 
 TEST(Parameters, ThatStandTwiceAreRefused) {
-  expect_refused("X,,u8,rw,,,,,,,,,N,,,,,,,1\nx,,u8,rw,,,,,,,,,M,,,,,,,1\n", "p.csv:3: x stands here twice");
+  expect_refused("X,,u8,rw,,,,,,,,,N,,,,,,,1\nx,,u8,rw,,,,,,,,,M,,,,,,,1\n", "p.csv:3: x appears twice");
   expect_refused("X,0x2000:1,u8,rw,,,,,,,,,N,,,,,,,1\nY,0x2000:01,u8,rw,,,,,,,,,M,,,,,,,1\n",
                  "p.csv:3: Y: object 0x2000:1 belongs to another parameter as well");
 }

@@ -46,8 +46,8 @@ TEST(Value, OutsideItsTypeIsRefusedWithTheRange) {
   expect_refused(DataType::i24, "8388608", "8388608 does not fit i24 (-8388608..8388607)");
   expect_refused(DataType::i64, "9223372036854775808",
                  "9223372036854775808 does not fit i64 (-9223372036854775808..9223372036854775807)");
-  expect_refused(DataType::u32, "fast", "'fast' is no number");
-  expect_refused(DataType::u64, "18446744073709551616", "'18446744073709551616' is no number");
+  expect_refused(DataType::u32, "fast", "'fast' is not a number");
+  expect_refused(DataType::u64, "18446744073709551616", "'18446744073709551616' is not a number");
   expect_refused(DataType::boolean, "2", "2 does not fit bool (0..1)");
   expect_refused(DataType::f32, "fast", "'fast' is no f32");
   expect_refused(DataType::domain, "hex:0", "'hex:0' is no domain");
@@ -67,7 +67,7 @@ TEST(Value, OfTheWrongLengthIsRefused) {
   const auto value = decode(DataType::u16, three);
   ASSERT_FALSE(value);
   EXPECT_EQ(value.error().code, Errc::protocol);
-  EXPECT_EQ(value.error().message, "3 bytes came, u16 has 2");
+  EXPECT_EQ(value.error().message, "3 bytes received, u16 has 2");
 }
 
 TEST(Value, OfAStringLosesTrailingNulsOnly) {

@@ -40,7 +40,7 @@ check_link() {
     after=$(state "$family")
     # A drive whose watchdog has tripped meanwhile starts anew.
     case $after in *fault*) "$servoctl" nmt reset -n 1 --bus can1 --wait --yes >/dev/null ;; esac
-    grep -q 'sent an emergency, 0x8130, while it moved' "$work/err" || break
+    grep -q 'sent emergency 0x8130 while moving' "$work/err" || break
     echo "$family, $how: this machine stood still in try $try"
   done
   case $after in false*) ;; *) fail "$family, $how: the drive is '$after'"; cat "$work/err" ;; esac

@@ -126,8 +126,8 @@ if [ "${VCAN_GUEST:-}" = uml ]; then
   ip link set can0 up
   wait $client
   check "exit code of a batch file that lost the bus" 3 $?
-  contains "it warns at once" "error: NODE 1 MAY STILL BE ENERGISED: TAKE THE POWER AWAY: can0 was lost" "$(cat "$work/lost")"
-  contains "it disables the drive when the bus is back" "notice: node 1 was left energised; it is stopped and disabled now" "$(cat "$work/lost")"
+  contains "it warns at once" "error: NODE 1 MAY STILL BE ENERGISED: SWITCH OFF THE SUPPLY: can0 was lost" "$(cat "$work/lost")"
+  contains "it disables the drive when the bus is back" "notice: node 1 was still energised; it has been stopped and disabled" "$(cat "$work/lost")"
   check "the drive has no power" false "$("$servoctl" status -n 1 --bus can0 --json | jq '.result[0].energised')"
   printf 'sp140000\r' >/dev/can0.inject
   sleep 0.3

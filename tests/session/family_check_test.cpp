@@ -122,7 +122,7 @@ TEST(FamilyCheck, OffersWhatFitsAndTheGenericFamilyLast) {
 TEST(FamilyCheck, NamesTheObjectAndBothValues) {
   const auto verdict = judge(identity_of("da200"), profile("gsd600"));
   EXPECT_EQ(verdict.object, (ObjectAddress{0x1000, 0}));
-  EXPECT_EQ(verdict.why, "its 0x1000:0 is 0x04020200, that of gsd600 is 0x00020192");
+  EXPECT_EQ(verdict.why, "its 0x1000:0 is 0x04020200, but gsd600 has 0x00020192");
   const auto by_other = judge(identity_of("dm"), profile("ts"));
   EXPECT_NE(by_other.why.find("its identity is that of dm (0x1000:0 = 0x00030000"), std::string::npos)
       << by_other.why;

@@ -117,7 +117,7 @@ TEST_F(HostileBus, HintsAtAnotherMasterWhenItsTransferFails) {
   };
   const auto answer = read_status();
   EXPECT_EQ(answer.error().code, Errc::timeout);
-  EXPECT_EQ(answer.error().hint, "another master talks to this node by SDO as well");
+  EXPECT_EQ(answer.error().hint, "another master is also using SDO with this node");
 }
 
 TEST_F(HostileBus, EndsAtOnceWhenTheControllerGoesBusOff) {
@@ -165,7 +165,7 @@ TEST_F(HostileBus, LooksUpAWriteInWhichTheNodeBooted) {
   ASSERT_FALSE(written.front());
   EXPECT_EQ(
       written.front().error().message,
-      "node 2, object 0x6060:0: the write was sent, the answer never came, and it had no effect: the object "
+      "node 2, object 0x6060:0: the write was sent, but no answer came, and it had no effect: the object "
       "still holds 01");
   EXPECT_EQ(std::count(bus->sent.begin(), bus->sent.end(), "602#2F60600003000000"), 1);
 }

@@ -170,7 +170,7 @@ TEST_F(SessionTest, SaysSoWhenAWriteWithoutAnswerHadNoEffect) {
   EXPECT_EQ(written.front().error().code, Errc::timeout);
   EXPECT_EQ(
       written.front().error().message,
-      "node 1, object 0x6060:0: the write was sent, the answer never came, and it had no effect: the object "
+      "node 1, object 0x6060:0: the write was sent, but no answer came, and it had no effect: the object "
       "still holds 01");
 }
 

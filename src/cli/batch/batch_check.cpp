@@ -60,7 +60,7 @@ class Check {
     context.drive_folders = shell_->drive_folders();
     if (settings.drive.empty()) {
       if (!includes(command.needs, Needs::dictionary)) return {};
-      return fail(Errc::usage, fmt::format("'{}' needs to know the drive family", command.path),
+      return fail(Errc::usage, fmt::format("'{}' needs the drive family", command.path),
                   "add -d FAMILY, or a line `drive FAMILY` before it; `drives` lists families");
     }
     const auto profile = shell_->profile(settings.drive);

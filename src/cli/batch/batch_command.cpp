@@ -34,7 +34,7 @@ class KeepDefaults {
 Result<std::string> read_batch(const std::string& file, std::istream* input) {
   if (file != "-") return read_file(file, kMostBytes);
   if (input == nullptr)
-    return fail(Errc::usage, "standard input is where these lines come from", "name a file");
+    return fail(Errc::usage, "standard input already supplies these lines", "name a file");
   return std::string(std::istreambuf_iterator<char>(*input), {});
 }
 
@@ -67,7 +67,7 @@ Outcome checked(const std::string& file, std::size_t lines, std::vector<Error> e
 
 Outcome planned(std::span<const Step> steps, const Settings& settings) {
   report::Table table;
-  table.columns = {{"line"}, {"text", "what is run"}};
+  table.columns = {{"line"}, {"text", "command"}};
   for (const auto& step : steps) table.rows.push_back({step.line, step.text});
   return {.command = std::string(kPath), .settings = settings, .result = std::move(table)};
 }

@@ -50,7 +50,7 @@ class Planner {
     if (++taken_ <= kMostTaken) return {};
     full_ = true;
     return fail(Errc::usage, fmt::format("the loops make more than {} lines", kMostTaken),
-                "one file for each machine or group of axes, run one after the other");
+                "use one file per machine or group of axes, run one after the other");
   }
 
   /// What the file has become with its variables filled in and its tables read.
@@ -59,8 +59,8 @@ class Planner {
     if (text_ <= kMostText) return {};
     full_ = true;
     return fail(Errc::usage,
-                fmt::format("with its variables filled in the file has more than {} MiB", kMostText >> 20U),
-                "is a variable longer than it should be?");
+                fmt::format("with its variables expanded the file exceeds {} MiB", kMostText >> 20U),
+                "is a variable too long?");
   }
 
   VariableLookup lookup() const {

@@ -34,7 +34,7 @@ struct Plan {
   std::vector<Error> errors;  ///< Each with its line; what a loop repeats is told once.
 };
 
-/// Errors of lines, each told once however often a loop runs into it.
+/// Errors of lines, each reported once however often a loop meets it.
 class LineErrors {
  public:
   /// Adds the error with its line and, behind its message, the round of the loop it was met in.

@@ -68,7 +68,7 @@ class BatchRun {
     Error error;
     error.code = Errc::interrupted;
     error.message = "interrupted";
-    error.hint = "the lines before it are done, what follows is not";
+    error.hint = "earlier lines were run, later ones were not";
     return error;
   }
 
@@ -100,7 +100,7 @@ class BatchRun {
     Outcome out{.command = "pause", .settings = shell_->defaults()};
     const auto text = fmt::format("{}", fmt::join(step.words, " "));
     if (!shell_->console().can_ask()) {
-      out.notices.push_back("no terminal, not paused: " + text);
+      out.notices.push_back("no terminal, pause skipped: " + text);
       return out;
     }
     shell_->console().pause(text);

@@ -153,7 +153,7 @@ Result<std::vector<Side>> sides(const Operand& operand, const report::Value& res
       continue;
     }
     const auto list = elements(part.value);
-    if (!list) return fail(Errc::negative, fmt::format("{} is no list: nothing can be counted", part.where));
+    if (!list) return fail(Errc::negative, fmt::format("{} is not a list and cannot be counted", part.where));
     out.push_back({part.where == "." ? "count" : "count(" + part.where + ")", list->size()});
   }
   return out;
@@ -206,7 +206,7 @@ Result<bool> compare(const Side& left, Comparator comparator, const Side& right)
   if (comparator == Comparator::unequal) return text(left.value) != text(right.value);
   const auto& wrong = a ? right : left;
   return fail(Errc::negative,
-              fmt::format("{}{} is no number: {} cannot compare it", wrong.where,
+              fmt::format("{}{} is not a number: {} cannot compare it", wrong.where,
                           wrong.where.empty() ? text(wrong.value) : " (" + report::to_json(wrong.value) + ")",
                           symbol(comparator)));
 }
@@ -220,7 +220,7 @@ tl::unexpected<Error> refuted(const Side& left, Comparator comparator, const Sid
       (comparator == Comparator::contains ? std::string("~") : std::string(symbol(comparator))) + " " +
       (right.where.empty() ? "" : right.where + " = ") + shown(right);
   return fail(Errc::negative, left.where.empty()
-                                  ? fmt::format("{} {} does not hold", shown(left), expected)
+                                  ? fmt::format("{} {} is not true", shown(left), expected)
                                   : fmt::format("{} is {}, expected {}", left.where, shown(left), expected));
 }
 
@@ -249,7 +249,7 @@ Result<Expression> parse_expression(std::string_view text, const VariableLookup&
     if (token->kind == Token::Kind::end) return out;
     if (token->kind != Token::Kind::word || token->text != "and")
       return fail(Errc::usage, fmt::format("'{}' does not belong here", token->text),
-                  "comparisons are joined by `and`; text with blanks stands in quotes");
+                  "join comparisons with `and`; put text with blanks in quotes");
   }
 }
 

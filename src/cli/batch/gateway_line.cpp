@@ -65,8 +65,8 @@ bool is_gateway_line(const GatewayLine& line) {
 Result<std::string> address(const GatewayLine& line) {
   const auto index = unsigned_number(line.words[1]);
   const auto sub = unsigned_number(line.words[2]);
-  if (!index || *index > 0xFFFF) return wrong(fmt::format("'{}' is no index", line.words[1]));
-  if (!sub || *sub > 0xFF) return wrong(fmt::format("'{}' is no sub-index", line.words[2]));
+  if (!index || *index > 0xFFFF) return wrong(fmt::format("'{}' is not an index", line.words[1]));
+  if (!sub || *sub > 0xFF) return wrong(fmt::format("'{}' is not a sub-index", line.words[2]));
   return to_string(ObjectAddress{static_cast<std::uint16_t>(*index), static_cast<std::uint8_t>(*sub)});
 }
 

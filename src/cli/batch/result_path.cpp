@@ -16,7 +16,7 @@ using report::Value;
 
 tl::unexpected<Error> no_path(std::string_view path) {
   return fail(Errc::usage, fmt::format("'{}' leads nowhere", path),
-              "write [0].value, .state or .fault.code: the names are those of --json");
+              "write [0].value, .state or .fault.code, with the names of --json");
 }
 
 /// What was kept as JSON, as values again.
@@ -63,7 +63,7 @@ Result<std::vector<Part>> take_step(const std::vector<Part>& from, const PathSte
         return fail(
             Errc::negative,
             fmt::format("{} has no element {}", part.where == "." ? "the result" : part.where, *step.element),
-            list ? fmt::format("it has {}", list->size()) : "it is no list");
+            list ? fmt::format("it has {}", list->size()) : "it is not a list");
       out.push_back({element_path(part.where, *step.element), (*list)[*step.element]});
       continue;
     }
@@ -74,7 +74,7 @@ Result<std::vector<Part>> take_step(const std::vector<Part>& from, const PathSte
       out.push_back(std::move(*field));
     }
   }
-  if (out.empty()) return fail(Errc::negative, "the result is an empty list: nothing can be compared");
+  if (out.empty()) return fail(Errc::negative, "the result is an empty list: nothing to compare");
   return out;
 }
 

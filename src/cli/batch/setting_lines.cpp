@@ -48,7 +48,7 @@ Result<std::vector<settings::SettingLine>> setting_lines(Shell& shell, std::stri
     if (step.kind != Step::Kind::command || is_exit(step.words))
       return in_line(file, step.line,
                      fail(Errc::file, fmt::format("'{}' writes no value", step.text),
-                          "to be read as settings, a batch file holds lines that write")
+                          "a batch file read as settings may only contain lines that write")
                          .value());
     auto next = chosen(shell, chosen_now, step.words);
     if (!next) return in_line(file, step.line, next.error());

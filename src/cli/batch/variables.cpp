@@ -24,8 +24,8 @@ struct Assignment {
 Result<Assignment> parse_assignment(std::string_view text) {
   const auto equals = text.find('=');
   if (equals == std::string_view::npos || !is_variable_name(text.substr(0, equals)))
-    return fail(Errc::usage, fmt::format("'{}' is no NAME=VALUE", text),
-                "a name has letters, digits and _; a value with blanks stands in quotes: NAME=\"two words\"");
+    return fail(Errc::usage, fmt::format("'{}' is not NAME=VALUE", text),
+                "a name has letters, digits and _; put a value with blanks in quotes: NAME=\"two words\"");
   if (text.size() - equals > kLongestValue)
     return fail(Errc::usage, fmt::format("the value of {} is too long", text.substr(0, equals)));
   return Assignment{std::string(text.substr(0, equals)), std::string(text.substr(equals + 1))};
@@ -79,7 +79,8 @@ Result<std::vector<LoopItem>> rows(const std::string& file, const std::filesyste
   const auto table = parse_csv(*text, file);
   if (!table) return fail(table.error());
   if (table->rows.empty())
-    return fail(Errc::file, file + " has no line below its heading", "one line for each round of the loop");
+    return fail(Errc::file, file + " has no line below its heading",
+                "one line per pass of the loop is needed");
   std::vector<LoopItem> out;
   for (const auto& row : table->rows) {
     LoopItem item{row.cells.front(), fmt::format("{}:{}", file, row.line)};
@@ -119,7 +120,7 @@ Result<std::string> Variables::value(std::string_view name) const {
   for (const auto& entry : values_) known.push_back(entry.first);
   auto hint = did_you_mean(name, known);
   if (hint.empty()) hint = fmt::format("`set {0}=VALUE`, or --var {0}=VALUE on the command line", name);
-  return fail(Errc::usage, fmt::format("nothing is known of ${{{}}}", name), std::move(hint));
+  return fail(Errc::usage, fmt::format("unknown variable ${{{}}}", name), std::move(hint));
 }
 
 Result<std::vector<LoopItem>> loop_items(std::span<const std::string> words,
@@ -127,7 +128,7 @@ Result<std::vector<LoopItem>> loop_items(std::span<const std::string> words,
   if (words.size() == 1 && names_csv(words.front())) return rows(words.front(), folder);
   std::vector<LoopItem> out;
   for (const auto& word : words) {
-    if (names_csv(word)) return fail(Errc::usage, "a CSV file is the only word of its list");
+    if (names_csv(word)) return fail(Errc::usage, "a CSV file must stand alone in its list");
     if (const auto added = add_word(out, word); !added) return fail(added.error());
   }
   if (out.empty()) return fail(Errc::usage, "the list of the loop is empty", "for NODE in 1-8");

@@ -30,7 +30,7 @@ class Console {
   virtual void wipe_line() {}
   /// Shows this line in place of the one shown before; an empty one wipes it. Only where somebody looks.
   virtual void show_progress(std::string_view line) = 0;
-  /// Asks a yes-or-no question; false when there is nobody to ask or the answer is no.
+  /// Asks a yes-or-no question; false if there is nobody to ask or the answer is no.
   virtual bool ask(std::string_view question) = 0;
   /// Shows the text and waits for Enter; only where can_ask().
   virtual void pause(std::string_view text) = 0;

@@ -18,9 +18,9 @@ const PromptWord* find_word(std::span<const PromptWord> all, const std::vector<s
 }  // namespace
 
 std::vector<PromptWord> prompt_words() {
-  return {{"use", "NODE", "take this node, list or `all` for the lines that follow"},
-          {"drive", "FAMILY", "take this drive family for the lines that follow"},
-          {"bus", "URL", "go to this bus"},
+  return {{"use", "NODE", "use this node, list or `all` for the following lines"},
+          {"drive", "FAMILY", "use this drive family for the following lines"},
+          {"bus", "URL", "switch to this bus"},
           {"exit", "", "leave (also quit, or Ctrl-D)"}};
 }
 
@@ -38,7 +38,7 @@ Result<Settings> chosen(Shell& shell, Settings defaults, const std::vector<std::
   const auto* word = find_word(all, words);
   if (word == nullptr) return defaults;
   if (words.size() != 2)
-    return fail(Errc::usage, fmt::format("'{}' takes one word", word->name),
+    return fail(Errc::usage, fmt::format("'{}' takes one argument", word->name),
                 fmt::format("{} {}: {}", word->name, word->argument, word->help));
   if (word->name == "use") {
     if (const auto parsed = parse_nodes(words[1]); !parsed) return fail(parsed.error());

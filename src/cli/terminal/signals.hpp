@@ -9,7 +9,7 @@ namespace servoctl::cli {
 /// with EINTR again and again.
 void install_signal_handlers();
 
-/// Told true while a drive is energised: no number of signals ends or stops the process then, because it has
+/// Set true while a drive is energised: no number of signals ends or stops the process then, because it has
 /// to stop the drive first. Ctrl-Z counts as Ctrl-C; one who reads or writes in the background is not
 /// stopped. A signal that comes in between is handled as before or as afterwards.
 void protect_from_signals(bool energised);
