@@ -3,10 +3,9 @@
 
 #include "base/number.hpp"
 #include "base/text.hpp"
-#include "canopen/cob_id.hpp"
+#include "canopen/node_list.hpp"
 #include "command/command.hpp"
 #include "command/setting_options.hpp"
-#include "settings/change.hpp"
 #include "settings/restoring.hpp"
 
 namespace servoctl::commands {
@@ -25,27 +24,13 @@ constexpr Parameter kParameters[] = {
     kResumeOption,
 };
 
-Result<std::vector<std::uint8_t>> nodes_of(std::string_view text) {
-  std::vector<std::uint8_t> out;
-  for (const auto part : split(text, ',')) {
-    const auto dash = part.find('-');
-    const auto first = parse_digits(part.substr(0, dash), 10);
-    const auto last = dash == std::string_view::npos ? first : parse_digits(part.substr(dash + 1), 10);
-    if (!first || !last || *first < canopen::kFirstNode || *last > canopen::kLastNode || *first > *last)
-      return fail(Errc::usage, fmt::format("'{}' is not a node-ID (1..127)", part), "write 2, 2,3,4 or 2-4");
-    for (auto number = *first; number <= *last; ++number) {
-      const auto node = static_cast<std::uint8_t>(number);
-      if (std::find(out.begin(), out.end(), node) == out.end()) out.push_back(node);
-    }
-  }
-  return out;
-}
+constexpr std::string_view kNodesHint = "write 2, 2,3,4 or 2-4; node-IDs are 1 to 127";
 
 Result<Value> run(Context& context, const Arguments& arguments) {
   if (const auto alone = check_resume(arguments); !alone) return fail(alone.error());
-  const auto from = nodes_of(arguments.text("--from"));
+  const auto from = canopen::parse_node_ids(arguments.text("--from"), kNodesHint);
   if (!from) return fail(from.error());
-  const auto to = nodes_of(arguments.text("--to"));
+  const auto to = canopen::parse_node_ids(arguments.text("--to"), kNodesHint);
   if (!to) return fail(to.error());
   if (from->size() != 1) return fail(Errc::usage, "--from takes one node");
   if (std::find(to->begin(), to->end(), from->front()) != to->end())

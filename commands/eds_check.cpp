@@ -84,11 +84,8 @@ report::Record record_of(const std::string& path, const Error& error, bool alone
 }
 
 Error errors_error(const std::string& path, std::size_t errors) {
-  Error error;
-  error.code = Errc::negative;
-  error.message = fmt::format("{}: {} error{}", path, errors, errors == 1 ? "" : "s");
-  error.hint = "the remedy column says what to change; everything else in the file is usable";
-  return error;
+  return make_error(Errc::negative, fmt::format("{}: {} error{}", path, errors, errors == 1 ? "" : "s"),
+                    "the remedy column says what to change; everything else in the file is usable");
 }
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {

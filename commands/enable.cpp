@@ -43,7 +43,7 @@ Result<void> enable_one(Context& context, motion::Motion& motion, session::Rehea
   const auto mode = motion::read_mode(*context.session, motion.node());
   if (!mode) return fail(mode.error());
   const auto question = fmt::format(
-      "Energise node {} in mode {} and leave it so? It will not be supervised, and the motor may move.",
+      "Energise node {} in mode {} and leave it energised? It will not be supervised, and the motor may move.",
       motion.node(), motion::mode_text(*context.profile, *mode, context.chinese));
   if (const auto answer = context.confirm(question); !answer) return fail(answer.error());
   return energise(context, motion, rehearsal);
@@ -77,10 +77,10 @@ Result<Value> run(Context& context, const Arguments& arguments) {
     motion::Power power(*context.session, *context.profile, node);
     const auto state = power.state();
     if (done && state && *state != drive::DriveState::operation_enabled)
-      done = fail(session::drive_error(
-          Errc::negative, node,
-          fmt::format("was enabled but did not stay so: it is in {}", drive::name(*state)),
-          "see `status` and `fault show`; `disable` it before anything else"));
+      done =
+          fail(drive_error(Errc::negative, node,
+                           fmt::format("was enabled but did not stay so: it is in {}", drive::name(*state)),
+                           "see `status` and `fault show`; `disable` it before anything else"));
     if (!done) context.errors.push_back(done.error());
     table.rows.push_back({node, state ? Value(drive::name(*state)) : Value(),
                           state ? Value(drive::is_energised(*state)) : Value(),

@@ -76,12 +76,10 @@ Result<Value> run_clear(Context& context, const Arguments&) {
     if (!written) {
       add_failure(context, table, node, written.error());
     } else if (!left || load_le(*left) != 0) {
-      Error error;
-      error.code = Errc::negative;
-      error.node = node;
-      error.object = objects::kErrorHistory;
-      error.message = fmt::format("node {}: the drive acknowledged, but its history is not empty", node);
-      add_failure(context, table, node, left ? error : left.error());
+      add_failure(context, table, node,
+                  left ? drive_error(Errc::negative, node, objects::kErrorHistory,
+                                     "the drive acknowledged, but its history is not empty")
+                       : left.error());
     } else {
       table.rows.push_back({node, "cleared", Value()});
     }
@@ -97,7 +95,8 @@ const Command kFaultReset{
     .summary = "Reset the fault of a drive",
     .details =
         "Only for a drive in state Fault: writes controlword 0000h, 0080h, 0000h, none of which can enable "
-        "it, then uses the family's own method if it has one. Exit code 1 if the fault remains.",
+        "it; if the fault remains, the family's own method follows, if it has one. Exit code 1 if the fault "
+        "remains then.",
     .parameters = {},
     .needs = Needs::node,
     .effect = Effect::resets,

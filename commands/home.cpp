@@ -39,9 +39,10 @@ const Command kHome{
     .summary = "Find the home position",
     .details =
         "Homing mode with the family's own start sequence, supervised and ended like `jog`. \"Homing "
-        "attained\" left from an earlier run does not count: the bits must clear and set again. Method, "
-        "speeds and offset are restored afterwards; the home position stays. Example: `home 35 -n 1`, `home "
-        "1 --speed 30rpm --search 6rpm -n 1`.",
+        "attained\" left from an earlier run does not count: the bits must clear and set again (with a "
+        "method that takes the present position, that position must read as the offset). Method, speeds and "
+        "offset are restored afterwards; the home position stays. Example: `home 35 -n 1`, `home 1 --speed "
+        "30rpm --search 6rpm -n 1`.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,

@@ -99,12 +99,8 @@ Result<report::Value> run(Context& context, const Arguments&) {
       ++at;
       continue;
     }
-    Error error;
-    error.code = Errc::timeout;
-    error.node = node;
-    error.message = fmt::format("node {} does not answer", node);
-    error.hint = "`scan` shows who does";
-    context.errors.push_back(std::move(error));
+    context.errors.push_back(
+        drive_error(Errc::timeout, node, "no answer", "`scan` shows which nodes answer"));
   }
   return report::Value(std::move(out));
 }

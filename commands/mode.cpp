@@ -54,10 +54,9 @@ Result<void> check_change(Context& context, const Wanted& wanted) {
   const auto state = power.state();
   if (!state) return fail(state.error());
   if (!drive::is_energised(*state)) return {};
-  return fail(
-      session::drive_error(Errc::refused, wanted.node,
-                           fmt::format("is energised ({}): a mode change may move it", drive::name(*state)),
-                           "`disable` it first"));
+  return fail(drive_error(Errc::refused, wanted.node,
+                          fmt::format("is energised ({}): a mode change may move it", drive::name(*state)),
+                          "`disable` it first"));
 }
 
 Result<void> change(Context& context, const Wanted& wanted) {

@@ -117,8 +117,7 @@ class Monitor {
     for (const auto& event : context_->session->take_events()) {
       if (!is_loss(event)) continue;
       ++lost_;
-      auto text = show::notice_text(event, context_->profile, context_->chinese);
-      text = "ALARM " + text.substr(text.find(": ") + 2);
+      const auto text = "ALARM " + show::event_text(event, context_->profile, context_->chinese);
       log_->remark(event.time - begin_, "alarm", event.node, text, "heartbeat-lost");
     }
   }

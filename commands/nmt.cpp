@@ -67,11 +67,8 @@ Heartbeats heartbeats_of(Context& context) {
 
 Error unconfirmed(const Before& before, NmtCommand command, const Heartbeats& heartbeats,
                   const canopen::NodeWatch& watch) {
-  Error error;
-  error.code = Errc::timeout;
-  error.node = before.node;
-  error.message =
-      fmt::format("node {}: '{}' was sent but not confirmed", before.node, canopen::name(command));
+  auto error = drive_error(Errc::timeout, before.node,
+                           fmt::format("'{}' was sent but not confirmed", canopen::name(command)));
   const auto& silent = heartbeats.silent;
   if (is_reset(command))
     error.hint =
@@ -116,7 +113,7 @@ std::string whom(std::span<const std::uint8_t> nodes) {
 /// What is to be answered before a reset.
 std::string question(std::span<const std::uint8_t> nodes, NmtCommand command) {
   if (command == NmtCommand::reset_node)
-    return fmt::format("Reset {}? Drives restart; a moving axis loses control.", whom(nodes));
+    return fmt::format("Reset {}? Drives restart; a moving axis is no longer controlled.", whom(nodes));
   return fmt::format(
       "Reset the communication of {}? PDOs and heartbeats pause, so a moving axis may lose its control; {}.",
       whom(nodes), communication_goes());
@@ -128,8 +125,8 @@ void tell_reset(Context& context, std::span<const Before> before, bool waited) {
   for (const auto& entry : before)
     if (waited && confirmed(*context.session, entry, NmtCommand::reset_communication))
       context.notices.push_back(
-          fmt::format("node {}: 1000h to 1FFFh now have power-on values (CiA 301): {} are lost", entry.node,
-                      kSetAndNotStored));
+          fmt::format("node {}: by CiA 301 1000h to 1FFFh now have their power-on values: {} are lost",
+                      entry.node, kSetAndNotStored));
     else
       unseen = true;
   if (unseen) context.notices.push_back(communication_goes());
@@ -199,10 +196,10 @@ constexpr std::string_view kResetDetails =
     "every node.";
 
 constexpr std::string_view kResetCommDetails =
-    "By CiA 301 the node resets 1000h to 1FFFh to their power-on values and leaves everything else "
-    "unchanged: PDOs, COB-IDs, its heartbeat (1017h) and heartbeat consumers (1016h) go back to what is "
-    "stored. With --wait it counts as done when the boot-up message confirms it; exit code 4 when none "
-    "comes. `-n all` addresses every node.";
+    "By CiA 301 the node resets 1000h to 1FFFh to their power-on values: PDOs, COB-IDs, its heartbeat "
+    "(1017h) and heartbeat consumers (1016h) go back to what is stored. Everything else stays unchanged. "
+    "With --wait it is done when the boot-up message confirms it; exit code 4 if none comes. `-n all` "
+    "addresses every node.";
 
 }  // namespace
 

@@ -1,9 +1,7 @@
 #include <fmt/format.h>
 #include <algorithm>
-#include <numeric>
 
 #include "base/number.hpp"
-#include "canopen/cob_id.hpp"
 #include "command/command.hpp"
 #include "command/duration_option.hpp"
 #include "drive/standard_objects.hpp"
@@ -53,20 +51,6 @@ Result<Plan> plan_of(const Arguments& arguments) {
                 "write 1..255");
   plan.life_factor = static_cast<std::uint32_t>(*life);
   return plan;
-}
-
-/// `all` means those that are there now.
-Result<std::vector<std::uint8_t>> nodes_of(Context& context) {
-  if (context.nodes.front() != 0) return context.nodes;
-  std::vector<std::uint8_t> every(canopen::kLastNode);
-  std::iota(every.begin(), every.end(), canopen::kFirstNode);
-  const auto found = session::scan(*context.session, every);
-  if (!found) return fail(found.error());
-  std::vector<std::uint8_t> out;
-  for (const auto& identity : *found) out.push_back(identity.node);
-  if (out.empty())
-    return fail(Errc::timeout, "no node answered", "check power, cable, termination and bitrate");
-  return out;
 }
 
 /// What the nodes say of their heartbeat (1017h); one that is stopped or away says nothing. The session
@@ -178,32 +162,28 @@ class Log {
   }
 
   void complain(const Row& row) {
-    Error error;
-    error.code = Errc::negative;
-    error.node = row.node;
-    error.hint = "try --guard 1s";
+    std::string what;
+    std::string hint = "try --guard 1s";
     if (row.lost > 0 && context_->session->can()->watch().state(row.node)) {
-      error.message = fmt::format("was lost {} time{}", row.lost, row.lost == 1 ? "" : "s");
-      error.hint.clear();
+      what = fmt::format("was lost {} time{}", row.lost, row.lost == 1 ? "" : "s");
+      hint.clear();
     } else if (regular(row)) {
       return;
     } else if (row.told && *row.told) {
       const auto period = load_le(**row.told) & 0xFFFFU;
-      error.message = period == 0 ? "sends no heartbeat"
-                                  : fmt::format("no heartbeat came, although 1017h is {} ms", period);
+      what = period == 0 ? "sends no heartbeat"
+                         : fmt::format("no heartbeat came, although 1017h is {} ms", period);
       if (period == 0)
-        error.hint =
-            fmt::format("`write 0x1017 500 -n {}` switches it on; or {}", row.node, std::move(error.hint));
+        hint = fmt::format("`write 0x1017 500 -n {}` switches it on; or {}", row.node, std::move(hint));
     } else if (answered(row)) {
-      error.message = "no heartbeat came, and it has no 1017h to enable one";
+      what = "no heartbeat came, and it has no 1017h to enable one";
     } else if (heard(row)) {
-      error.message = "no heartbeat and no SDO answer; only boot-up or emergency messages were received";
+      what = "no heartbeat and no SDO answer; only boot-up or emergency messages were received";
     } else {
-      error.message = "does not answer and sent nothing";
-      error.hint = "is it powered and connected, and is this its node-ID? `scan` shows who answers";
+      what = "does not answer and sent nothing";
+      hint = "is it powered and connected, and is this its node-ID? `scan` shows who answers";
     }
-    error.message = fmt::format("node {}: {}", row.node, error.message);
-    context_->errors.push_back(std::move(error));
+    context_->errors.push_back(drive_error(Errc::negative, row.node, what, std::move(hint)));
   }
 
   Context* context_;
@@ -229,7 +209,9 @@ report::Table guarding_frames(std::span<const std::uint8_t> nodes) {
 Result<Value> run(Context& context, const Arguments& arguments) {
   const auto plan = plan_of(arguments);
   if (!plan) return fail(plan.error());
-  const auto nodes = nodes_of(context);
+  // `all` means those that are there now.
+  const auto nodes = context.nodes.front() != 0 ? Result<std::vector<std::uint8_t>>(context.nodes)
+                                                : session::nodes_present(*context.session);
   if (!nodes) return fail(nodes.error());
   auto& session = *context.session;
   if (plan->guard_time && context.dry_run) return Value(guarding_frames(*nodes));

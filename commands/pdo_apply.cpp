@@ -9,7 +9,6 @@
 #include "pdo/pdo_recipes.hpp"
 #include "session/pdo_setup.hpp"
 #include "settings/backup_file.hpp"
-#include "settings/change.hpp"
 
 namespace servoctl::commands {
 namespace {

@@ -2,7 +2,6 @@
 
 #include "command/setting_options.hpp"
 #include "pdo/pdo_changing.hpp"
-#include "settings/change.hpp"
 
 namespace servoctl::commands {
 namespace {

@@ -6,7 +6,6 @@
 #include "command/command.hpp"
 #include "command/setting_options.hpp"
 #include "pdo/pdo_changing.hpp"
-#include "settings/change.hpp"
 #include "show/pdo_check.hpp"
 
 namespace servoctl::commands {
@@ -105,13 +104,11 @@ bool counts_event(const drive::Profile& profile, std::uint8_t type) {
 }
 
 Error no_timer(const Pdo& pdo, std::optional<std::uint8_t> right) {
-  Error error;
-  error.code = Errc::usage;
-  error.message = fmt::format("{}: transmission type {} does not use the event timer",
-                              canopen::name(pdo.direction, pdo.number), pdo.type);
-  error.hint = right ? fmt::format("use --type {}, or leave --event out", *right)
-                     : "no type of this drive uses it; leave --event out";
-  return error;
+  return make_error(Errc::usage,
+                    fmt::format("{}: transmission type {} does not use the event timer",
+                                canopen::name(pdo.direction, pdo.number), pdo.type),
+                    right ? fmt::format("use --type {}, or leave --event out", *right)
+                          : "no type of this drive uses it; leave --event out");
 }
 
 /// An event timer that nothing looks at would be told as set: it is refused with the type that was asked for,

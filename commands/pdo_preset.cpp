@@ -5,7 +5,6 @@
 #include "command/command.hpp"
 #include "command/setting_options.hpp"
 #include "pdo/pdo_recipes.hpp"
-#include "settings/change.hpp"
 
 namespace servoctl::commands {
 namespace {

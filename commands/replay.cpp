@@ -40,7 +40,7 @@ std::string question(const traffic::ReplayPlan& plan, std::string_view file, std
     out +=
         fmt::format(" {} of them can move a motor: {}.", plan.dangerous(), traffic::kinds_text(plan.moving));
   if (!plan.lasting.empty())
-    out += fmt::format(" Some store, restart, re-address: {}.", traffic::kinds_text(plan.lasting));
+    out += fmt::format(" Some store, restart or re-address a drive: {}.", traffic::kinds_text(plan.lasting));
   return out;
 }
 
@@ -78,16 +78,14 @@ void tell_failures(Context& context, const traffic::ReplayRun& run) {
         run.answered_by_recording()));
   const auto& failures = run.failures();
   if (failures.empty()) return;
-  Error error;
-  error.code = Errc::negative;
-  error.node = failures.front().node;
-  error.object = failures.front().object;
-  error.message = failure_text(context, failures.front());
+  auto message = failure_text(context, failures.front());
   if (failures.size() > 1)
-    error.message = fmt::format("{} SDO requests were refused or not answered; the first: {}",
-                                failures.size(), error.message);
-  error.hint = "the drives are not in the recording's final state; see the table";
-  context.errors.push_back(std::move(error));
+    message =
+        fmt::format("{} SDO requests were refused or not answered; the first: {}", failures.size(), message);
+  context.errors.push_back(
+      show::located(make_error(Errc::negative, std::move(message),
+                               "the drives are not in the recording's final state; see the table"),
+                    failures.front().node, failures.front().object));
 }
 
 report::Table failures_table(const Context& context, const std::vector<traffic::ReplayFailure>& failures) {
@@ -215,7 +213,7 @@ const Command kReplay{
         "services. It first reads the PDOs of the drives in the recording, then asks you, stating how many "
         "of the frames can move a motor (NMT start, SYNC, RPDOs, writes to objects from 2000h up) and which "
         "store, restart or re-address a drive; --dry-run only counts. After Ctrl-C or an error the drives "
-        "are stopped and disabled; any that a complete replay leaves energised is listed. Exit code 1 when a "
+        "are stopped and disabled; any that a complete replay leaves energised is listed. Exit code 1 if a "
         "drive refused an SDO request or did not answer it. To have commands answered by a recording "
         "instead, use --bus replay:FILE.",
     .parameters = kParameters,

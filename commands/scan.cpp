@@ -1,8 +1,6 @@
 #include "session/scan.hpp"
 
-#include <numeric>
-
-#include "canopen/cob_id.hpp"
+#include "canopen/node_list.hpp"
 #include "command/command.hpp"
 #include "session/identify.hpp"
 #include "show/identity.hpp"
@@ -14,20 +12,14 @@ using namespace command;
 
 Result<report::Value> run(Context& context, const Arguments&) {
   auto nodes = context.nodes_typed ? context.nodes : std::vector<std::uint8_t>();
-  if (nodes.empty() || nodes.front() == 0) {
-    nodes.resize(canopen::kLastNode);
-    std::iota(nodes.begin(), nodes.end(), canopen::kFirstNode);
-  }
+  if (nodes.empty() || nodes.front() == 0) nodes = canopen::every_node_id();
   auto found = session::scan(*context.session, nodes);
   if (!found) return fail(found.error());
   if (found->empty()) {
-    Error error;
-    error.code = Errc::timeout;
-    error.message = "no node answered on " + context.session->url();
-    error.hint =
+    context.errors.push_back(make_error(
+        Errc::timeout, "no node answered on " + context.session->url(),
         "check power, cable, 120 ohm at both ends, and that the interface has the drives' bitrate; a stopped "
-        "node does not answer: `nmt preop -n all`";
-    context.errors.push_back(std::move(error));
+        "node does not answer: `nmt preop -n all`"));
   }
   const auto families = drive::find_families(context.drive_folders);
   session::look_for_families(*context.session, *found, families);

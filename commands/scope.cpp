@@ -12,7 +12,6 @@
 #include "pdo/scope_mapping.hpp"
 #include "report/svg.hpp"
 #include "session/hearing.hpp"
-#include "session/option_scope.hpp"
 #include "traffic/listening.hpp"
 #include "traffic/sampler.hpp"
 
@@ -134,14 +133,16 @@ Result<std::vector<std::unique_ptr<pdo::ScopeMapping>>> map_objects(Context& con
   if (!period) return fail(period.error());
   if (!arguments.has("--map")) return out;
   if (context.read_only || context.dry_run)
-    return fail(Errc::refused, "--map changes a TPDO of the drive, which is not allowed now",
+    return fail(Errc::refused,
+                "--map changes a TPDO of the drive, which --read-only and --dry-run do not allow",
                 "without --map the objects are read by SDO");
   if (const auto right = context.hold_family(context.nodes, context.profile, true); !right)
     return fail(right.error());
   std::string nodes;
   for (const auto node : context.nodes) append(nodes, fmt::format("{}", node));
   if (const auto sure = context.confirm(fmt::format(
-          "Put the objects into a spare TPDO of node {} while sampling, and put it back after?", nodes));
+          "Map the objects into an unused TPDO of node {} while sampling, and restore it afterwards?",
+          nodes));
       !sure)
     return fail(sure.error());
   for (const auto node : context.nodes) {

@@ -71,7 +71,7 @@ Result<Value> run(Context& context, const Arguments& arguments, const Action& ac
 
 Result<Value> run_store(Context& context, const Arguments& arguments) {
   return run(context, arguments, {session::store_parameters, session::store_writes},
-             {"Store the present values of {}? They replace its power-on values.", "stored"});
+             {"Store the present values of {}? They replace the power-on values.", "stored"});
 }
 
 Result<Value> run_defaults(Context& context, const Arguments& arguments) {
@@ -88,7 +88,7 @@ const Command kStore{
     .summary = "Store the present values in the drive",
     .details =
         "Writes \"save\" to 1010h, or uses the family's own method. Waits up to 10 s for the drive. Where "
-        "values can be kept only as they are written, store says so: use `param set … --keep`.",
+        "values can be kept only at the moment they are written, store says so: use `param set … --keep`.",
     .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::stores,

@@ -8,7 +8,6 @@
 #include "command/duration_option.hpp"
 #include "session/can_network.hpp"
 #include "session/hearing.hpp"
-#include "session/option_scope.hpp"
 #include "traffic/listening.hpp"
 #include "traffic/sync_end.hpp"
 
@@ -155,10 +154,10 @@ const Command kSyncStart{
     .path = "sync start",
     .summary = "Produce SYNC at a fixed period; asks first",
     .details =
-        "At the prompt and in a batch file it runs on behind the following lines, until `sync stop` or the "
-        "end of input; alone it runs until Ctrl-C, or for the time of --for, then shows the measured "
-        "periods: mean, shortest, longest, standard deviation, and how many SYNCs were missed because the "
-        "computer was late. There must be no other producer of SYNC on the bus.",
+        "At the prompt and in a batch file it runs in the background of the following lines, until `sync "
+        "stop` or the end of input; alone it runs until Ctrl-C, or for the time of --for. At its end it "
+        "shows the measured periods: mean, shortest, longest, standard deviation, and how many SYNCs were "
+        "missed because the computer was late. There must be no other producer of SYNC on the bus.",
     .parameters = kStartParameters,
     .needs = Needs::can,
     .effect = Effect::moves,

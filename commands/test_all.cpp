@@ -102,7 +102,7 @@ class AllTests {
     auto possible = trial::check_home_test(*context_, *request_, home);
     if (possible) return possible;
     auto error = possible.error();
-    error.message = "`test home` is impossible, nothing was run: " + error.message;
+    error.message = "`test home` cannot be run, so nothing is moved: " + error.message;
     error.hint += "; or add --no-home";
     return fail(std::move(error));
   }

@@ -1,5 +1,5 @@
 #include "command/command.hpp"
-#include "command/motion_options.hpp"
+#include "command/duration_option.hpp"
 #include "command/trial_options.hpp"
 #include "trial/comm_trial.hpp"
 #include "trial/verdict.hpp"

@@ -10,7 +10,7 @@ namespace {
 using namespace command;
 
 constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
-    {.name = "method", .help = "number of 6098h; the drive's present one unless said", .kind = Kind::value},
+    {.name = "method", .help = "number in 6098h (default: the present one)", .kind = Kind::value},
     {.name = "--repeat", .help = "runs (default 5)", .kind = Kind::number},
     {.name = "--spread",
      .help = "greatest spread that passes, in the unit of the position (default 1)",
@@ -39,7 +39,7 @@ const Command kTestHome{
     .summary = "Home an axis several times, with a verdict",
     .details =
         "Checks, asks, moves and ends as `home` does, --repeat times. Passes if every run finds home, and "
-        "neither the final position nor the home position in encoder counts (6063h, or the family's own "
+        "neither the final position nor home against the encoder's own count (6063h, or the family's own "
         "object) spreads by more than --spread. --encoder gives the encoder counts per revolution if the "
         "drive does not report them; a drive that also zeroes the encoder count shows no spread there. Exit "
         "code 1 when it fails. Example: `test home 33 --repeat 5 --spread 0.5 -n 1 -d gsd600 --yes`.",

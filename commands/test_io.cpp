@@ -1,5 +1,5 @@
 #include "command/command.hpp"
-#include "command/motion_options.hpp"
+#include "command/duration_option.hpp"
 #include "command/trial_options.hpp"
 #include "trial/io_trial.hpp"
 #include "trial/verdict.hpp"
@@ -41,7 +41,7 @@ const Command kTestIo{
         "Reads 60FDh every 10 ms and reports each change. With --expect it passes, and ends, once every "
         "input named has been seen at 0 and at 1; without, it watches until the time is over (or Ctrl-C) and "
         "passes if any input changed. 0 and 1 are the bits as the drive sends them: whether 1 means actuated "
-        "depends on the family and on the wiring. Exit code 1 when it fails. Moves nothing.",
+        "depends on the family and on the wiring. Exit code 1 if it fails. Moves nothing.",
     .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::reads,

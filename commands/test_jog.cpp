@@ -47,7 +47,7 @@ const Command kTestJog{
         "the commanded direction, held its speed within --tolerance in the second half of the time, its "
         "following error grew by at most 1 % of the distance, it stood still within --stop-within of the "
         "stop command, and the drive was left disabled. What a drive does not report is skipped. --plot "
-        "plots, --csv saves the samples. Exit code 1 when it fails. Example: `test jog 60rpm -n 1 -d gsd600 "
+        "plots, --csv saves the samples. Exit code 1 if it fails. Example: `test jog 60rpm -n 1 -d gsd600 "
         "--yes --junit jog.xml`.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,

@@ -2,7 +2,6 @@
 
 #include "command/command.hpp"
 #include "motion/kept_turn.hpp"
-#include "show/records.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -14,7 +13,8 @@ using report::Value;
 
 Result<Value> run(Context& context, const Arguments& /*unused*/) {
   report::Table table;
-  table.columns = {{"node"}, {"text", "kept counts of a turn", Show::text}, {"forgotten", "", Show::json}};
+  table.columns = {
+      {"node"}, {"text", "kept counts per revolution", Show::text}, {"forgotten", "", Show::json}};
   for (const auto node : context.nodes) {
     const motion::TurnFile file(context, node);
     std::error_code error;

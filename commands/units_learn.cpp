@@ -92,7 +92,7 @@ std::string unmet(Context& context, std::uint8_t node) {
 }
 
 tl::unexpected<Error> refused(std::uint8_t node, std::string message, std::string hint) {
-  return fail(session::drive_error(Errc::refused, node, std::move(message), std::move(hint)));
+  return fail(drive_error(Errc::refused, node, std::move(message), std::move(hint)));
 }
 
 /// Increments of 6064h in one of the counts that are measured. Errc::refused where there is nothing to
@@ -107,7 +107,7 @@ Result<double> read_gear(Context& context, std::uint8_t node) {
         node,
         fmt::format("its parameters already give {} increments per revolution{}: nothing to learn",
                     plain_number(known->value, 12), pending.empty() ? "" : " once they take effect"),
-        "`units show` tells by which" + (pending.empty() ? "" : "; " + pending));
+        "`units show` lists which" + (pending.empty() ? "" : "; " + pending));
   }
   const auto why = unmet(context, node);
   return refused(node, "its present settings prevent the measurement" + (why.empty() ? why : ": " + why),
@@ -120,9 +120,9 @@ Result<Learn> learn_of(Context& context, const Arguments& arguments, std::uint8_
     const auto ways = rules.units.find(drive::Measure::increments_per_turn);
     const auto told = ways == rules.units.end() ? std::string() : show::ways_text(ways->second);
     return fail(Errc::refused,
-                told.empty()
-                    ? fmt::format("{} has no speed monitor to measure with", context.profile->family)
-                    : fmt::format("{} reports the counts per rev itself: {}", context.profile->family, told),
+                told.empty() ? fmt::format("{} has no speed monitor to measure with", context.profile->family)
+                             : fmt::format("{} reports the counts per revolution itself: {}",
+                                           context.profile->family, told),
                 told.empty() ? std::string(motion::kOtherWay) : "`units show` reads them");
   }
   const auto monitor = drive::resolve(context.profile, rules.learn.speed);
@@ -144,10 +144,7 @@ Result<Learn> learn_of(Context& context, const Arguments& arguments, std::uint8_
   if (!nameplate) return fail(nameplate.error());
   out.expected.told = *nameplate;
   out.expected.node = node;
-  out.expected.disputed = monitor->parameter != nullptr &&
-                          std::any_of(monitor->parameter->doubts.contradicted.begin(),
-                                      monitor->parameter->doubts.contradicted.end(),
-                                      [](const od::Mark& mark) { return mark.field == "scale"; });
+  out.expected.disputed = monitor->is_contradicted("scale");
   return out;
 }
 
@@ -186,7 +183,7 @@ void add_measurement(Value& answer, const motion::LearnReport& done, double gear
   Record found;
   if (done.counts) {
     found.push_back(
-        {"counts", std::llround(done.counts->counts), report::Show::everywhere, "counts per rev"});
+        {"counts", std::llround(done.counts->counts), report::Show::everywhere, "counts per revolution"});
     found.push_back({"why", done.counts->reason});
   }
   if (done.measured) {

@@ -67,7 +67,7 @@ List row(const Context& context, std::uint8_t node, Measure measure, std::string
   const auto told = session::read_measures(*context.session, *context.profile, question).front();
   std::optional<double> value;
   std::string_view source;
-  std::string from = "nobody";
+  std::string from = "not known";
   if (const auto unit = position_unit(*context.profile); of_turn && unit != "inc") {
     from = fmt::format("not needed: positions are in {}{}", unit, turn ? "; --turn changes nothing" : "");
   } else if (of_turn && turn) {

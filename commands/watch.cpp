@@ -4,7 +4,6 @@
 #include "command/command.hpp"
 #include "command/duration_option.hpp"
 #include "session/hearing.hpp"
-#include "session/option_scope.hpp"
 #include "show/records.hpp"
 #include "show/sample_writer.hpp"
 #include "traffic/listening.hpp"

@@ -100,11 +100,11 @@ const Command kWrite{
     .details =
         "The value is checked against type and limits before a frame is sent. A plain number is the raw "
         "number the drive shows; a number with a unit is converted. A write is never repeated: if its answer "
-        "is lost, the object is read and the outcome reported. Asks first: to store or restore, change "
-        "node-ID or bitrate, or enable the drive by the controlword. With --from a file of any size is "
-        "written, by block transfer if the drive supports it; --keep keeps it too. A COB-ID that CiA 301 "
-        "reserves for another service (NMT, SYNC, EMCY, SDO, error control, restricted) is refused. A value "
-        "that begins with - and is not a number goes after --: write 0x2000 -- \"--text\".",
+        "is lost, the object is read and the outcome reported. Asks before a write that stores or restores "
+        "parameters, changes node-ID or bitrate, or enables the drive by the controlword. With --from a file "
+        "of any size is written, by block transfer if the drive supports it; --keep keeps it too. A COB-ID "
+        "that CiA 301 reserves for another service (NMT, SYNC, EMCY, SDO, error control, restricted) is "
+        "refused. A value that begins with - and is not a number goes after --: write 0x2000 -- \"--text\".",
     .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::writes,

@@ -1,3 +1,3 @@
-#include "cli/front_end.hpp"
+#include "cli/program.hpp"
 
 int main(int argc, char** argv) { return servoctl::cli::run_program({argv + 1, argv + argc}); }

@@ -66,14 +66,6 @@ class Splitter {
   std::uint32_t line_ = 1;
 };
 
-tl::unexpected<Error> fail_at(std::string_view file, std::uint32_t line, const std::string& what) {
-  Error error;
-  error.code = Errc::file;
-  error.message = fmt::format("{}:{}: {}", file, line, what);
-  error.line = line;
-  return fail(std::move(error));
-}
-
 /// Whether a spreadsheet would take the text for a formula, were it not for apostrophes before it.
 bool is_formula(std::string_view text) {
   text.remove_prefix(std::min(text.find_first_not_of('\''), text.size()));
@@ -114,7 +106,7 @@ Result<CsvTable> parse_csv(std::string_view text, std::string_view file) {
   std::vector<std::string> cells;
   while (!splitter.at_end()) {
     const auto line = splitter.line();
-    if (!splitter.next(cells)) return fail_at(file, line, "a quote is opened here and never closed");
+    if (!splitter.next(cells)) return fail(file_error(file, line, "a quote is opened here and never closed"));
     if (cells.size() == 1 && cells.front().empty()) continue;
     take_apostrophes(cells);
     if (table.columns.empty()) {
@@ -122,23 +114,28 @@ Result<CsvTable> parse_csv(std::string_view text, std::string_view file) {
       auto sorted = cells;
       std::sort(sorted.begin(), sorted.end());
       const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
-      if (twice != sorted.end()) return fail_at(file, line, fmt::format("column '{}' appears twice", *twice));
+      if (twice != sorted.end())
+        return fail(file_error(file, line, fmt::format("column '{}' appears twice", *twice)));
       continue;
     }
     if (cells.size() != table.columns.size())
-      return fail_at(
+      return fail(file_error(
           file, line,
-          fmt::format("{} cells, but the header names {} columns", cells.size(), table.columns.size()));
+          fmt::format("{} cells, but the header names {} columns", cells.size(), table.columns.size())));
     table.rows.push_back({cells, line});
   }
   if (table.columns.empty())
-    return fail_at(file, 1, "the file is empty; a line with column names is expected");
+    return fail(file_error(file, 1, "the file is empty; a line with column names is expected"));
   return table;
 }
 
 std::string csv_cell(std::string_view text) {
   if (is_formula(text) && !parse_real(text)) return in_quotes("'" + std::string(text));
   return in_quotes(text);
+}
+
+std::string csv_heading(std::string_view name, std::string_view unit) {
+  return csv_cell(unit.empty() ? std::string(name) : fmt::format("{} ({})", name, unit));
 }
 
 }  // namespace servoctl

@@ -34,4 +34,7 @@ Result<CsvTable> parse_csv(std::string_view text, std::string_view file);
 /// apostrophe before it, which parse_csv() takes away: `=1+1` is `'=1+1`, `'=x` is `''=x`, `-5` is `-5`.
 std::string csv_cell(std::string_view text);
 
+/// The cell over a column of numbers: `velocity (rpm)`, or the name alone where there is no unit.
+std::string csv_heading(std::string_view name, std::string_view unit);
+
 }  // namespace servoctl

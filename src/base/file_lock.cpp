@@ -28,7 +28,7 @@ Result<std::optional<FileLock>> FileLock::take(const std::filesystem::path& path
     if (fd < 0)
       return fail(Errc::file,
                   fmt::format("cannot open {}: {}", path.string(), std::generic_category().message(errno)),
-                  "choose a folder that exists and that you may write to");
+                  "choose an existing folder you may write to");
     if (::flock(fd, LOCK_EX | LOCK_NB) != 0) {
       const int error = errno;
       ::close(fd);

@@ -1,5 +1,7 @@
 #include "base/result.hpp"
 
+#include <fmt/format.h>
+
 namespace servoctl {
 
 int exit_code(Errc code) {
@@ -32,6 +34,41 @@ std::string_view name(Errc code) {
     case Errc::interrupted: return "interrupted";
   }
   return "bug";
+}
+
+Error make_error(Errc code, std::string message, std::string hint) {
+  Error error;
+  error.code = code;
+  error.message = std::move(message);
+  error.hint = std::move(hint);
+  return error;
+}
+
+Error drive_error(Errc code, std::uint8_t node, std::string_view what, std::string hint) {
+  auto error = make_error(code, fmt::format("node {}: {}", node, what), std::move(hint));
+  error.node = node;
+  return error;
+}
+
+Error drive_error(Errc code, std::uint8_t node, ObjectAddress object, std::string_view what,
+                  std::string hint) {
+  auto error =
+      make_error(code, fmt::format("node {}, object {}: {}", node, to_string(object), what), std::move(hint));
+  error.node = node;
+  error.object = object;
+  return error;
+}
+
+Error file_error(std::string_view file, std::uint32_t line, std::string_view what, std::string hint) {
+  auto error = make_error(Errc::file, fmt::format("{}:{}: {}", file, line, what), std::move(hint));
+  error.line = line;
+  return error;
+}
+
+Error file_error(std::string_view file, std::uint32_t line, std::uint32_t column, std::string_view what) {
+  auto error = make_error(Errc::file, fmt::format("{}:{}:{}: {}", file, line, column, what));
+  error.line = line;
+  return error;
 }
 
 }  // namespace servoctl

@@ -47,16 +47,26 @@ struct Error {
 template <class T>
 using Result = tl::expected<T, Error>;
 
-[[nodiscard]] inline tl::unexpected<Error> fail(Errc code, std::string message, std::string hint = {}) {
-  Error error;
-  error.code = code;
-  error.message = std::move(message);
-  error.hint = std::move(hint);
+/// An error that concerns no node, object or line.
+Error make_error(Errc code, std::string message, std::string hint = {});
+
+/// An error of one node: `node 3: what`; or of one of its objects: `node 3, object 0x6040:0: what`.
+Error drive_error(Errc code, std::uint8_t node, std::string_view what, std::string hint = {});
+Error drive_error(Errc code, std::uint8_t node, ObjectAddress object, std::string_view what,
+                  std::string hint = {});
+
+/// Errc::file in a line of a file: `gain.csv:3: what`, or with the column, where that is known (from 1):
+/// `gain.toml:3:7: what`.
+Error file_error(std::string_view file, std::uint32_t line, std::string_view what, std::string hint = {});
+Error file_error(std::string_view file, std::uint32_t line, std::uint32_t column, std::string_view what);
+
+/// Ends a function of Result with an error, a new one or one that is handed on: `return fail(read.error());`.
+[[nodiscard]] inline tl::unexpected<Error> fail(Error error) {
   return tl::unexpected<Error>(std::move(error));
 }
 
-[[nodiscard]] inline tl::unexpected<Error> fail(Error error) {
-  return tl::unexpected<Error>(std::move(error));
+[[nodiscard]] inline tl::unexpected<Error> fail(Errc code, std::string message, std::string hint = {}) {
+  return fail(make_error(code, std::move(message), std::move(hint)));
 }
 
 }  // namespace servoctl

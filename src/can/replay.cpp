@@ -34,7 +34,7 @@ Result<void> ReplayBus::send(const Frame& frame) {
     skip_done();
     return {};
   }
-  return fail(Errc::bus, fmt::format("{} is not in the recording {}", to_string(frame), name_),
+  return fail(Errc::bus, fmt::format("{} is not in the rest of the recording {}", to_string(frame), name_),
               "a recording answers only its original commands, in order; `decode` shows them");
 }
 

@@ -193,7 +193,7 @@ Result<Descriptor> open_trace(const std::filesystem::path& file) {
                 fmt::format("cannot write the trace {}: nobody reads this pipe or socket", file.string()),
                 "start its reader first, such as `cat` on the pipe");
   return fail(Errc::file, fmt::format("cannot write the trace {}: {}", file.string(), system_text(errno)),
-              "choose a folder that exists and that you may write to");
+              "choose an existing folder you may write to");
 }
 
 }  // namespace

@@ -95,7 +95,7 @@ std::string sdo_abort_hint(std::uint32_t code, ObjectAddress object) {
   if (by_state && pdo_at(object.index))
     return "a PDO must be changed in steps (invalid, count 0, entries, count): `pdo map` does so";
   if (by_state && object == ObjectAddress{0x1019, 0})
-    return "it can change only while 1006h is 0: write 0 there first, then restore the period";
+    return "it can change only while 1006h is 0: write 0 to 1006h, then this object, then the period again";
   if (code == sdo_abort::kIncompatible && object.index == 0x1016)
     return "another entry already monitors this node: write 0 to it first";
   return sdo_abort_hint(code);

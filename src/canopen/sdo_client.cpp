@@ -267,14 +267,8 @@ void SdoClient::finish(Result<Bytes> result) {
 }
 
 Error SdoClient::error(Errc code, std::string message, std::string hint) const {
-  Error out;
-  out.code = code;
-  out.message = fmt::format("node {}, object {}: {}", node_, to_string(object_), message);
-  out.hint = std::move(hint);
-  out.node = node_;
-  out.object = object_;
-  if (foreign_request_ && out.hint.empty()) out.hint = "another master is also using SDO with this node";
-  return out;
+  if (foreign_request_ && hint.empty()) hint = "another master is also using SDO with this node";
+  return drive_error(code, node_, object_, message, std::move(hint));
 }
 
 std::size_t SdoClient::transferred() const {

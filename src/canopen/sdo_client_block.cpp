@@ -110,7 +110,7 @@ void SdoClient::on_block_download_initiate(const can::Frame& frame, TimePoint) {
   if (sdo_object(frame) != object_) return;
   if (block_command(frame) != 0xA0) {
     abort(sdo_abort::kCommand, Errc::protocol,
-          fmt::format("it answered the request of a block transfer with command 0x{:02X}", frame.data[0]));
+          fmt::format("it answered the block transfer request with command 0x{:02X}", frame.data[0]));
     return;
   }
   const auto block_size = frame.data[4];

@@ -24,16 +24,13 @@ constexpr Duration kReconnectPause = std::chrono::milliseconds(10);
 constexpr Duration kTelling = std::chrono::seconds(1);
 
 Error no_bus() {
-  Error error;
-  error.code = Errc::usage;
-  error.message = "which bus?";
   const auto interfaces = can::can_interfaces();
-  error.hint =
+  return make_error(
+      Errc::usage, "which bus?",
       interfaces.empty()
           ? "this machine has no CAN interface; try `--bus sim:FAMILY@1` (`drives` lists families), or "
             "local:NAME"
-          : fmt::format("add --bus {} or set SERVOCTL_BUS", one_of(interfaces));
-  return error;
+          : fmt::format("add --bus {} or set SERVOCTL_BUS", one_of(interfaces)));
 }
 
 }  // namespace

@@ -99,12 +99,9 @@ Result<void> FamilyGate::hold_one(const session::Identity& identity, const drive
   if (verdict.kind == FamilyVerdict::Kind::proven) return {};
   const bool contradicted = verdict.kind == FamilyVerdict::Kind::contradicted;
   if (contradicted && refuses && !options_.force) {
-    Error error;
-    error.code = Errc::refused;
-    error.node = node;
+    auto error = drive_error(Errc::refused, node, fmt::format("not a {}: {}", profile.family, verdict.why),
+                             forcing_hint(others(identity, families), node));
     error.object = verdict.object;
-    error.message = fmt::format("node {} is not a {}: {}", node, profile.family, verdict.why);
-    error.hint = forcing_hint(others(identity, families), node);
     return fail(std::move(error));
   }
   const bool unproven_read = !contradicted && !refuses;

@@ -209,7 +209,7 @@ tl::unexpected<Error> unknown_command(const std::vector<std::string>& words, std
   }
   auto hint = did_you_mean(words[first], paths);
   if (hint.empty()) hint = "`help` lists the commands";
-  return fail(Errc::usage, fmt::format("'{}' is no command", words[first]), std::move(hint));
+  return fail(Errc::usage, fmt::format("'{}' is not a command", words[first]), std::move(hint));
 }
 
 }  // namespace

@@ -1,13 +1,12 @@
 #include "cli/settings.hpp"
 
 #include <fmt/format.h>
-#include <algorithm>
 #include <cstdlib>
 
 #include "base/duration.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
-#include "canopen/cob_id.hpp"
+#include "canopen/node_list.hpp"
 #include "command/output_form.hpp"
 
 namespace servoctl::cli {
@@ -16,11 +15,6 @@ namespace {
 std::string variable(const char* name) {
   const char* value = std::getenv(name);
   return value == nullptr ? std::string() : std::string(value);
-}
-
-tl::unexpected<Error> bad_nodes(std::string_view text) {
-  return fail(Errc::usage, fmt::format("'{}' is not a node-ID", text),
-              "write -n 1, -n 1,3,5-8 or -n all; node-IDs are 1 to 127");
 }
 
 }  // namespace
@@ -76,22 +70,7 @@ Result<Settings> apply_options(Settings base, const command::Arguments& argument
 
 Result<std::vector<std::uint8_t>> parse_nodes(std::string_view text) {
   if (equals_nocase(text, "all")) return std::vector<std::uint8_t>{0};
-  std::vector<std::uint8_t> out;
-  for (const auto part : split(text, ',')) {
-    const auto dash = part.find('-', 1);
-    const auto first = parse_integer(trim(part.substr(0, dash)));
-    const auto last = dash == std::string_view::npos ? first : parse_integer(trim(part.substr(dash + 1)));
-    const auto valid = [](const auto& n) {
-      return n && !n->negative && n->magnitude >= canopen::kFirstNode && n->magnitude <= canopen::kLastNode;
-    };
-    if (!valid(first) || !valid(last) || first->magnitude > last->magnitude) return bad_nodes(part);
-    for (auto node = first->magnitude; node <= last->magnitude; ++node)
-      out.push_back(static_cast<std::uint8_t>(node));
-  }
-  if (out.empty()) return bad_nodes(text);
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
-  return out;
+  return canopen::parse_node_ids(text, "write -n 1, -n 1,3,5-8 or -n all; node-IDs are 1 to 127");
 }
 
 }  // namespace servoctl::cli

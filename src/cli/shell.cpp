@@ -4,13 +4,10 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <numeric>
 #include <span>
 #include <utility>
 
-#include "base/printable.hpp"
 #include "base/text.hpp"
-#include "canopen/cob_id.hpp"
 #include "cli/terminal/signals.hpp"
 #include "command/help_text.hpp"
 #include "session/identify.hpp"
@@ -186,15 +183,8 @@ Result<void> Shell::prepare_nodes(Run& run) {
   if (!nodes) return fail(nodes.error());
   const bool takes_all = run.command->to_all || !includes(run.command->needs, Needs::node);
   if (nodes->front() == 0 && !takes_all) {
-    std::vector<std::uint8_t> every(canopen::kLastNode);
-    std::iota(every.begin(), every.end(), canopen::kFirstNode);
-    const auto found = session::scan(*run.context.session, every);
-    if (!found) return fail(found.error());
-    nodes->clear();
-    for (const auto& node : *found) nodes->push_back(node.node);
-    if (nodes->empty())
-      return fail(Errc::timeout, fmt::format("no node answered on {}", run.settings.bus),
-                  "check power, cable, termination and bitrate");
+    nodes = session::nodes_present(*run.context.session);
+    if (!nodes) return fail(nodes.error());
   }
   run.context.nodes = std::move(*nodes);
   return {};

@@ -8,7 +8,7 @@ namespace {
 
 class Splitter {
  public:
-  Splitter(std::string_view line, const VariableLookup& variables) : line_(line), variables_(&variables) {}
+  Splitter(std::string_view line, const VariableLookup& variables) : line_(line), variables_(variables) {}
 
   Result<std::vector<std::string>> split() {
     for (at_ = 0; at_ < line_.size() && !comment_; ++at_)
@@ -41,14 +41,9 @@ class Splitter {
       quote_ = c;
     } else if (c == '\\' && quote_ != '\'' && more) {
       words_.back() += line_[++at_];
-    } else if (c == '$' && quote_ != '\'' && more && line_[at_ + 1] == '{' && *variables_) {
-      const auto value = expand_variable(line_, at_, *variables_);
+    } else if (quote_ != '\'' && variables_.begins(line_, at_)) {
+      const auto value = variables_.take(line_, at_);
       if (!value) return fail(value.error());
-      filled_in_ += value->size();
-      if (filled_in_ > kLongestLine)
-        return fail(Errc::usage,
-                    fmt::format("its variables make the line longer than {} MiB", kLongestLine >> 20U),
-                    "is a variable longer than it should be?");
       words_.back() += *value;
     } else {
       words_.back() += c;
@@ -57,10 +52,9 @@ class Splitter {
   }
 
   std::string_view line_;
-  const VariableLookup* variables_;
+  VariableExpansion variables_;
   std::vector<std::string> words_;
   std::size_t at_ = 0;
-  std::size_t filled_in_ = 0;  ///< Characters that came of variables.
   bool in_word_ = false;
   bool comment_ = false;
   char quote_ = '\0';
@@ -77,13 +71,19 @@ Result<std::vector<std::string>> split_words(std::string_view line, const Variab
   return Splitter(line, variables).split();
 }
 
-Result<std::string> expand_variable(std::string_view line, std::size_t& at, const VariableLookup& variables) {
+Result<std::string> VariableExpansion::take(std::string_view line, std::size_t& at) {
   const auto end = line.find('}', at);
   if (end == std::string_view::npos)
     return fail(Errc::usage, "the brace of ${ is not closed", "write ${NAME}, or \\${ for the characters");
   const auto name = line.substr(at + 2, end - at - 2);
   at = end;
-  return variables(name);
+  auto value = (*variables_)(name);
+  if (value) filled_in_ += value->size();
+  if (filled_in_ > kLongestLine)
+    return fail(Errc::usage,
+                fmt::format("its variables make the line longer than {} MiB", kLongestLine >> 20U),
+                "is a variable too long?");
+  return value;
 }
 
 std::string join_words(std::span<const std::string> words) {

@@ -23,8 +23,24 @@ inline constexpr std::size_t kLongestLine = 1U << 20U;
 /// longer than kLongestLine; errors of `variables`.
 Result<std::vector<std::string>> split_words(std::string_view line, const VariableLookup& variables = {});
 
-/// The value of the variable whose `${` stands at `at`; `at` is moved to its `}`.
-Result<std::string> expand_variable(std::string_view line, std::size_t& at, const VariableLookup& variables);
+/// Puts values in the place of the `${NAME}` of one line, of which there may be so many as fit kLongestLine.
+class VariableExpansion {
+ public:
+  /// Without `variables` nothing is replaced. They must live as long as this does.
+  explicit VariableExpansion(const VariableLookup& variables) : variables_(&variables) {}
+
+  /// Whether a variable begins at `at`.
+  bool begins(std::string_view line, std::size_t at) const {
+    return *variables_ && line.substr(at).starts_with("${");
+  }
+  /// The value of the variable that begins at `at`; `at` is moved to its `}`. Errc::usage when the brace is
+  /// not closed, and when the values make the line longer than kLongestLine; errors of the lookup.
+  Result<std::string> take(std::string_view line, std::size_t& at);
+
+ private:
+  const VariableLookup* variables_;
+  std::size_t filled_in_ = 0;  ///< Characters that came of variables.
+};
 
 /// A line that split_words() takes apart into these words.
 std::string join_words(std::span<const std::string> words);

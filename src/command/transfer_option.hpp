@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "canopen/sdo_client.hpp"
+#include "canopen/transfer.hpp"
 #include "command/command.hpp"
 
 namespace servoctl::command {

@@ -16,11 +16,7 @@ constexpr std::array<std::string_view, 12> kColumns{"code",       "extra",   "pa
 
 tl::unexpected<Error> bad_cell(std::string_view file, std::uint32_t line, std::string_view column,
                                std::string_view cell, std::string_view expected) {
-  Error error;
-  error.code = Errc::file;
-  error.message = fmt::format("{}:{}: column {}: '{}' is not {}", file, line, column, cell, expected);
-  error.line = line;
-  return fail(std::move(error));
+  return fail(file_error(file, line, fmt::format("column {}: '{}' is not {}", column, cell, expected)));
 }
 
 std::optional<Fault::Kind> parse_kind(std::string_view text) {

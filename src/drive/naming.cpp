@@ -91,6 +91,12 @@ std::string Target::label() const {
   return entry != nullptr ? entry->name : std::string();
 }
 
+bool Target::is_contradicted(std::string_view field) const {
+  if (parameter == nullptr) return false;
+  const auto& marks = parameter->doubts.contradicted;
+  return std::any_of(marks.begin(), marks.end(), [&](const od::Mark& mark) { return mark.field == field; });
+}
+
 std::string Target::label_zh() const {
   if (parameter != nullptr && !parameter->name_zh.empty()) return parameter->id + " " + parameter->name_zh;
   return entry != nullptr && !entry->name_zh.empty() ? entry->name_zh : label();

@@ -38,11 +38,8 @@ Result<PdoFile> parse_pdo_file(std::string_view toml, std::string_view file) {
   if (const auto flat = check_toml_depth(toml, file); !flat) return fail(flat.error());
   const auto parsed = toml::parse(toml, file);
   if (!parsed) {
-    Error error;
-    error.code = Errc::file;
-    error.line = parsed.error().source().begin.line;
-    error.message = fmt::format("{}:{}: {}", file, *error.line, parsed.error().description());
-    return fail(std::move(error));
+    const auto at = parsed.error().source().begin;
+    return fail(file_error(file, at.line, at.column, parsed.error().description()));
   }
   PdoFile out;
   std::int64_t format = 0;

@@ -53,7 +53,7 @@ tl::unexpected<Error> inconvertible(const Meaning& meaning, const NumberWithUnit
     return fail(Errc::usage, fmt::format("'{}' carries a unit, but this object has none", text),
                 "write the plain number");
   auto hint = fmt::format("write a value in {} or the raw number", meaning.unit);
-  if (meaning.measure && !meaning.bridge) hint += "; the drive does not report its scale";
+  if (meaning.measure && !meaning.bridge) hint += "; its scale could not be read from the drive";
   return fail(Errc::usage,
               fmt::format("'{}': the unit of this object is {}; {} cannot be converted to it", text,
                           meaning.unit, given.unit),

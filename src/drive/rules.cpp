@@ -161,12 +161,8 @@ Result<Rules> parse_rules(std::string_view toml, std::string_view file, Rules ba
   const auto parsed = toml::parse(toml, file);
   if (!parsed) {
     const auto& problem = parsed.error();
-    Error error;
-    error.code = Errc::file;
-    error.line = problem.source().begin.line;
-    error.message = fmt::format("{}:{}:{}: {}", file, *error.line, problem.source().begin.column,
-                                std::string_view(problem.description()));
-    return fail(std::move(error));
+    const auto at = problem.source().begin;
+    return fail(file_error(file, at.line, at.column, problem.description()));
   }
   return RulesReader(file, std::move(base)).read(parsed.table());
 }

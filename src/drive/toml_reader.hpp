@@ -117,11 +117,8 @@ class TableReader {
   }
 
   tl::unexpected<Error> fail_at(const toml::node& node, const std::string& what) const {
-    Error error;
-    error.code = Errc::file;
-    error.line = node.source().begin.line;
-    error.message = fmt::format("{}:{}:{}: {}", file_, *error.line, node.source().begin.column, what);
-    return fail(std::move(error));
+    const auto at = node.source().begin;
+    return fail(file_error(file_, at.line, at.column, what));
   }
 
   std::string_view file() const { return file_; }

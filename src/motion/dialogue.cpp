@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "canopen/cob_id.hpp"
 namespace servoctl::motion {
 namespace {
 
@@ -33,7 +32,7 @@ class DialogueRun {
   }
 
  private:
-  struct Channel {
+  struct Lane {
     Dialogue* dialogue;
     std::unique_ptr<session::ObjectChannel> objects;
     TimePoint pause;
@@ -61,7 +60,7 @@ class DialogueRun {
   }
 
   /// Until it waits for an answer or the time.
-  Result<void> advance(Channel& channel) {
+  Result<void> advance(Lane& channel) {
     for (;;) {
       if (auto sent = channel.objects->on_time(session_->received_at()); !sent) return sent;
       if (auto result = channel.objects->take_result()) {
@@ -81,7 +80,7 @@ class DialogueRun {
     }
   }
 
-  void start(Channel& channel, session::SdoRequest request) {
+  void start(Lane& channel, session::SdoRequest request) {
     if (request.data)
       channel.objects->start_download(request.object, std::move(*request.data), session_->now(),
                                       request.transfer);
@@ -117,7 +116,7 @@ class DialogueRun {
   }
 
   session::Session* session_;
-  std::vector<Channel> channels_;
+  std::vector<Lane> channels_;
   std::size_t open_ = 0;
   int remarks_ = 0;
   int lost_in_a_row_ = 0;  ///< Without an answer in between.

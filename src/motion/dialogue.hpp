@@ -10,6 +10,10 @@
 
 namespace servoctl::motion {
 
+/// After a request of a state, before anything else is sent to the node: nothing confirms it, and CiA 301
+/// names no time.
+inline constexpr Duration kStatePause = std::chrono::milliseconds(20);
+
 /// What a dialogue wants next: one of these.
 struct DialogueStep {
   std::optional<session::SdoRequest> request = {};  ///< A transfer, whose result goes to on_answer().

@@ -73,10 +73,10 @@ Result<FaultReset> check_power(session::Session& session, std::uint8_t node) {
   const auto state = read_state(session, node);
   if (!state) return fail(state.error());
   if (!drive::is_energised(*state)) return FaultReset::done;
-  return fail(session::drive_error(
-      Errc::negative, node,
-      fmt::format("its fault is reset, but it is energised: it is in {}", drive::name(*state)),
-      "another master controls it; stop and disable it, or switch off its supply"));
+  return fail(
+      drive_error(Errc::negative, node,
+                  fmt::format("its fault is reset, but it is energised: it is in {}", drive::name(*state)),
+                  "another master controls it; stop and disable it, or switch off its supply"));
 }
 
 /// Errc::refused for a drive that has its power and no fault.
@@ -85,10 +85,10 @@ Result<bool> needs_reset(session::Session& session, std::uint8_t node) {
   if (!state) return fail(state.error());
   if (*state == DriveState::fault || *state == DriveState::fault_reaction_active) return true;
   if (!drive::is_energised(*state)) return false;
-  return fail(session::drive_error(
-      Errc::refused, node,
-      fmt::format("it is in {}, not in Fault: a reset would de-energise it", drive::name(*state)),
-      "stop and disable it first"));
+  return fail(
+      drive_error(Errc::refused, node,
+                  fmt::format("it is in {}, not in Fault: a reset would de-energise it", drive::name(*state)),
+                  "stop and disable it first"));
 }
 
 bool resets_by_controlword(const drive::Profile* profile) {
@@ -125,11 +125,8 @@ Result<FaultReset> reset_fault(session::Session& session, const drive::Profile* 
   if (left && !*left && profile != nullptr) left = by_settings(session, *profile, node);
   if (!left) return fail(left.error());
   if (*left) return check_power(session, node);
-  Error error;
-  error.code = Errc::negative;
-  error.node = node;
-  error.message = fmt::format("node {}: the fault remains", node);
-  error.hint = "remove its cause (`fault show`); some faults need a power cycle";
+  auto error = drive_error(Errc::negative, node, "the fault remains",
+                           "remove its cause (`fault show`); some faults need a power cycle");
   const auto* gate = profile != nullptr && profile->rules.fault.reset_enabled_by
                          ? &*profile->rules.fault.reset_enabled_by
                          : nullptr;

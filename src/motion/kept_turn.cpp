@@ -172,7 +172,8 @@ std::vector<std::string> turn_notes(const MotionUnits& units, const KnownTurn& k
         "this drive; --turn overrides it{}",
         plain_number(units.turn().value_or(0), 12), known.kept->counts, known.kept->reason, known.kept->time,
         known.kept->identity.serial.value_or(0) == 0
-            ? "; it has no serial number (1018h:04): an exchanged drive or motor would not be noticed"
+            ? "; the drive has no serial number (1018h:04), so its identity would not show an exchanged "
+              "drive or motor"
             : ""));
   if (!known.unused.empty() && !units.turn())
     out.push_back(fmt::format("the kept counts per revolution are not used: {}; `units learn` measures again",

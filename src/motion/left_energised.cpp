@@ -28,8 +28,8 @@ void tell_left_energised(show::Desk& desk) {
       desk.notices.push_back(energised_notice(node));
     else if (state && desk.session->energised().contains(node))
       desk.notices.push_back(fmt::format(
-          "node {} dropped out by itself ({}) and may restart by itself: 6040h still holds \"enable "
-          "operation\"; `disable -n {}` clears that",
+          "node {} left \"operation enabled\" by itself ({}) and may restart by itself: 6040h may still hold "
+          "\"enable operation\"; `disable -n {}` clears it",
           node, drive::name(*state), node));
     else if (!state && state.error().code != Errc::sdo_abort)
       desk.notices.push_back(

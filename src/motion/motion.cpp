@@ -59,7 +59,7 @@ void Motion::set_standstill(double speed) {
 }
 
 bool Motion::stands_still(const MotionSample& sample) const {
-  const auto speed = sample[Channel::velocity];
+  const auto speed = sample[Signal::velocity];
   return !speed || std::abs(*speed) <= standstill_;
 }
 

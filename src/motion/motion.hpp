@@ -128,7 +128,7 @@ class Motion {
   session::Session& session() { return *session_; }
   const WatchdogPlan& watchdog() const { return watchdog_; }
   Error error(Errc code, const std::string& what, std::string hint = {}) const {
-    return session::drive_error(code, node_, what, std::move(hint));
+    return drive_error(code, node_, what, std::move(hint));
   }
 
  private:

@@ -18,9 +18,6 @@ constexpr std::uint32_t kLife = 5;  ///< Guard times in the life time.
 
 constexpr std::uint32_t kNoSuchObject = 0x0602'0000;  ///< CiA 301, table of SDO abort codes.
 
-/// A request of a state is not answered; CiA 301 names no time.
-constexpr Duration kNmtPause = std::chrono::milliseconds(20);
-
 }  // namespace
 
 MotionGuard::MotionGuard(session::Session& session, const MotionUnits& units, std::uint8_t node)
@@ -151,7 +148,7 @@ Result<void> MotionGuard::start_node() {
   }
   if (auto sent = session_->network().request_state(node_, session::NodeState::operational); !sent)
     return sent;
-  return pause(*session_, kNmtPause);
+  return pause(*session_, kStatePause);
 }
 
 Result<void> MotionGuard::enable() {

@@ -9,7 +9,6 @@
 #include "motion/power.hpp"
 #include "motion/watchdog.hpp"
 #include "session/foreign_writes.hpp"
-#include "session/option_scope.hpp"
 #include "session/rehearsal.hpp"
 
 namespace servoctl::motion {

@@ -32,7 +32,7 @@ void MotionGuard::put_node_back() {
     return;
   }
   const auto sent = session_->network().request_state(node_, session::NodeState::pre_operational);
-  if (!sent) note("the node could not be put back to pre-operational", sent.error());
+  if (!sent) note("the node could not be set back to pre-operational", sent.error());
 }
 
 /// Halt where there is one, target to zero, a quick stop when that does not help, then 07h and 00h.
@@ -74,8 +74,9 @@ void MotionGuard::bring_down() {
     result_.left.push_back(fmt::format(
         "it did not obey 0000h, written {} times: its present state was not commanded", done.ignored));
   else if (!done.outcome)
-    result_.left.push_back((powered_ ? "it could not be de-energised: " : "controlword not accepted: ") +
-                           done.outcome.error().message);
+    result_.left.push_back(
+        (powered_ ? "it could not be de-energised: " : "its last controlword was not accepted: ") +
+        done.outcome.error().message);
   if (lost_) disarm();
 }
 
@@ -112,7 +113,7 @@ void MotionGuard::put_back() {
 /// What the drive acknowledges is read as well: it may not have done it, and another master may use it.
 void MotionGuard::put_back(const Changed& changed) {
   session::LinkWait link(*session_,
-                         fmt::format("putting object {} of node {} back", to_string(changed.object), node_));
+                         fmt::format("restoring object {} of node {}", to_string(changed.object), node_));
   auto done = session_->download(node_, changed.object, changed.before);
   while (!done && done.error().code == Errc::bus && link.comes_back(done.error()))
     done = session_->download(node_, changed.object, changed.before);

@@ -79,7 +79,7 @@ class Homing {
   /// Where it stands is home now, so its position is the offset; its sign differs from drive to drive.
   bool is_at_offset(const MotionSample& sample) {
     const auto& units = motion_->units();
-    const auto position = sample[Channel::position];
+    const auto position = sample[Signal::position];
     if (!position || !units.has(objects::kHomeOffset) ||
         units.unit(objects::kHomeOffset) != units.unit(objects::kPositionActual))
       return true;

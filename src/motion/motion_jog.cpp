@@ -89,7 +89,7 @@ class Jogging {
 
   /// With the way it still needs to come to rest.
   bool is_far_enough(const MotionSample& sample) {
-    const auto position = sample[Channel::position];
+    const auto position = sample[Signal::position];
     if (!position) return false;
     if (!begin_) begin_ = *position;
     const double seconds = std::chrono::duration<double>(sample.time - last_time_).count();
@@ -100,7 +100,7 @@ class Jogging {
   }
 
   Result<void> check_following(const MotionSample& sample) {
-    const auto speed = sample[Channel::velocity];
+    const auto speed = sample[Signal::velocity];
     if (direction_ == 0 || !speed) return {};
     const double wanted = plan_->value * direction_;
     const bool wrong = *speed * wanted < 0 && std::abs(*speed) > std::abs(wanted) * kTurns;

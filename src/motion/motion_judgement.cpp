@@ -25,13 +25,13 @@ constexpr std::size_t kSamples = 2;
 /// A ramp of unknown length is over when the speed changes by no more than this part of it.
 constexpr double kSteady = 0.03;
 
-/// The values of a channel at the end of the time in which the motor was told to move.
-std::vector<double> values_at_end(const std::vector<MotionSample>& samples, Channel channel,
-                                  TimePoint told_at, TimePoint stopped_at) {
+/// The values of a signal at the end of the time in which the motor was told to move.
+std::vector<double> values_at_end(const std::vector<MotionSample>& samples, Signal signal, TimePoint told_at,
+                                  TimePoint stopped_at) {
   std::vector<double> out;
   const auto since = std::max(told_at + kRamp, stopped_at - kEnd);
   for (const auto& sample : samples)
-    if (sample.time >= since && sample.time <= stopped_at && sample[channel]) out.push_back(*sample[channel]);
+    if (sample.time >= since && sample.time <= stopped_at && sample[signal]) out.push_back(*sample[signal]);
   return out;
 }
 
@@ -46,8 +46,8 @@ double spread(const std::vector<double>& values) {
   return *greatest - *least;
 }
 
-bool tells(const std::vector<MotionSample>& samples, Channel channel) {
-  return std::any_of(samples.begin(), samples.end(), [&](const auto& s) { return s[channel].has_value(); });
+bool tells(const std::vector<MotionSample>& samples, Signal signal) {
+  return std::any_of(samples.begin(), samples.end(), [&](const auto& s) { return s[signal].has_value(); });
 }
 
 }  // namespace
@@ -57,11 +57,11 @@ void MotionJudgement::judge_speed(const Motion& motion, const MotionPlan& plan, 
   const auto& samples = motion.monitor().samples();
   const bool same_unit =
       motion.units().unit(objects::kVelocityActual) == motion.units().unit(objects::kTargetVelocity);
-  if (!tells(samples, Channel::velocity) || !same_unit) {
+  if (!tells(samples, Signal::velocity) || !same_unit) {
     unchecked.push_back("the speed was not checked: the drive does not report it in the unit of the target");
     return;
   }
-  const auto values = values_at_end(samples, Channel::velocity, told_at, stopped_at);
+  const auto values = values_at_end(samples, Signal::velocity, told_at, stopped_at);
   const bool speeding_up =
       motion.has_own_ramps() && values.size() >= kSamples && spread(values) > std::abs(plan.value) * kSteady;
   if (values.size() < kSamples || speeding_up) {
@@ -78,7 +78,7 @@ void MotionJudgement::judge_way(const Motion& motion, const MotionPlan& plan) {
   const auto& samples = motion.monitor().samples();
   std::vector<double> places;
   for (const auto& sample : samples)
-    if (const auto place = sample[Channel::position]) places.push_back(*place);
+    if (const auto place = sample[Signal::position]) places.push_back(*place);
   if (places.empty()) return;
   double step = 0;
   for (std::size_t i = 1; i < places.size(); ++i) step = std::max(step, std::abs(places[i] - places[i - 1]));
@@ -92,7 +92,7 @@ void MotionJudgement::judge_way(const Motion& motion, const MotionPlan& plan) {
 
 void MotionJudgement::judge_target(const Motion& motion, const MotionPlan& plan, double near) {
   const auto& samples = motion.monitor().samples();
-  const auto place = samples.empty() ? std::nullopt : samples.back()[Channel::position];
+  const auto place = samples.empty() ? std::nullopt : samples.back()[Signal::position];
   if (!place) {
     unchecked.push_back("the position was not checked: the drive does not report it");
     return;
@@ -107,10 +107,10 @@ void MotionJudgement::judge_target(const Motion& motion, const MotionPlan& plan,
 void MotionJudgement::judge_torque(const Motion& motion, const MotionPlan& plan, TimePoint told_at,
                                    TimePoint stopped_at) {
   const auto& samples = motion.monitor().samples();
-  const auto values = values_at_end(samples, Channel::torque, told_at, stopped_at);
-  const auto speeds = values_at_end(samples, Channel::velocity, told_at, stopped_at);
+  const auto values = values_at_end(samples, Signal::torque, told_at, stopped_at);
+  const auto speeds = values_at_end(samples, Signal::velocity, told_at, stopped_at);
   const bool same_unit = motion.units().unit(objects::kTorqueActual) == plan.unit;
-  if (!tells(samples, Channel::torque) || !same_unit) {
+  if (!tells(samples, Signal::torque) || !same_unit) {
     unchecked.push_back("the torque was not checked: the drive does not report it in the unit of the target");
     return;
   }

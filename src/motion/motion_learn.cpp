@@ -107,7 +107,9 @@ class Learning {
     for (const auto& [object, data] : ramps.settings)
       if (const auto done = motion_->write(object, data); !done) return done;
     const auto data = motion_->units().bytes(objects::kTargetVelocity, wanted_);
-    if (!data) return fail(motion_->error(Errc::refused, "accepts no target velocity (60FFh)"));
+    if (!data)
+      return fail(motion_->error(Errc::refused,
+                                 "its target velocity (60FFh) cannot be set: its type or unit is not known"));
     if (const auto done = motion_->write(objects::kTargetVelocity, *data); !done) return done;
     looks_.clear();
     if (const auto watched = watch(kSettling); !watched) return watched;
@@ -130,17 +132,17 @@ class Learning {
                          fmt::format("turns too fast: {} shows {} rpm instead of {}", learn_->monitor_name,
                                      number_text(*rpm), number_text(std::abs(learn_->rpm))),
                          "fewer encoder counts than the family's data says? " + std::string(kOtherWay)));
-    const auto position = sample[Channel::position];
+    const auto position = sample[Signal::position];
     if (!position)
       return fail(motion_->error(Errc::negative, "does not report its position (6064h) while moving"));
-    const auto speed = sample[Channel::velocity];
+    const auto speed = sample[Signal::velocity];
     if (!speed) return fail(motion_->error(Errc::negative, "does not report its speed (606Ch) while moving"));
     looks_.push_back({sample.time, *position, *speed, *rpm});
     const bool wrong = !keeps_ && *speed * wanted_ < 0 && std::abs(*speed) > std::abs(wanted_) * kTurns;
     wrong_looks_ = wrong ? wrong_looks_ + 1 : 0;
     if (wrong_looks_ >= kWrongLooks)
       return fail(motion_->error(Errc::negative, "turns the wrong way",
-                                 "encoder direction, polarity (607Eh) or motor wiring"));
+                                 "check encoder direction, polarity (607Eh), motor wiring"));
     return false;
   }
 
@@ -249,7 +251,9 @@ Result<MotionPlan> plan_learn(Motion& motion, const Learn& learn) {
   plan.value = plan.speed = std::abs(learn.rpm) / 60 * learn.least * learn.gear;
   plan.unit = motion.units().unit(objects::kTargetVelocity);
   const auto data = motion.units().bytes(objects::kTargetVelocity, std::copysign(plan.value, learn.rpm));
-  if (!data) return fail(motion.error(Errc::refused, "cannot be told a speed (60FFh)"));
+  if (!data)
+    return fail(motion.error(Errc::refused,
+                             "its target velocity (60FFh) cannot be set: its type or unit is not known"));
   plan.command = *data;
   if (const auto ramps =
           motion.add_ramps(plan.value, {objects::kProfileAcceleration, objects::kProfileDeceleration}, plan);
@@ -259,7 +263,7 @@ Result<MotionPlan> plan_learn(Motion& motion, const Learn& learn) {
                              number_text(learn.rpm), learn.monitor_name, servoctl::to_string(learn.length),
                              turns_of(learn), number_text(std::round(plan.value)), plan.unit);
   plan.tell(fmt::format(
-      "60FFh and its ramps are raised in steps, by at most {} times the last speed each, until {} shows {} "
+      "60FFh and its ramps are written in steps, each for at most {} times the last speed, until {} shows {} "
       "rpm",
       number_text(kSpeedUp), learn.monitor_name, number_text(std::abs(learn.rpm))));
   plan.moving = {{objects::kTargetVelocity, plan.command},

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/number.hpp"
+#include "drive/naming.hpp"
 #include "drive/standard_objects.hpp"
 #include "motion/kept_turn.hpp"
 #include "motion/motion.hpp"
@@ -23,29 +24,31 @@ constexpr Duration kPatience = std::chrono::milliseconds(200);
 /// A torque in per cent is one of the rated torque.
 constexpr double kRatedTorque = 100;
 
+/// Give or take what a monitor that is read a moment later shows.
+bool is_a_ten(double factor) { return factor > 8 && factor < 12.5; }
+
 }  // namespace
 
 Result<void> Motion::read_limits() {
   struct Row {
-    Channel channel;
+    Signal signal;
     std::string_view option;
     const std::string* text;
     std::optional<double>* out;
   };
   auto& limits = monitor_->limits();
-  for (const auto& row : {Row{Channel::torque, "--max-torque", &options_.max_torque, &limits.torque},
-                          Row{Channel::following_error, "--max-following-error",
-                              &options_.max_following_error, &limits.following_error},
-                          Row{Channel::position, "--window", &options_.window, &limits.travel}}) {
+  for (const auto& row : {Row{Signal::torque, "--max-torque", &options_.max_torque, &limits.torque},
+                          Row{Signal::following_error, "--max-following-error", &options_.max_following_error,
+                              &limits.following_error},
+                          Row{Signal::position, "--window", &options_.window, &limits.travel}}) {
     if (row.text->empty()) continue;
-    const auto object = object_of(row.channel);
+    const auto object = object_of(row.signal);
     // Of a torque that is asked for it is the ceiling as well; other motions are refused by check_speed().
-    if (row.channel == Channel::torque && !units_->has(object) && rules().torque) continue;
+    if (row.signal == Signal::torque && !units_->has(object) && rules().torque) continue;
     if (!units_->has(object))
-      return fail(
-          Errc::usage,
-          fmt::format("this family does not report its {} ({})", name(row.channel), to_string(object)),
-          "leave this limit out");
+      return fail(Errc::usage,
+                  fmt::format("this family does not report its {} ({})", name(row.signal), to_string(object)),
+                  "leave this limit out");
     const auto value = parse_limit(object, row.option, *row.text);
     if (!value) return fail(value.error());
     *row.out = *value;
@@ -81,7 +84,7 @@ std::optional<double> Motion::read_as(ObjectAddress as, ObjectAddress object) co
 /// Counts of a turn that were measured once may be those of another motor, and parameters that tell them may
 /// not be in force: what they make of 606Ch is held against the drive's own monitor, in every look.
 Result<void> Motion::check_turn(const MotionSample& sample) {
-  const auto speed = sample[Channel::velocity];
+  const auto speed = sample[Signal::velocity];
   const auto& name = profile_->rules.learn.speed;
   const auto monitor = units_->turn_way() != nullptr ? units_->object(name) : std::nullopt;
   if (!monitor || !speed || units_->unit(objects::kVelocityActual) != "rpm") return {};
@@ -91,7 +94,7 @@ Result<void> Motion::check_turn(const MotionSample& sample) {
   // Kept counts were measured by this monitor; what the drive's own parameters tell holds without it.
   if (!answer && answer.error().code == Errc::sdo_abort && !units_->uses_learned()) {
     turn_unchecked_ =
-        fmt::format("its counts of a turn were not held against {}, which it refuses to tell", name);
+        fmt::format("its counts per revolution were not compared with {}, which it refuses to give", name);
     return {};
   }
   if (!answer) return fail(answer.error());
@@ -111,17 +114,23 @@ Error Motion::quarrel(double shown, double speed) const {
   const auto& name = profile_->rules.learn.speed;
   if (units_->uses_learned())
     return error(Errc::negative,
-                 fmt::format("turns at {} rpm by {}, but at {} rpm by the kept counts per rev",
+                 fmt::format("turns at {} rpm by {}, but at {} rpm by the kept counts per revolutionolution",
                              number_text(shown), name, number_text(speed)),
                  "another motor or drive? `units learn` measures again, `units forget` deletes the counts");
-  const auto pending = restart_note(*profile_, *units_->turn_way());
+  auto hint = restart_note(*profile_, *units_->turn_way());
+  if (!hint.empty()) hint += "; ";
+  if (const double factor = std::abs(shown / speed); is_a_ten(std::max(factor, 1 / factor)))
+    if (const auto monitor = drive::resolve(profile_, name); monitor && monitor->is_contradicted("scale"))
+      hint += fmt::format(
+          "the manual states two scales of {}, a factor of ten apart: perhaps only that one is wrong; ",
+          name);
   return error(
       Errc::negative,
       fmt::format(
           "turns at {} rpm by {}, but at {} rpm by the {} increments per revolution in its parameters",
           number_text(shown), name, number_text(speed), plain_number(units_->turn().value_or(0), 12)),
-      (pending.empty() ? "" : pending + "; ") +
-          "--turn gives increments per rev, and then it is not held against " + name);
+      hint + "--turn gives the 6064h increments per revolution, and these are then not compared with " +
+          name);
 }
 
 std::optional<double> Motion::fastest() const {
@@ -172,7 +181,7 @@ Result<void> Motion::check_speed(double speed) const {
     return fail(error(
         Errc::refused,
         fmt::format("{} {} is above what the drive allows, {} {}", numbers.first, unit, numbers.second, unit),
-        "607Fh and 6080h hold it"));
+        "607Fh and 6080h set it"));
   return fail(
       error(Errc::refused,
             fmt::format("{} {} is above the limit of {} {}", numbers.first, unit, numbers.second, unit),

@@ -10,13 +10,12 @@
 #include "motion/producer_claim.hpp"
 #include "session/identify.hpp"
 #include "session/option_scope.hpp"
-#include "session/pdo_setup.hpp"
 #include "session/process_values.hpp"
 
 namespace servoctl::motion {
 namespace {
 
-constexpr std::array kEvery{Channel::position, Channel::velocity, Channel::torque, Channel::following_error};
+constexpr std::array kEvery{Signal::position, Signal::velocity, Signal::torque, Signal::following_error};
 
 /// Longest wait for one answer of a drive that moves: meanwhile nothing is supervised.
 constexpr Duration kPatience = std::chrono::milliseconds(200);
@@ -25,33 +24,33 @@ constexpr Duration kPatience = std::chrono::milliseconds(200);
 constexpr double kUnevenness = 2;
 
 tl::unexpected<Error> stopped_by(std::uint8_t node, const std::string& what, std::string hint) {
-  return fail(session::drive_error(Errc::negative, node, what, std::move(hint)));
+  return fail(drive_error(Errc::negative, node, what, std::move(hint)));
 }
 
 }  // namespace
 
-std::string_view name(Channel channel) {
-  constexpr std::array<std::string_view, kChannels> kNames{"position", "velocity", "torque",
-                                                           "following_error"};
-  return kNames[static_cast<std::size_t>(channel)];
+std::string_view name(Signal signal) {
+  constexpr std::array<std::string_view, kSignals> kNames{"position", "velocity", "torque",
+                                                          "following_error"};
+  return kNames[static_cast<std::size_t>(signal)];
 }
 
-ObjectAddress object_of(Channel channel) {
-  constexpr std::array<ObjectAddress, kChannels> kObjects{objects::kPositionActual, objects::kVelocityActual,
-                                                          objects::kTorqueActual, objects::kFollowingError};
-  return kObjects[static_cast<std::size_t>(channel)];
+ObjectAddress object_of(Signal signal) {
+  constexpr std::array<ObjectAddress, kSignals> kObjects{objects::kPositionActual, objects::kVelocityActual,
+                                                         objects::kTorqueActual, objects::kFollowingError};
+  return kObjects[static_cast<std::size_t>(signal)];
 }
 
 MotionMonitor::MotionMonitor(session::Session& session, const MotionUnits& units, std::uint8_t node)
     : session_(&session), units_(&units), node_(node) {
-  for (const auto channel : kEvery)
-    if (units.has(object_of(channel))) channels_.push_back(channel);
+  for (const auto signal : kEvery)
+    if (units.has(object_of(signal))) channels_.push_back(signal);
 }
 
 void MotionMonitor::find_tpdos() {
   if (tpdos_) return;
   std::vector<ObjectAddress> objects{objects::kStatusword};
-  for (const auto channel : channels_) objects.push_back(object_of(channel));
+  for (const auto signal : channels_) objects.push_back(object_of(signal));
   tpdos_ = session::process_values(*session_, &units_->profile(), node_, objects);
   // The session learns from it under which CAN-ID emergencies come.
   if (units_->has(objects::kEmergencyCobId)) (void)session_->upload(node_, objects::kEmergencyCobId);
@@ -78,13 +77,13 @@ std::vector<Result<Bytes>> MotionMonitor::look(std::span<const ObjectAddress> ob
 
 Result<MotionSample> MotionMonitor::sample() {
   std::vector<ObjectAddress> wanted{objects::kStatusword};
-  for (const auto channel : channels_) wanted.push_back(object_of(channel));
+  for (const auto signal : channels_) wanted.push_back(object_of(signal));
   const auto answers = look(wanted);
   if (!answers[0]) return fail(answers[0].error());
   MotionSample out;
   out.time = session_->now();
   out.statusword = static_cast<std::uint16_t>(load_le(*answers[0]));
-  std::vector<Channel> known;
+  std::vector<Signal> known;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     const auto& answer = answers[i + 1];
     if (!answer && answer.error().code != Errc::sdo_abort) return fail(answer.error());
@@ -94,7 +93,7 @@ Result<MotionSample> MotionMonitor::sample() {
       out.values[static_cast<std::size_t>(channels_[i])] = number->value;
   }
   channels_ = std::move(known);
-  if (!begin_) begin_ = out[Channel::position];
+  if (!begin_) begin_ = out[Signal::position];
   if (rate_ && !samples_.empty()) follow_zero(out);
   samples_.push_back(out);
   for (const auto& done : {session::refuse_duplicate(*session_, node_), check_producer(*session_),
@@ -105,12 +104,12 @@ Result<MotionSample> MotionMonitor::sample() {
 
 void MotionMonitor::follow_zero(const MotionSample& sample) {
   const auto& last = samples_.back();
-  const auto here = sample[Channel::position];
-  const auto there = last[Channel::position];
-  const auto speed = sample[Channel::velocity];
+  const auto here = sample[Signal::position];
+  const auto there = last[Signal::position];
+  const auto speed = sample[Signal::velocity];
   if (!here || !there || !speed) return;
   const double seconds = std::chrono::duration<double>(sample.time - last.time).count();
-  const double fastest = std::max(std::abs(*speed), std::abs(last[Channel::velocity].value_or(0)));
+  const double fastest = std::max(std::abs(*speed), std::abs(last[Signal::velocity].value_or(0)));
   const double longest = fastest * *rate_ * seconds * kUnevenness + *rate_;
   if (std::abs(*here - *there) > longest) begin_ = *begin_ + *here - *there;
 }
@@ -138,8 +137,8 @@ Result<void> MotionMonitor::check_events() {
     if (std::holds_alternative<session::NodeEvent::BootUp>(event.what))
       out = stopped_by(node_, "restarted while moving", "is its supply steady?");
     if (std::holds_alternative<session::NodeEvent::Gone>(event.what))
-      out = fail(session::drive_error(Errc::timeout, node_, "lost its heartbeat while moving",
-                                      "check cable, termination and supply"));
+      out = fail(drive_error(Errc::timeout, node_, "lost its heartbeat while moving",
+                             "check cable, termination and supply"));
   }
   return out;
 }
@@ -154,32 +153,31 @@ Result<void> MotionMonitor::check_state(const MotionSample& sample) const {
 }
 
 Result<void> MotionMonitor::check_limits(const MotionSample& sample) const {
-  const auto beyond = [&](Channel channel, std::optional<double> limit, double from, std::string_view what) {
-    const auto value = sample[channel];
+  const auto beyond = [&](Signal signal, std::optional<double> limit, double from, std::string_view what) {
+    const auto value = sample[signal];
     if (!limit || !value || std::abs(*value - from) <= *limit) return Result<void>{};
     const auto numbers = told_apart(*value - from, *limit);
     return Result<void>(stopped_by(node_,
                                    fmt::format("{} of {} {} exceeds its limit of {}", what, numbers.first,
-                                               units_->unit(object_of(channel)), numbers.second),
+                                               units_->unit(object_of(signal)), numbers.second),
                                    "the motion was stopped; raise the limit if this is intended"));
   };
-  for (const auto& done :
-       {beyond(Channel::torque, limits_.torque, 0, "the torque"),
-        beyond(Channel::following_error, limits_.following_error, 0, "the following error"),
-        beyond(Channel::position, limits_.travel, begin_.value_or(0), "the way"),
-        beyond(Channel::velocity, limits_.speed, 0, "the speed")})
+  for (const auto& done : {beyond(Signal::torque, limits_.torque, 0, "the torque"),
+                           beyond(Signal::following_error, limits_.following_error, 0, "the following error"),
+                           beyond(Signal::position, limits_.travel, begin_.value_or(0), "the way"),
+                           beyond(Signal::velocity, limits_.speed, 0, "the speed")})
     if (!done) return done;
   return {};
 }
 
 std::vector<Series> MotionMonitor::series() const {
   std::vector<Series> out;
-  for (const auto channel : kEvery) {
-    Series one{std::string(name(channel)), units_->unit(object_of(channel)), {}, {}};
+  for (const auto signal : kEvery) {
+    Series one{std::string(name(signal)), units_->unit(object_of(signal)), {}, {}};
     for (const auto& sample : samples_) {
-      if (!sample[channel]) continue;
+      if (!sample[signal]) continue;
       one.seconds.push_back(std::chrono::duration<double>(sample.time - samples_.front().time).count());
-      one.values.push_back(*sample[channel]);
+      one.values.push_back(*sample[signal]);
     }
     if (!one.values.empty()) out.push_back(std::move(one));
   }

@@ -9,26 +9,24 @@
 
 #include "base/series.hpp"
 #include "motion/motion_units.hpp"
+#include "session/network.hpp"
 #include "session/session.hpp"
-#include "session/tpdo_values.hpp"
 
 namespace servoctl::motion {
 
 /// What is measured while a drive moves.
-enum class Channel : std::uint8_t { position, velocity, torque, following_error };
-inline constexpr std::size_t kChannels = 4;
-std::string_view name(Channel channel);  ///< `position velocity torque following_error`
-ObjectAddress object_of(Channel channel);
+enum class Signal : std::uint8_t { position, velocity, torque, following_error };
+inline constexpr std::size_t kSignals = 4;
+std::string_view name(Signal signal);  ///< `position velocity torque following_error`
+ObjectAddress object_of(Signal signal);
 
 /// One look at a moving drive. Numbers are in the units of MotionUnits::physical(); one that the drive does
 /// not tell is missing.
 struct MotionSample {
   TimePoint time;
   std::uint16_t statusword = 0;
-  std::array<std::optional<double>, kChannels> values;
-  std::optional<double> operator[](Channel channel) const {
-    return values[static_cast<std::size_t>(channel)];
-  }
+  std::array<std::optional<double>, kSignals> values;
+  std::optional<double> operator[](Signal signal) const { return values[static_cast<std::size_t>(signal)]; }
 };
 
 /// Beyond these the motion is stopped at once; in the units of the samples.
@@ -84,7 +82,7 @@ class MotionMonitor {
   const MotionUnits* units_;
   std::uint8_t node_;
   MotionLimits limits_;
-  std::vector<Channel> channels_;  ///< Those the drive has.
+  std::vector<Signal> channels_;  ///< Those the drive has.
   std::unique_ptr<session::ProcessValues> tpdos_;
   TimePoint told_at_{};
   std::size_t by_pdo_ = 0;

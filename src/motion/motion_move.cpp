@@ -91,7 +91,7 @@ class Moving {
             motion_->error(Errc::negative,
                            taken ? "target not accepted: statusword bit 12 (acknowledge) stayed 0"
                                  : "is not ready for a target: statusword bit 12 (acknowledge) stayed 1",
-                           "does another master command it?"));
+                           "does another master control it?"));
     }
     return motion_->command(kEnabled);
   }
@@ -100,7 +100,7 @@ class Moving {
     if (motion_->rules().handshake && (sample.statusword & kFollowingErrorBit) != 0)
       return fail(motion_->error(Errc::negative, "reports a following error (bit 13 of the statusword)",
                                  "is it blocked, or are its ramps too steep for the load?"));
-    const auto position = sample[Channel::position];
+    const auto position = sample[Signal::position];
     last_ = position.value_or(last_);
     const bool near = !position || std::abs(*position - plan_->value) <= window_;
     return (sample.statusword & kTargetReached) != 0 && near && motion_->stands_still(sample);
@@ -160,9 +160,9 @@ Result<void> check_start(Motion& motion, const MotionPlan& plan) {
   const auto here = motion.units().physical(objects::kPositionActual, *answer).value_or(Physical{});
   if (!plan.from || std::abs(here.value - *plan.from) <= near(plan)) return {};
   return fail(motion.error(Errc::refused,
-                           fmt::format("has moved since you were asked: it was at {} {} and is at {}",
+                           fmt::format("has moved since the preflight check: it was at {} {} and is at {}",
                                        number_text(*plan.from), plan.unit, number_text(here.value)),
-                           "nothing was moved; please repeat"));
+                           "nothing was moved; run the command again"));
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ using report::Record;
 using report::Show;
 using report::Value;
 
-constexpr std::array kEvery{Channel::position, Channel::velocity, Channel::torque, Channel::following_error};
+constexpr std::array kEvery{Signal::position, Signal::velocity, Signal::torque, Signal::following_error};
 
 double seconds_since(const MotionSample& sample, TimePoint begin) {
   return std::chrono::duration<double>(sample.time - begin).count();
@@ -62,8 +62,8 @@ Value end_record(const MotionEnd& end) {
 Error unverified(std::uint8_t node, const MotionReport& done) {
   auto text = end_text(done.end, done.watchdog);
   if (!done.outcome) text += fmt::format("; the motion ended with: {}", done.outcome.error().message);
-  return session::drive_error(done.outcome ? Errc::negative : done.outcome.error().code, node, text,
-                              "do not approach the machine before its supply is off");
+  return drive_error(done.outcome ? Errc::negative : done.outcome.error().code, node, text,
+                     "do not approach the machine before its supply is off");
 }
 
 std::string_view result_text(const MotionReport& done) {
@@ -103,14 +103,14 @@ Value motion_result(show::Desk& desk, std::uint8_t node, const MotionPlan& plan,
   else if (!done.outcome)
     desk.errors.push_back(ended(node, done));
   else if (!done.differences.empty())
-    desk.errors.push_back(session::drive_error(
-        Errc::negative, node, fmt::format("done, but {}", fmt::join(done.differences, "; ")),
-        "check the drive's limits (`param list`, 607Fh, 6080h, 6072h), its gear and its load"));
+    desk.errors.push_back(
+        drive_error(Errc::negative, node, fmt::format("done, but {}", fmt::join(done.differences, "; ")),
+                    "check the drive's limits (`param list`, 607Fh, 6080h, 6072h), its gear and its load"));
   for (const auto& text : done.unchecked) desk.notices.push_back(fmt::format("node {}: {}", node, text));
   for (const auto& left : done.end.left)
-    desk.errors.push_back(session::drive_error(
-        Errc::negative, node, left,
-        left.starts_with("object ") ? "write it by hand" : "check the drive before using it"));
+    desk.errors.push_back(
+        drive_error(Errc::negative, node, left,
+                    left.starts_with("object ") ? "write it by hand" : "check the drive before using it"));
   for (const auto& note : done.end.notes) desk.notices.push_back(fmt::format("node {}: {}", node, note));
   for (const auto& event : done.events)
     desk.notices.push_back(show::notice_text(event, desk.profile, desk.chinese));
@@ -151,19 +151,19 @@ std::string preflight_text(const std::vector<PreflightItem>& items) {
 
 Record sample_record(const MotionSample& sample, TimePoint begin) {
   Record out{{"time", seconds_since(sample, begin)}, {"statusword", sample.statusword}};
-  for (const auto channel : kEvery)
-    if (const auto value = sample[channel]) out.push_back({std::string(name(channel)), rounded(*value, 9)});
+  for (const auto signal : kEvery)
+    if (const auto value = sample[signal]) out.push_back({std::string(name(signal)), rounded(*value, 9)});
   return out;
 }
 
 std::string sample_line(const MotionSample& sample, TimePoint begin, const MotionUnits& units) {
   auto out = fmt::format("{:8.3f} s", seconds_since(sample, begin));
-  constexpr std::array<std::string_view, kChannels> kShort{"", "", "torque ", "error "};
-  for (const auto channel : kEvery) {
-    const auto value = sample[channel];
+  constexpr std::array<std::string_view, kSignals> kShort{"", "", "torque ", "error "};
+  for (const auto signal : kEvery) {
+    const auto value = sample[signal];
     if (!value) continue;
-    const auto text = fmt::format("{}{} {}", kShort[static_cast<std::size_t>(channel)], number_text(*value),
-                                  units.unit(object_of(channel)));
+    const auto text = fmt::format("{}{} {}", kShort[static_cast<std::size_t>(signal)], number_text(*value),
+                                  units.unit(object_of(signal)));
     out += "  " + pad_left(text, 15);
   }
   return out;
@@ -172,17 +172,14 @@ std::string sample_line(const MotionSample& sample, TimePoint begin, const Motio
 Result<void> write_csv(const std::string& path, const std::vector<MotionSample>& samples,
                        const MotionUnits& units) {
   std::string out = "seconds,statusword";
-  for (const auto channel : kEvery) {
-    const auto unit = units.unit(object_of(channel));
-    if (units.has(object_of(channel)))
-      out += "," + csv_cell(fmt::format("{}{}", name(channel), unit.empty() ? "" : " (" + unit + ")"));
-  }
+  for (const auto signal : kEvery)
+    if (units.has(object_of(signal))) out += ',' + csv_heading(name(signal), units.unit(object_of(signal)));
   out += '\n';
   for (const auto& sample : samples) {
     out += fmt::format("{:.6f},0x{:04X}", seconds_since(sample, samples.front().time), sample.statusword);
-    for (const auto channel : kEvery) {
-      if (!units.has(object_of(channel))) continue;
-      const auto value = sample[channel];
+    for (const auto signal : kEvery) {
+      if (!units.has(object_of(signal))) continue;
+      const auto value = sample[signal];
       out += value ? fmt::format(",{:.9g}", *value) : ",";
     }
     out += '\n';

@@ -28,7 +28,7 @@ Result<void> limit_speed(const Motion& motion, double cap, MotionPlan& plan) {
     if (held->value > cap * (1 + drive::kMostLoss)) {
       const auto numbers = told_apart(cap, held->value);
       return fail(Errc::usage,
-                  fmt::format("--limit: {} {} is below the lowest limit the drive can hold ({}): {} {}",
+                  fmt::format("--limit: {} {} cannot be set in the drive ({}): its nearest limit is {} {}",
                               numbers.first, unit, to_string(*object), numbers.second, held->unit),
                   "raise the limit");
     }
@@ -94,12 +94,14 @@ Result<MotionPlan> plan_torque(Motion& motion, const Torque& torque) {
   soften(motion, value.value, plan);
   if (!motion.supervise_speed(*cap * kOvershoot))
     return fail(motion.error(
-        Errc::refused, "has its speed and limit in different units: it cannot be monitored",
-        motion.is_told_turn() ? ""
-                              : "add --turn (increments of 6064h in a turn), if the drive does not tell it"));
+        Errc::refused,
+        "has its speed (606Ch) in another unit than the limit (60FFh), so the limit cannot be monitored",
+        motion.is_told_turn()
+            ? ""
+            : "add --turn (6064h increments per revolution), if the drive does not report it"));
   motion.set_standstill(*cap);
-  plan.summary = fmt::format("apply {} {} for {}, no faster than {} {}", number_text(value.value), value.unit,
-                             servoctl::to_string(torque.length), number_text(*cap),
+  plan.summary = fmt::format("apply a torque of {} {} for {}, no faster than {} {}", number_text(value.value),
+                             value.unit, servoctl::to_string(torque.length), number_text(*cap),
                              motion.units().unit(objects::kTargetVelocity));
   return plan;
 }

@@ -57,7 +57,7 @@ Error MotionUnits::unknown_turn(ObjectAddress object, Error error) const {
   const auto what = meaning(object);
   if (what.measure == drive::Measure::increments_per_turn && !what.bridge)
     error.hint += fmt::format("; --turn gives the 6064h increments per revolution{}",
-                              profile_->rules.learn.speed.empty() ? "" : ", `units learn` measures it");
+                              profile_->rules.learn.speed.empty() ? "" : ", `units learn` measures them");
   return error;
 }
 

@@ -38,14 +38,14 @@ Result<void> check_mode(session::Session& session, const drive::Profile& profile
                         std::int8_t mode) {
   const auto meaning = drive::meaning(drive::target_at(&profile, objects::kModeOfOperation), node);
   if (meaning.labels != nullptr && drive::label_of(meaning, od::Value(std::int64_t{mode})) == nullptr)
-    return fail(session::drive_error(Errc::refused, node, fmt::format("this family has no mode {}", mode),
-                                     "modes: " + known_modes(meaning)));
+    return fail(drive_error(Errc::refused, node, fmt::format("this family has no mode {}", mode),
+                            "modes: " + known_modes(meaning)));
   if (mode < 1 || mode > 32 || profile.dictionary.find(objects::kSupportedModes) == nullptr) return {};
   const auto supported = session.upload(node, objects::kSupportedModes);
   if (!supported && supported.error().code != Errc::sdo_abort) return fail(supported.error());
   const auto bits = supported ? load_le(*supported) : 0;
   if (bits == 0 || (bits >> static_cast<unsigned>(mode - 1) & 1U) != 0) return {};
-  return fail(session::drive_error(
+  return fail(drive_error(
       Errc::refused, node,
       fmt::format("the drive does not support mode {} (6502h is 0x{:X})", mode_text(profile, mode), bits),
       "6502h lists its modes: bit 0 is mode 1"));
@@ -68,11 +68,10 @@ Result<void> set_mode(session::Session& session, const drive::Profile& profile, 
     if (!now_in) return fail(now_in.error());
     if (*now_in == mode) return {};
     if (session.now() >= end)
-      return fail(
-          session::drive_error(Errc::negative, node,
-                               fmt::format("was set to mode {} but stays in mode {} (6061h)",
-                                           mode_text(profile, mode), mode_text(profile, *now_in)),
-                               "is it in the control mode for CANopen motion? `info` names what it needs"));
+      return fail(drive_error(Errc::negative, node,
+                              fmt::format("was set to mode {} but stays in mode {} (6061h)",
+                                          mode_text(profile, mode), mode_text(profile, *now_in)),
+                              "is it in the control mode for CANopen motion? `info` names what it needs"));
     if (const auto paused = pause(session, kPause); !paused) return paused;
   }
 }

@@ -18,9 +18,9 @@ constexpr int kMostSteps = 12;
 }  // namespace
 
 Error enabled_by_others(std::uint8_t node, DriveState state) {
-  return session::drive_error(Errc::refused, node,
-                              fmt::format("it was enabled by somebody else: it is in {}", drive::name(state)),
-                              "nothing was moved; `disable` it if no other master controls it");
+  return drive_error(Errc::refused, node,
+                     fmt::format("it was enabled by somebody else: it is in {}", drive::name(state)),
+                     "nothing was moved; `disable` it if no other master controls it");
 }
 
 Result<void> pause(session::Session& session, Duration time) {
@@ -97,7 +97,7 @@ Error Power::stuck(DriveState from, const drive::PowerStep& next) const {
     hint = "the manual's enable conditions are not met: emergency stop, main supply, enable input?";
   else
     hint = "the manual's conditions for enabling are not met: inputs, main supply, brake, mode";
-  return session::drive_error(Errc::negative, node_, what, hint);
+  return drive_error(Errc::negative, node_, what, hint);
 }
 
 Result<void> Power::step(DriveState from, const drive::PowerStep& next) {
@@ -120,12 +120,11 @@ Result<std::vector<drive::PowerStep>> Power::path_to(DriveState from, DriveState
   const bool resuming = from == DriveState::quick_stop_active && resumes();
   if (auto path = drive::power_path(from, goal, resuming)) return std::move(*path);
   const bool fault = from == DriveState::fault || from == DriveState::fault_reaction_active;
-  return fail(
-      session::drive_error(Errc::refused, node_,
-                           fmt::format("is in {}: no command leads to {} from there (statusword 0x{:04X})",
-                                       drive::name(from), drive::name(goal), statusword_),
-                           fault ? "`fault show` shows the fault; once its cause is gone, `fault reset`"
-                                 : "power the drive off and on again"));
+  return fail(drive_error(Errc::refused, node_,
+                          fmt::format("is in {}: no command leads to {} from there (statusword 0x{:04X})",
+                                      drive::name(from), drive::name(goal), statusword_),
+                          fault ? "`fault show` shows the fault; once its cause is gone, `fault reset`"
+                                : "power the drive off and on again"));
 }
 
 Result<void> Power::reach(DriveState goal) {
@@ -137,9 +136,9 @@ Result<void> Power::reach(DriveState goal) {
     if (!path) return fail(path.error());
     if (const auto done = step(*from, path->front()); !done) return done;
   }
-  return fail(session::drive_error(
-      Errc::negative, node_, fmt::format("changes state by itself and never stays in {}", drive::name(goal)),
-      "does another master control it?"));
+  return fail(drive_error(Errc::negative, node_,
+                          fmt::format("changes state by itself and never stays in {}", drive::name(goal)),
+                          "does another master control it?"));
 }
 
 Result<void> Power::disable() { return take_down(PowerAim::disable); }

@@ -9,7 +9,6 @@
 #include "drive/profile.hpp"
 #include "drive/standard_objects.hpp"
 #include "motion/power_down.hpp"
-#include "session/drive_error.hpp"
 #include "session/session.hpp"
 
 namespace servoctl::motion {

@@ -17,8 +17,6 @@ namespace {
 using drive::DriveState;
 
 constexpr Duration kPause = std::chrono::milliseconds(5);
-/// An NMT command is not answered; CiA 301 names no time.
-constexpr Duration kNmtPause = std::chrono::milliseconds(20);
 /// Answers in a row that do not come.
 constexpr int kMostSilences = 4;
 
@@ -100,11 +98,11 @@ DialogueStep PowerDown::next(TimePoint now) {
     case State::cut: return {.request = command(kDisableVoltageWord)};
     case State::silence_by_nmt:
       state_ = State::wake_again;
-      return {.state = session::NodeState::stopped, .pause = now + kNmtPause};
+      return {.state = session::NodeState::stopped, .pause = now + kStatePause};
     case State::wake:
     case State::wake_again:
       enter(back_to_, now);
-      return {.state = session::NodeState::pre_operational, .pause = now + kNmtPause};
+      return {.state = session::NodeState::pre_operational, .pause = now + kStatePause};
     case State::done: break;
   }
   return {.done = true};

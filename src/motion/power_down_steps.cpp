@@ -191,15 +191,15 @@ void PowerDown::end_stop() {
   if (unread_) return finish(fail(*unread_));
   const auto state = seen_;
   if (!drive::is_energised(state) && !result_.written) {
-    return finish(fail(session::drive_error(
-        Errc::negative, plan_.node,
-        fmt::format("is in {}, and 6040h did not accept {:04X}h ({}): it may restart by itself",
-                    drive::name(state), kQuickStopWord, untaken_),
-        "`disable` it, or switch off the supply")));
+    return finish(fail(
+        drive_error(Errc::negative, plan_.node,
+                    fmt::format("is in {}, and 6040h did not accept {:04X}h ({}): it may restart by itself",
+                                drive::name(state), kQuickStopWord, untaken_),
+                    "`disable` it, or switch off the supply")));
   }
   if (!drive::is_energised(state) || result_.stopped) return finish({});
   const bool followed = state == DriveState::quick_stop_active;
-  finish(fail(session::drive_error(
+  finish(fail(drive_error(
       Errc::negative, plan_.node,
       followed ? std::string("is in quick stop active and does not report standstill")
                : fmt::format("does not follow the quick stop; it is in {} ({})", drive::name(state), word()),
@@ -212,19 +212,19 @@ void PowerDown::end_cut() {
   const auto state = seen_;
   if (is_without_power(state) && result_.written) return finish({});
   if (is_without_power(state))
-    return finish(fail(session::drive_error(
-        Errc::negative, plan_.node,
-        fmt::format("is in {}, and 6040h has not taken {:04X}h ({}): it may start again by itself",
-                    drive::name(state), kDisableVoltageWord, untaken_),
-        "switch off the supply before anybody approaches the machine")));
+    return finish(fail(
+        drive_error(Errc::negative, plan_.node,
+                    fmt::format("is in {}, and 6040h did not accept {:04X}h ({}): it may restart by itself",
+                                drive::name(state), kDisableVoltageWord, untaken_),
+                    "switch off the supply before anybody approaches the machine")));
   if (brakes(state))
-    return finish(fail(session::drive_error(Errc::negative, plan_.node,
-                                            "is still braking after a fault, and may be energised",
-                                            "`status` shows its state")));
-  finish(fail(session::drive_error(Errc::negative, plan_.node,
-                                   fmt::format("does not obey 0000h, written {} times; it is in {} ({})",
-                                               tries_, drive::name(state), word()),
-                                   "does another master control it? Switch off the supply")));
+    return finish(
+        fail(drive_error(Errc::negative, plan_.node, "is still braking after a fault, and may be energised",
+                         "`status` shows its state")));
+  finish(fail(drive_error(Errc::negative, plan_.node,
+                          fmt::format("does not obey 0000h, written {} times; it is in {} ({})", tries_,
+                                      drive::name(state), word()),
+                          "does another master control it? Switch off the supply")));
 }
 
 void PowerDown::finish(Result<void> outcome) {

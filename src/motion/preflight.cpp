@@ -59,7 +59,7 @@ class Preflight {
     auto text =
         fmt::format("{} (statusword 0x{:04X})", chinese_ ? drive::name_zh(state) : drive::name(state), *word);
     if (fault) text += ": `fault show` says why, `fault reset` resets it once the cause is gone";
-    if (!fault && drive::is_energised(state)) text += ": it is already enabled; `disable` it first";
+    if (!fault && drive::is_energised(state)) text += ": it is or may be enabled; `disable` it first";
     add(bad ? Weight::stop : Weight::good, "state", std::move(text));
     if ((*word & kWarning) != 0) add(Weight::caution, "warning", "statusword bit 7 (warning) is set");
     if ((*word & kInternalLimit) != 0)
@@ -168,8 +168,8 @@ Result<std::vector<PreflightItem>> preflight(session::Session& session, const Mo
 Result<void> check_preflight(const std::vector<PreflightItem>& items, std::uint8_t node) {
   for (const auto& item : items)
     if (item.weight == Weight::stop)
-      return fail(session::drive_error(Errc::refused, node, fmt::format("{}: {}", item.what, item.text),
-                                       "nothing was moved"));
+      return fail(
+          drive_error(Errc::refused, node, fmt::format("{}: {}", item.what, item.text), "nothing was moved"));
   return {};
 }
 

@@ -133,7 +133,7 @@ Result<TurnCounts> counts_behind(double measured, double uncertainty, const Turn
     if (is_near(measured, *expected.told))
       return TurnCounts{*expected.told,
                         fmt::format("given by --nameplate, {}", distance(measured, *expected.told))};
-    return no_number(fmt::format("has {} measured counts per rev (± {} %), not the {} of --nameplate",
+    return no_number(fmt::format("has {} measured counts per revolution (± {} %), not the {} of --nameplate",
                                  std::llround(measured), percent(uncertainty), told),
                      "leave --nameplate out, or check the motor's nameplate");
   }
@@ -141,8 +141,8 @@ Result<TurnCounts> counts_behind(double measured, double uncertainty, const Turn
   if (const double power = std::ldexp(1, bits); is_near(measured, power))
     return TurnCounts{power, fmt::format("2^{}, {}", bits, distance(measured, power))};
   const double decimal = nearest_decimal(measured);
-  const auto said =
-      fmt::format("has {} measured counts per rev (± {} %)", std::llround(measured), percent(uncertainty));
+  const auto said = fmt::format("has {} measured counts per revolution (± {} %)", std::llround(measured),
+                                percent(uncertainty));
   if (!is_near(measured, decimal))
     return no_number(
         said + ": neither a power of two nor a round decimal number is within 1 % of it",

@@ -154,10 +154,13 @@ Result<WatchdogPlan> plan_watchdog(session::Session& session, const drive::Profi
   if (producer && session.watch().state(*producer))
     return fail(Errc::refused, fmt::format("--master-node {}: this node-ID is already in use", *producer),
                 "leave it out, and servoctl takes a free node-ID");
-  auto plan = plan_heartbeat(session, profile, node, producer);
+  using Sign = session::LifeSign::Kind;
+  const auto& network = session.network();
+  auto plan = network.carries(Sign::heartbeat) ? plan_heartbeat(session, profile, node, producer)
+                                               : Result<WatchdogPlan>(WatchdogPlan{});
   if (!plan) return plan;
-  if (plan->kind == WatchdogPlan::Kind::none && has(profile, objects::kGuardTime) &&
-      has(profile, objects::kLifeTimeFactor)) {
+  if (plan->kind == WatchdogPlan::Kind::none && network.carries(Sign::guarding) &&
+      has(profile, objects::kGuardTime) && has(profile, objects::kLifeTimeFactor)) {
     if (const auto done = plan_guarding(session, profile, node, *plan); !done) return fail(done.error());
   }
   plan->assumed = profile.rules.is_assumed("watchdog");

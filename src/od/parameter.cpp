@@ -114,8 +114,7 @@ Result<std::vector<Parameter>> parse_parameters(std::string_view csv, std::strin
     TableRow row(cells, *columns, kColumns, file);
     auto parameter = read_row(row);
     parameter.file_line = cells.line;
-    if (!ids.insert(lower(parameter.id)).second)
-      row.refuse(fmt::format("{} stands here twice", parameter.id));
+    if (!ids.insert(lower(parameter.id)).second) row.refuse(fmt::format("{} appears twice", parameter.id));
     if (parameter.object && !objects.insert(*parameter.object).second)
       row.refuse(fmt::format("{}: object {} belongs to another parameter as well", parameter.id,
                              to_string(*parameter.object)));

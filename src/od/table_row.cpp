@@ -30,12 +30,8 @@ Result<TableColumns> TableColumns::find(const CsvTable& table, std::span<const s
                                         std::string_view file) {
   for (const auto& column : table.columns) {
     if (std::find(known.begin(), known.end(), column) != known.end()) continue;
-    Error error;
-    error.code = Errc::file;
-    error.line = 1;
-    error.message = fmt::format("{}:1: column '{}' is unknown", file, column);
-    error.hint = did_you_mean(column, std::vector<std::string>(known.begin(), known.end()));
-    return fail(std::move(error));
+    return fail(file_error(file, 1, fmt::format("column '{}' is unknown", column),
+                           did_you_mean(column, std::vector<std::string>(known.begin(), known.end()))));
   }
   TableColumns out;
   for (const auto name : known) out.places_.push_back(table.column(name));

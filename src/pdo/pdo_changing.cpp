@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "base/text.hpp"
-#include "canopen/nmt.hpp"
 #include "drive/standard_objects.hpp"
 #include "pdo/pdo_neighbours.hpp"
 #include "pdo/pdo_record.hpp"
@@ -227,14 +226,9 @@ class Changing {
 
   void add_astray(const Job& job, const session::RestoreOutcome& outcome) {
     for (const auto object : outcome.astray) {
-      Error error;
-      error.code = Errc::negative;
-      error.node = job.present.node;
-      error.object = object;
-      error.message = fmt::format("node {}, object {}: it may not hold its old value", job.present.node,
-                                  to_string(object));
-      error.hint = "`pdo show` reads it once the node answers; a restart of the drive loads the stored value";
-      desk_->errors.push_back(std::move(error));
+      desk_->errors.push_back(drive_error(
+          Errc::negative, job.present.node, object, "it may not hold its old value",
+          "`pdo show` reads it once the node answers; a restart of the drive loads the stored value"));
     }
   }
 

@@ -22,7 +22,7 @@ constexpr std::string_view kKeys[] = {"pdo",  "map",        "cob_id",   "valid",
 /// Reads one element of the list; a key that is misspelt would silently not hold.
 std::optional<std::string> read_recipe(const Value& record, const std::string& where, PdoRecipe& out) {
   const auto* fields = std::get_if<report::Record>(&record.data());
-  if (fields == nullptr) return where + " is no object";
+  if (fields == nullptr) return where + " is not an object";
   for (const auto& field : *fields)
     if (std::find(std::begin(kKeys), std::end(kKeys), field.key) == std::end(kKeys))
       return fmt::format("{}: unknown key '{}'", where, field.key);

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <optional>
 
-#include "canopen/cob_id.hpp"
-#include "session/drive_error.hpp"
 #include "session/option_scope.hpp"
 #include "show/pdo_report.hpp"
 
@@ -100,10 +98,10 @@ class Neighbours {
     const auto what = pdo.direction == PdoDirection::receive      ? "one frame would control both"
                       : theirs.direction == PdoDirection::receive ? "what one sends would control the other"
                                                                   : "both would send it";
-    return fail(session::drive_error(
-        Errc::refused, node,
-        fmt::format("{}: CAN-ID {} is used by {} of node {}: {}", mine, id, name, other, what),
-        fmt::format("use another one, or `pdo disable {} -n {}` first", name, other)));
+    return fail(
+        drive_error(Errc::refused, node,
+                    fmt::format("{}: CAN-ID {} is used by {} of node {}: {}", mine, id, name, other, what),
+                    fmt::format("use another one, or `pdo disable {} -n {}` first", name, other)));
   }
 
   show::Desk* desk_;

@@ -108,7 +108,7 @@ Result<void> assign_pdo(const drive::Profile& profile, const PresentPdos& presen
   const std::size_t room = object == nullptr ? 0 : object->entries.back().address.sub;
   if (records.size() > room)
     return fail(Errc::usage,
-                fmt::format("{} cannot be assigned beside the others: there is room for {}", name, room),
+                fmt::format("{} cannot be assigned in addition: there is room for {}", name, room),
                 "`pdo show` lists what is assigned; `pdo disable` one first");
   out.insert_or_assign(*list, store_le(records.size(), 1));
   for (std::size_t i = 0; i < records.size(); ++i)

@@ -68,7 +68,7 @@ Result<void> ScopeMapping::check_state(const std::vector<session::PlannedWrite>&
   const auto state = session::ask_state(*desk_->session, node_);
   if (!state) return fail(state.error());
   if (*state != session::NodeState::operational)
-    return fail(Errc::negative, "it may not be operational, and TPDOs are sent only then",
+    return fail(Errc::negative, "it is not known to be operational, and TPDOs are sent only then",
                 fmt::format("`nmt start -n {}`", node_));
   return check_still(plan);
 }
@@ -143,8 +143,8 @@ void ScopeMapping::end() {
   if (done) return record_.settle();
   auto error = done.error();
   error.node = node_;
-  error.message = fmt::format("node {}: {} could not be restored: {}; changed, or not known: {}", node_,
-                              canopen::name(pdo_.direction, pdo_.number), error.message, astray());
+  error.message = fmt::format("node {}: {} could not be restored: {}; still changed, or not readable: {}",
+                              node_, canopen::name(pdo_.direction, pdo_.number), error.message, astray());
   error.hint = fmt::format("`pdo show -n {}` shows it; a restart of the drive loads the stored one", node_);
   desk_->errors.push_back(std::move(error));
 }

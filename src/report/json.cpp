@@ -254,11 +254,7 @@ Result<Value> parse_json(std::string_view text, std::string_view file) {
   try {
     return FromJson::value(Json::parse(text));
   } catch (const Json::parse_error& problem) {
-    Error error;
-    error.code = Errc::file;
-    error.line = line_at(text, problem.byte);
-    error.message = fmt::format("{}:{}: not JSON, or truncated", file, *error.line);
-    return fail(std::move(error));
+    return fail(file_error(file, line_at(text, problem.byte), "not JSON, or truncated"));
   } catch (const Json::exception& problem) {
     return fail(Errc::file, fmt::format("{}: {}", file, problem.what()));
   }

@@ -144,8 +144,8 @@ FamilyVerdict judge_family(const Identity& identity, const drive::Profile& profi
   judge_by_others(identity, profile, families, out);
   if (out.kind == FamilyVerdict::Kind::contradicted) return out;
   if (soft != nullptr)
-    out.why = fmt::format("its {} is {}, that of {} is {}", to_string(soft->object),
-                          drive_says(identity, *soft), profile.family, family_says(*soft));
+    out.why = fmt::format("its {} is {}, but {} has {}", to_string(soft->object), drive_says(identity, *soft),
+                          profile.family, family_says(*soft));
   else if (rules.identity.empty())
     out.why = fmt::format("{} has no known identity", profile.family);
   else if (fits(identity, rules))

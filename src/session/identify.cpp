@@ -140,14 +140,12 @@ Result<void> refuse_duplicate(Session& session, std::uint8_t node) {
   if (can == nullptr) return {};
   const auto& by = can->duplicates().noticed(node);
   if (by.empty()) return {};
-  Error error;
-  error.code = Errc::refused;
-  error.node = node;
-  error.message = fmt::format("two nodes answer as node {} ({}): writes and motion are refused", node, by);
-  error.hint = fmt::format(
-      "disconnect one and give it another node-ID, then `scan`; `disable -n {}` and `nmt stop` reach both",
-      node);
-  return fail(std::move(error));
+  return fail(drive_error(
+      Errc::refused, node,
+      fmt::format("two nodes answer with this node-ID ({}): writes and motion are refused", by),
+      fmt::format(
+          "disconnect one and give it another node-ID, then `scan`; `disable -n {}` and `nmt stop` reach both",
+          node)));
 }
 
 }  // namespace servoctl::session

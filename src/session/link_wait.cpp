@@ -29,7 +29,8 @@ bool LinkWait::comes_back(const Error& lost) {
   const auto since = session_->now();
   if (!first_) first_ = since;
   if (since - *first_ >= (only_failing_ ? kPatience : kMost)) return false;
-  tell(fmt::format("{}: {} will be retried for {}", lost.message, doing_, servoctl::to_string(kPatience)));
+  tell(fmt::format("{}: {} waits for the bus, at most {}", lost.message, doing_,
+                   servoctl::to_string(kPatience)));
   const auto end = since + kPatience;
   for (;;) {
     const auto asked = session_->now();
@@ -44,8 +45,8 @@ bool LinkWait::comes_back(const Error& lost) {
       tell(fmt::format("{} did not come back: {}", session_->url(), back.error().message));
       return false;
     }
-    tell(fmt::format("{} is still lost after {}: {} is still being retried", session_->url(),
-                     tenths(time - since), doing_));
+    tell(fmt::format("{} is still lost after {}: {} still waits", session_->url(), tenths(time - since),
+                     doing_));
   }
 }
 

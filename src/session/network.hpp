@@ -128,6 +128,8 @@ class Network {
   /// on telling it by itself.
   virtual void doubt_state(std::uint8_t node) = 0;
 
+  /// Whether it has this sign for its nodes.
+  virtual bool carries(LifeSign::Kind sign) const = 0;
   /// From now on tells the node in every step that servoctl lives; the first time at once. What it does
   /// without that is written to its objects, by the caller. Errc::usage for a sign that this network does not
   /// have.

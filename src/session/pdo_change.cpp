@@ -190,12 +190,8 @@ Result<void> check_not_energised(Session& session, std::uint8_t node) {
   if (!word && word.error().code != Errc::sdo_abort) return fail(word.error());
   if (!word || !drive::is_energised(drive::decode_state(static_cast<std::uint16_t>(load_le(*word)))))
     return {};
-  Error error;
-  error.code = Errc::refused;
-  error.node = node;
-  error.message = fmt::format("node {} is energised: its PDOs cannot be changed now", node);
-  error.hint = "disable it first";
-  return fail(std::move(error));
+  return fail(drive_error(Errc::refused, node, "it is energised; its PDOs cannot be changed now",
+                          "disable it first"));
 }
 
 bool needs_pre_operational(const drive::Profile* profile, const std::vector<PlannedWrite>& plan) {

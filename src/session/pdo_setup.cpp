@@ -48,9 +48,9 @@ std::vector<ObjectAddress> heads_of(const Pdo& pdo) {
 }
 
 /// One reading of many nodes.
-class Reading {
+class NodeReader {
  public:
-  Reading(Session& session, std::span<const std::uint8_t> nodes)
+  NodeReader(Session& session, std::span<const std::uint8_t> nodes)
       : session_(&session), nodes_(nodes), values_(nodes.size(), Values{}) {}
 
   /// Reads from each node what `wanted` says of it; a refused object is left out.
@@ -190,7 +190,7 @@ Pdo pdo_of(const Values& values, PdoDirection direction, std::uint16_t pdo_numbe
 
 std::vector<Result<Values>> read_pdo_values(Session& session, const drive::Profile* profile,
                                             std::span<const std::uint8_t> nodes) {
-  Reading reading(session, nodes);
+  NodeReader reading(session, nodes);
   const auto known = profile == nullptr ? std::vector<ObjectAddress>() : heads_of(*profile);
   if (known.empty()) {
     reading.try_numbers(PdoDirection::receive);

@@ -80,15 +80,9 @@ class Run {
       const auto found = session_->upload(node_, object);
       if (!found) return fail(found.error());
       if (*found == wanted_->at(object)) continue;
-      Error error;
-      error.code = Errc::negative;
-      error.node = node_;
-      error.object = object;
-      error.message =
-          fmt::format("node {}, object {}: it was read back as written, but now holds another value", node_,
-                      to_string(object));
-      error.hint = "did the drive restart in between, or does another master write to it?";
-      return fail(std::move(error));
+      return fail(drive_error(Errc::negative, node_, object,
+                              "it was read back as written, but now holds another value",
+                              "did the drive restart in between, or does another master write to it?"));
     }
     return {};
   }
@@ -96,12 +90,8 @@ class Run {
   /// One that restarts while its values are read for the last time has shown some of them before it.
   Result<void> check_restart() const {
     if (session_->watch().boots(node_) == boots_) return {};
-    Error error;
-    error.code = Errc::negative;
-    error.node = node_;
-    error.message = fmt::format("node {} restarted during the writes", node_);
-    error.hint = "is its supply stable? Values it does not keep by itself are lost";
-    return fail(std::move(error));
+    return fail(drive_error(Errc::negative, node_, "it restarted during the writes",
+                            "is its supply stable? Values it does not keep by itself are lost"));
   }
 
   /// Reads where things stand, puts back what is not as it was, and reads again. Deaf to Ctrl-C.

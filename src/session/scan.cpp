@@ -1,8 +1,10 @@
 #include "session/scan.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 
+#include "canopen/node_list.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/answer.hpp"
 #include "session/can_network.hpp"
@@ -71,6 +73,17 @@ Result<std::vector<Identity>> scan(Session& session, std::span<const std::uint8_
   for (const auto& identity : *found) there.push_back(identity.node);
   if (const auto settled = settle_duplicates(session, there, least); !settled) return fail(settled.error());
   return found;
+}
+
+Result<std::vector<std::uint8_t>> nodes_present(Session& session) {
+  const auto found = scan(session, canopen::every_node_id());
+  if (!found) return fail(found.error());
+  if (found->empty())
+    return fail(Errc::timeout, fmt::format("no node answered on {}", session.url()),
+                "check power, cable, termination and bitrate");
+  std::vector<std::uint8_t> out;
+  for (const auto& identity : *found) out.push_back(identity.node);
+  return out;
 }
 
 std::vector<Guess> guess_families(const Identity& identity, std::span<const drive::Family> families) {

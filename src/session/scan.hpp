@@ -17,6 +17,9 @@ namespace servoctl::session {
 /// bus is lost.
 Result<std::vector<Identity>> scan(Session& session, std::span<const std::uint8_t> nodes);
 
+/// The node-IDs that answer scan(). Errc::timeout when none does, Errc::bus when the bus is lost.
+Result<std::vector<std::uint8_t>> nodes_present(Session& session);
+
 /// A family whose identity rule fits a node, or whose own objects it has.
 struct Guess {
   std::string family;

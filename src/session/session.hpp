@@ -59,6 +59,8 @@ class Session {
   Session(std::unique_ptr<Network> network, std::string url, Options options);
   /// On a CAN bus.
   Session(std::unique_ptr<can::Bus> bus, std::string url, Options options);
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
 
   /// Runs all requests: those of one node one after the other, those of different nodes at the same time. The
   /// answers stand in the order of the requests. After a node has not answered, or has refused a write, its

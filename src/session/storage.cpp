@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "drive/standard_objects.hpp"
-#include "session/drive_error.hpp"
 #include "session/option_scope.hpp"
 #include "session/setting_write.hpp"
 
@@ -178,7 +177,7 @@ Result<Kept> StorageScope::close(bool all_written, std::size_t writes) {
   };
   if (keep_ && has_switch && rehearsal_ == nullptr) tell_wear(writes);
   if (keep_ && all_written && !has_switch)
-    note(store_all(), "the values are written, but not kept",
+    note(store_all(), "the values are written, but storing them failed",
          "a power cycle shows whether the drive keeps them by itself; `store` tries again");
   note(put_back(password_), "the password could not be withdrawn: the drive may still be unlocked", {});
   // A switch that chose the RAM stays there: the next trial wants it, and writing it back wears the flash.

@@ -78,7 +78,7 @@ void TransferRun::tell_progress() {
   }
 }
 
-bool TransferRun::advance(Channel& channel) {
+bool TransferRun::advance(Lane& channel) {
   if (const auto sent = channel.objects->on_time(session_->received_at()); !sent) {
     fail_all(sent.error());
     return false;
@@ -89,7 +89,7 @@ bool TransferRun::advance(Channel& channel) {
   return true;
 }
 
-void TransferRun::start(Channel& channel) {
+void TransferRun::start(Lane& channel) {
   if (channel.waiting.empty()) return;
   channel.current = channel.waiting.front();
   channel.waiting.pop_front();
@@ -97,7 +97,7 @@ void TransferRun::start(Channel& channel) {
   ask(channel, requests_[channel.current].transfer);
 }
 
-void TransferRun::ask(Channel& channel, canopen::Transfer transfer) {
+void TransferRun::ask(Lane& channel, canopen::Transfer transfer) {
   const auto& request = requests_[channel.current];
   channel.told = 0;
   channel.asked = true;
@@ -107,7 +107,7 @@ void TransferRun::ask(Channel& channel, canopen::Transfer transfer) {
     channel.objects->start_upload(request.object, session_->now(), transfer, request.size);
 }
 
-void TransferRun::finish(Channel& channel, Result<Bytes> result) {
+void TransferRun::finish(Lane& channel, Result<Bytes> result) {
   channel.asked = false;
   const auto& request = requests_[channel.current];
   const bool silent = !result && result.error().code == Errc::timeout;
@@ -129,7 +129,7 @@ void TransferRun::finish(Channel& channel, Result<Bytes> result) {
   start(channel);
 }
 
-void TransferRun::skip_rest(Channel& channel, const Error& reason, bool reads_too) {
+void TransferRun::skip_rest(Lane& channel, const Error& reason, bool reads_too) {
   std::deque<std::size_t> kept;
   for (const auto index : channel.waiting) {
     if (!requests_[index].data && !reads_too) {

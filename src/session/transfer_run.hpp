@@ -17,7 +17,7 @@ class TransferRun {
   std::vector<Result<Bytes>> run();
 
  private:
-  struct Channel {
+  struct Lane {
     std::uint8_t node = 0;
     std::unique_ptr<ObjectChannel> objects;
     std::deque<std::size_t> waiting;  ///< Requests not started yet.
@@ -27,18 +27,18 @@ class TransferRun {
     std::size_t told = 0;  ///< Bytes of the present transfer that were told as progress.
   };
 
-  bool advance(Channel& channel);
-  void ask(Channel& channel, canopen::Transfer transfer);
-  void start(Channel& channel);
-  void finish(Channel& channel, Result<Bytes> result);
-  void skip_rest(Channel& channel, const Error& reason, bool reads_too);
+  bool advance(Lane& channel);
+  void ask(Lane& channel, canopen::Transfer transfer);
+  void start(Lane& channel);
+  void finish(Lane& channel, Result<Bytes> result);
+  void skip_rest(Lane& channel, const Error& reason, bool reads_too);
   void fail_all(const Error& error);
   void tell_progress();
   std::vector<Result<Bytes>> give_back();
 
   Session* session_;
   std::span<const SdoRequest> requests_;
-  std::vector<Channel> channels_;
+  std::vector<Lane> channels_;
   std::array<int, 128> channel_of_node_{};
   std::vector<Result<Bytes>> results_;
   std::size_t open_ = 0;

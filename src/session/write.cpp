@@ -6,13 +6,7 @@ namespace servoctl::session {
 namespace {
 
 Error about(const SdoRequest& request, Errc code, std::string what, std::string hint) {
-  Error error;
-  error.code = code;
-  error.message = fmt::format("node {}, object {}: {}", request.node, to_string(request.object), what);
-  error.hint = std::move(hint);
-  error.node = request.node;
-  error.object = request.object;
-  return error;
+  return drive_error(code, request.node, request.object, what, std::move(hint));
 }
 
 /// Bytes in a message: all of a short value, the beginning of a long one.

@@ -56,7 +56,7 @@ Result<Backup> read_concise_dcf(std::string_view bytes, const std::string& file)
   }
   if (taker.left() > 0)
     return fail(Errc::file,
-                fmt::format("{}: {} bytes stand behind the last of {} entries", file, taker.left(), count),
+                fmt::format("{}: {} bytes follow the last of {} entries", file, taker.left(), count),
                 std::string(kHint));
   if (count == 0)
     return fail(Errc::file, fmt::format("{}: there is no entry in it", file), std::string(kHint));

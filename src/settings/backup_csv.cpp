@@ -129,7 +129,7 @@ class Reader {
     const auto meaning = drive::meaning(target, node_);
     auto type = od::parse_data_type(cell("type"));
     if (!meaning.size_known && !type)
-      return refuse("the manual does not tell the length of this object",
+      return refuse("the manual does not state the length of this object",
                     "give its type (column type: i16, i32 …), or raw bytes");
     auto sized = type ? drive::fitted(meaning, od::size_of(*type).value_or(0)) : meaning;
     auto bytes = bytes_of(sized);

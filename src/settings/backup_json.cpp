@@ -145,14 +145,14 @@ Result<Backup> read_json_backup(std::string_view text, const std::string& file) 
   if (node < 1 || node > 127) fields.refuse("node");
   out.identity = read_identity(*document, static_cast<std::uint8_t>(node), fields);
   const auto sum = fields.text("checksum", true);
-  if (fields.error()) return fail(Errc::file, *fields.error(), "take the backup anew");
+  if (fields.error()) return fail(Errc::file, *fields.error(), "make the backup again");
   if (const auto read = read_entries(*document, first_entry_line(text), file, out); !read)
     return fail(read.error());
   if (sum != checksum(out))
     return fail(
         Errc::file,
         fmt::format("{}: its checksum does not match: the file was changed after it was written", file),
-        "take the backup anew");
+        "make the backup again");
   out.proven = true;
   return out;
 }

@@ -90,11 +90,7 @@ Result<drive::Meaning> writable_meaning(std::uint8_t node, const drive::Target& 
                                         std::optional<od::DataType> type) {
   auto meaning = drive::meaning(target, node);
   if (!od::writable(meaning.access)) {
-    Error error;
-    error.code = Errc::usage;
-    error.message = "is read-only";
-    error.hint = "it can be read, not written";
-    return named(std::move(error), node, target, " ");
+    return named(make_error(Errc::usage, "is read-only", "it can be read, not written"), node, target, " ");
   }
   if (type) meaning.type = *type;
   return meaning;

@@ -130,11 +130,8 @@ Comparison compare(const drive::Profile* profile, const Side& a, const Side& b, 
 }
 
 Error differences_error(const Comparison& comparison, const Side& a, const Side& b) {
-  Error error;
-  error.code = Errc::negative;
-  error.message = fmt::format("{} of {} values differ between {} and {}", comparison.different,
-                              comparison.compared, a.title, b.title);
-  return error;
+  return make_error(Errc::negative, fmt::format("{} of {} values differ between {} and {}",
+                                                comparison.different, comparison.compared, a.title, b.title));
 }
 
 }  // namespace servoctl::settings

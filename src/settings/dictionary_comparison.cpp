@@ -119,11 +119,8 @@ Result<Value> compare_data_sheets(show::Desk& desk, const BackupSource& a, const
     comparer.compare(address, left->dictionary.find(address), right->dictionary.find(address));
   const auto different = comparer.different();
   if (different > 0) {
-    Error error;
-    error.code = Errc::negative;
-    error.message =
-        fmt::format("{} of {} entries differ between {} and {}", different, all.size(), a.file, b.file);
-    desk.errors.push_back(std::move(error));
+    desk.errors.push_back(make_error(Errc::negative, fmt::format("{} of {} entries differ between {} and {}",
+                                                                 different, all.size(), a.file, b.file)));
   }
   auto table = comparer.take();
   return Value(report::Record{

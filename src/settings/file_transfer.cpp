@@ -68,7 +68,7 @@ Result<Change> change_from_file(const drive::Profile* profile, std::uint8_t node
   if (!content) return fail(content.error());
   const auto size = meaning.type_known ? od::size_of(meaning.type) : std::nullopt;
   if (size && content->size() != *size)
-    return fail(Errc::usage, fmt::format("bytes: {} takes {}, {} has {}", name_of(target), *size,
+    return fail(Errc::usage, fmt::format("{} takes {} bytes, {} has {}", name_of(target), *size,
                                          file.string(), content->size()));
   Bytes data(content->begin(), content->end());
   if (const auto free = session::check_cob_id(profile, target.address, data, node); !free) {

@@ -42,7 +42,7 @@ Result<void> RestoreTarget::check_identity() {
   const bool force = choice_.force;
   if (backup_->family != desk_->profile->family && !force)
     return fail(Errc::refused,
-                fmt::format("{} is of {}, not of {}", title_, backup_->family, desk_->profile->family),
+                fmt::format("{} is for {}, not for {}", title_, backup_->family, desk_->profile->family),
                 "--force restores what fits anyway");
   const std::uint8_t nodes[] = {node_};
   const auto found = session::scan(*desk_->session, nodes);
@@ -53,7 +53,7 @@ Result<void> RestoreTarget::check_identity() {
   const auto& drive = identity_;
   if (const auto what = show::other_kind(backup_->identity, drive); !what.empty() && !force)
     return fail(Errc::refused, fmt::format("node {} is not the drive of {}: {} differs", node_, title_, what),
-                "--force restores what fits all the same");
+                "--force restores what fits anyway");
   const bool says_firmware = backup_->identity.revision || !backup_->identity.software_version.empty();
   if (says_firmware && (backup_->identity.revision != drive.revision ||
                         backup_->identity.software_version != drive.software_version))

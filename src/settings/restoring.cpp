@@ -117,7 +117,7 @@ class Restoring {
     if (different == 0)
       return fmt::format(
           "All values of node {} already match {}. {}?", node_, title_,
-          options_.keep ? "Store them in the drive" : "Put its memory switch and password back");
+          options_.keep ? "Store them in the drive" : "Restore its memory switch and password");
     return fmt::format("Write {} values of {} to node {}?", different, title_, node_);
   }
 
@@ -171,14 +171,8 @@ class Restoring {
 
   void add_astray(const session::RestoreOutcome& outcome) {
     for (const auto object : outcome.astray) {
-      Error error;
-      error.code = Errc::negative;
-      error.node = node_;
-      error.object = object;
-      error.message =
-          fmt::format("node {}, object {}: it may hold neither the value of the backup nor its old one",
-                      node_, to_string(object));
-      desk_->errors.push_back(std::move(error));
+      desk_->errors.push_back(drive_error(Errc::negative, node_, object,
+                                          "it may hold neither the value of the backup nor its old one"));
     }
   }
 

@@ -48,10 +48,14 @@ struct Words {
 
 }  // namespace
 
-std::string notice_text(const session::NodeEvent& event, const drive::Profile* profile, bool chinese) {
-  auto out = fmt::format("node {}: {}", event.node, std::visit(Words{event, profile, chinese}, event.what));
+std::string event_text(const session::NodeEvent& event, const drive::Profile* profile, bool chinese) {
+  auto out = std::visit(Words{event, profile, chinese}, event.what);
   if (event.times > 1) out += fmt::format("; {} times in a row", event.times);
   return out;
+}
+
+std::string notice_text(const session::NodeEvent& event, const drive::Profile* profile, bool chinese) {
+  return fmt::format("node {}: {}", event.node, event_text(event, profile, chinese));
 }
 
 }  // namespace servoctl::show

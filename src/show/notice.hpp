@@ -7,8 +7,10 @@
 
 namespace servoctl::show {
 
-/// `node 3: boot-up`, `node 3: EMCY 0x8130 life guard or heartbeat error, error register 0x11 …`: what a node
-/// told, in one line. `profile` may be null; it gives the family's own words for a code.
+/// `boot-up`, `EMCY 0x8130 life guard or heartbeat error; error register 0x11 …`: an event of a node in one
+/// line. `profile` may be null; it gives the family's own words for a code.
+std::string event_text(const session::NodeEvent& event, const drive::Profile* profile, bool chinese);
+/// The same with its node in front: `node 3: boot-up`.
 std::string notice_text(const session::NodeEvent& event, const drive::Profile* profile, bool chinese);
 
 }  // namespace servoctl::show

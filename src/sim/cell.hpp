@@ -22,7 +22,9 @@ struct Cell {
 
 /// Builds drives from `gsd600@1,gsd600@2?state=FILE&fault=0xFF00@2s&silent=5s&delay=20ms`: families with
 /// node-IDs (1 when left out); a file for their non-volatile memory; a fault or silence of all of them after
-/// a time from `now`; the time every SDO answer takes. Errc::usage tells what is wrong in the text.
+/// a time from `now`; the time every SDO answer takes. `counts=N` are the counts per motor revolution of
+/// those whose objects do not report them; Errc::usage where there is none of these, and for what is wrong in
+/// the text.
 Result<Cell> build_cell(std::string_view spec, std::span<const std::filesystem::path> folders, TimePoint now);
 
 /// A bus in this process with these drives.

@@ -32,7 +32,7 @@ Result<void> Memory::parse(std::string_view text) {
   for (const auto line : split(text, '\n')) {
     ++number;
     if (number == 1 && line != kHeader)
-      return fail(Errc::file, fmt::format("{}: this is no memory of simulated drives", file_.string()),
+      return fail(Errc::file, fmt::format("{}: not a memory of simulated drives", file_.string()),
                   "name a file that does not exist yet");
     if (line.empty() || line.front() == '#') continue;
     const auto words = split(line, ' ');

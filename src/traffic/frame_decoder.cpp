@@ -150,8 +150,7 @@ void FrameDecoder::decode_time(const can::Frame& frame) {
 void FrameDecoder::decode_emergency(const canopen::Emergency& emergency) {
   out_.service = "emcy";
   out_.node = emergency.node;
-  const auto text = show::notice_text({{}, emergency.node, emergency}, options_.profile, options_.chinese);
-  out_.text = text.substr(text.find(": ") + 2);
+  out_.text = show::event_text({{}, emergency.node, emergency}, options_.profile, options_.chinese);
   if (!options_.fields) return;
   fields_.member("code", emergency.code);
   fields_.member("error_register", emergency.error_register);

@@ -4,7 +4,6 @@
 
 #include "canopen/cob_id.hpp"
 #include "session/hearing.hpp"
-#include "session/option_scope.hpp"
 
 namespace servoctl::traffic {
 namespace {
@@ -95,7 +94,7 @@ void ReplayRun::on_received(const can::Frame& frame) {
 
 bool ReplayRun::is_waiting() const {
   return std::any_of(channels_.begin(), channels_.end(),
-                     [](const Channel& channel) { return !channel.open.empty(); });
+                     [](const Lane& channel) { return !channel.open.empty(); });
 }
 
 void ReplayRun::close() {

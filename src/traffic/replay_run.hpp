@@ -44,7 +44,7 @@ class ReplayRun {
     bool in_recording = false;  ///< An answer to it was sent as well.
   };
   /// One SDO channel.
-  struct Channel {
+  struct Lane {
     canopen::SdoObserver live;      ///< What is sent to the drive and what it answers.
     canopen::SdoObserver recorded;  ///< The answers that are sent.
     std::deque<Request> open;
@@ -57,7 +57,7 @@ class ReplayRun {
   void close();
 
   session::Session* session_;
-  std::array<Channel, 128> channels_;
+  std::array<Lane, 128> channels_;
   std::vector<ReplayFailure> failures_;
   std::size_t sent_ = 0;
   std::size_t answered_by_recording_ = 0;

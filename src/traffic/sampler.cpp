@@ -53,11 +53,10 @@ std::optional<Quantity> quantity(const Channel& channel, ByteSpan bytes) {
 }
 
 Error no_number(const Channel& channel, const std::string& why) {
-  Error error;
-  error.code = Errc::usage;
-  error.message = fmt::format("{} is not numeric, cannot be plotted: {}", channel.name, why);
-  error.hint = "`read` and `watch` show it";
-  return show::located(std::move(error), channel.node, channel.target.address);
+  return show::located(
+      make_error(Errc::usage, fmt::format("{} is not numeric and cannot be plotted: {}", channel.name, why),
+                 "`read` and `watch` show it"),
+      channel.node, channel.target.address);
 }
 
 Value rounded(double number) { return parse_real(fmt::format("{:.9g}", number)).value_or(number); }
@@ -227,8 +226,7 @@ std::vector<Series> series_of(std::span<const ChannelRecord> records) {
 
 std::string series_csv(std::span<const Series> series) {
   std::string out = "seconds";
-  for (const auto& entry : series)
-    out += ',' + csv_cell(entry.unit.empty() ? entry.name : fmt::format("{} ({})", entry.name, entry.unit));
+  for (const auto& entry : series) out += ',' + csv_heading(entry.name, entry.unit);
   out += '\n';
   std::map<double, std::vector<std::string>> lines;
   for (std::size_t i = 0; i < series.size(); ++i)

@@ -108,14 +108,11 @@ std::optional<std::string> otherness(const show::Desk& desk, const TestResult& t
 }
 
 Error other_drive(const TestResult& test, const std::string& what) {
-  Error error;
-  error.code = Errc::refused;
-  error.node = test.node;
   const auto time = text(find(Value(test.origin), "time"));
-  error.message = fmt::format("node {}: `test {}`{} was run on another drive: {}", test.node, test.test,
-                              time.empty() ? "" : " of " + time, what);
-  error.hint = "leave this --tests out, or test the present drive";
-  return error;
+  return drive_error(Errc::refused, test.node,
+                     fmt::format("`test {}`{} was run on another drive: {}", test.test,
+                                 time.empty() ? "" : " of " + time, what),
+                     "leave this --tests out, or test the present drive");
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace servoctl::trial {
 namespace {
 
-using motion::Channel;
+using motion::Signal;
 using report::Record;
 using report::TestResult;
 
@@ -47,10 +47,10 @@ class Homings {
     judge_motion(*desk_, done, out);
     std::string unit;
     for (const auto& series : done.series)
-      if (series.name == motion::name(Channel::position)) unit = series.unit;
+      if (series.name == motion::name(Signal::position)) unit = series.unit;
     judge_spread("spread", say("spread of the final position", "停止位置的离散"), &Found::position, unit,
                  out);
-    judge_spread("encoder_spread", say("spread of home in encoder counts", "原点相对编码器的离散"),
+    judge_spread("encoder_spread", say("spread of home against the encoder", "原点相对编码器的离散"),
                  &Found::encoder, unit, out);
     out.figures.push_back({"homings", table(unit), report::Show::everywhere, say("homings", "各次回零")});
     return out;
@@ -64,7 +64,7 @@ class Homings {
   Found look(motion::Motion& motion, const motion::MotionReport& done, Duration time) const {
     Found out;
     out.seconds = seconds_of(time);
-    if (!done.samples.empty()) out.position = done.samples.back()[Channel::position];
+    if (!done.samples.empty()) out.position = done.samples.back()[Signal::position];
     const auto& units = motion.units();
     const auto counter = units.object(motion.rules().encoder);
     if (!out.position || !counter || !units.has(*counter) ||

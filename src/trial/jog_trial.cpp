@@ -10,9 +10,9 @@
 namespace servoctl::trial {
 namespace {
 
-using motion::Channel;
 using motion::HoldKey;
 using motion::MotionSample;
+using motion::Signal;
 using report::TestResult;
 
 /// The motor rests so long between the two directions.
@@ -89,9 +89,9 @@ class Direction {
   /// More digits than the sensors have say nothing.
   static double rounded(double number) { return parse_real(fmt::format("{:.4g}", number)).value_or(number); }
   double commanded() const { return forward_ ? plan_->value : -plan_->value; }
-  std::string unit(Channel channel) const {
+  std::string unit(Signal signal) const {
     for (const auto& series : done_->series)
-      if (series.name == motion::name(channel)) return series.unit;
+      if (series.name == motion::name(signal)) return series.unit;
     return {};
   }
   void skip(std::string_view name, std::string title_text) {
@@ -100,11 +100,11 @@ class Direction {
   }
 
   /// The change of a quantity from the first to the last of these samples that have it.
-  static std::optional<double> change(const std::vector<const MotionSample*>& samples, Channel channel) {
+  static std::optional<double> change(const std::vector<const MotionSample*>& samples, Signal signal) {
     std::optional<double> first;
     std::optional<double> last;
     for (const auto* sample : samples) {
-      const auto value = (*sample)[channel];
+      const auto value = (*sample)[signal];
       if (!value) continue;
       if (!first) first = value;
       last = value;
@@ -114,11 +114,11 @@ class Direction {
 
   void judge_direction() {
     auto name = title("travel in commanded direction", "按指令方向的位移");
-    const auto way = change(turning_, Channel::position);
+    const auto way = change(turning_, Signal::position);
     if (!way) return skip("direction", std::move(name));
     const double along = commanded() < 0 ? -*way : *way;
     auto criterion =
-        report::at_least(id("direction"), std::move(name), rounded(along), 0, unit(Channel::position));
+        report::at_least(id("direction"), std::move(name), rounded(along), 0, unit(Signal::position));
     // Standing still is no direction.
     if (along == 0) criterion.verdict = report::Verdict::failed;
     out_->criteria.push_back(std::move(criterion));
@@ -128,22 +128,22 @@ class Direction {
     auto name = title("speed deviation", "速度偏差");
     double worst = -1;
     for (const auto* sample : steady_)
-      if (const auto speed = (*sample)[Channel::velocity])
+      if (const auto speed = (*sample)[Signal::velocity])
         worst = std::max(worst, std::abs(*speed - commanded()) / std::abs(commanded()) * 100);
-    if (worst < 0 || unit(Channel::velocity) != plan_->unit) return skip("speed", std::move(name));
+    if (worst < 0 || unit(Signal::velocity) != plan_->unit) return skip("speed", std::move(name));
     out_->criteria.push_back(
         report::at_most(id("speed"), std::move(name), rounded(worst), test_->tolerance, "%"));
   }
 
   void judge_following_error() {
     auto name = title("growth of the following error", "跟随误差增长");
-    const auto growth = change(steady_, Channel::following_error);
-    const auto way = change(steady_, Channel::position);
-    if (!growth || !way || unit(Channel::following_error) != unit(Channel::position))
+    const auto growth = change(steady_, Signal::following_error);
+    const auto way = change(steady_, Signal::position);
+    if (!growth || !way || unit(Signal::following_error) != unit(Signal::position))
       return skip("following_error", std::move(name));
     out_->criteria.push_back(report::at_most(id("following_error"), std::move(name),
                                              rounded(std::abs(*growth)),
-                                             rounded(kMostGrowth * std::abs(*way)), unit(Channel::position)));
+                                             rounded(kMostGrowth * std::abs(*way)), unit(Signal::position)));
   }
 
   void judge_stop(TimePoint end) {
@@ -153,7 +153,7 @@ class Direction {
     std::optional<TimePoint> moved;
     std::optional<TimePoint> stood;
     for (const auto& sample : done_->samples) {
-      const auto speed = sample[Channel::velocity];
+      const auto speed = sample[Signal::velocity];
       if (!speed || sample.time < phase_.end || sample.time >= end) continue;
       if (std::abs(*speed) > still) {
         moved = sample.time;

@@ -60,16 +60,13 @@ std::string say(const show::Desk& desk, std::string_view english, std::string_vi
 }
 
 Error failure(const TestResult& result) {
-  Error error;
-  error.code = Errc::negative;
-  error.node = result.node;
   std::string what;
   for (const auto& c : result.criteria)
     if (c.verdict == Verdict::failed)
       what += fmt::format("{}{}: {}", what.empty() ? "" : ". ", c.name, report::in_words(c));
-  error.message = fmt::format("node {}: test {} failed: {}", result.node, result.test,
-                              what.empty() ? "nothing could be tested" : what);
-  return error;
+  return drive_error(
+      Errc::negative, result.node,
+      fmt::format("test {} failed: {}", result.test, what.empty() ? "nothing could be tested" : what));
 }
 
 report::Record verdict_record(const show::Desk& desk, const TestResult& result, Show plot) {

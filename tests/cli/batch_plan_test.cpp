@@ -172,8 +172,8 @@ TEST(BatchStatement, ErrorsNameTheirLinesAllAtOnce) {
   EXPECT_EQ(said("wait\nwait soon\non-error\non-error go\nset A\nset\nread \"open\nexpect\nexpect .a = 5\n"
                  "4 r 0x1000\nscan"),
             (Words{"11 scan", "1! 'wait' takes a time", "2! wait: 'soon' is not a time",
-                   "3! 'on-error' takes one argument", "4! 'on-error' takes one argument", "5! 'A' is not NAME=VALUE",
-                   "6! 'set' needs NAME=VALUE", "7! the quote \" is not closed",
+                   "3! 'on-error' takes one argument", "4! 'on-error' takes one argument",
+                   "5! 'A' is not NAME=VALUE", "6! 'set' needs NAME=VALUE", "7! the quote \" is not closed",
                    "8! a value is missing in the expression", "9! '=' compares nothing",
                    "10! CiA 309-3: a read takes INDEX SUB [TYPE]"}));
 }

@@ -49,7 +49,7 @@ TEST_F(ForeignInput, NamesTheEntriesThatCannotBeUsedAndLeavesThemOutWhenItIsTold
         type, value);
   };
   // Pn0214 (1 to 65535) fits, Pn0049 (1 to 127, 0x2000:32) does not fit its limit, a word is no number, the
-  // last is no object of this drive.
+  // last is not an object of this drive.
   const auto good = entry("2001subF", "0x6", "450");
   const auto text = good + entry("60FE", "0x7", "many") + entry("5FFF", "0x6", "1");
   spill("t.dcf", text);

@@ -107,7 +107,9 @@ TEST_P(NoWire, SettingsAreBackedUpAndPutBack) {
 
 TEST_P(NoWire, AMotorTurnsAndIsLeftWithoutPower) {
   const double at_first = static_cast<double>(static_cast<std::int32_t>(load_le(held({0x6064, 0}))));
-  (void)run("jog", {{"speed", "60rpm"}, {"--for", "1s"}, {"--turn", "10000"}});
+  const auto jog = report::to_json(*run("jog", {{"speed", "60rpm"}, {"--for", "1s"}, {"--turn", "10000"}}));
+  EXPECT_NE(jog.find(R"("watchdog":"none)"), std::string::npos)
+      << "nothing tells the drive that servoctl lives: " << jog;
   EXPECT_GT(std::abs(static_cast<double>(static_cast<std::int32_t>(load_le(held({0x6064, 0})))) - at_first),
             1000);
   EXPECT_EQ(model.power_state(), drive::DriveState::switch_on_disabled);

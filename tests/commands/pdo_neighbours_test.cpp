@@ -37,8 +37,7 @@ TEST_F(Neighbours, TwoTpdosDoNotGetOneCanId) {
 }
 
 TEST_F(Neighbours, ATpdoDoesNotCommandAnotherDrive) {
-  expect_refused("TPDO1", "statusword", "0x202",
-                 "RPDO1 of node 2: what one sends would control the other");
+  expect_refused("TPDO1", "statusword", "0x202", "RPDO1 of node 2: what one sends would control the other");
 }
 
 TEST_F(Neighbours, TwoDrivesAreNotCommandedByOneFrame) {

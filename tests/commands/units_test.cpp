@@ -138,8 +138,8 @@ TEST_F(Units, GiveWayToWhatIsSaidAndToWhatTheDriveTells) {
   EXPECT_EQ(notices.find("kept"), std::string::npos) << notices;
   EXPECT_NE(
       notices.find(
-          "131072 increments of 6064h per revolution, from the drive's parameters; Pn0458, Pn0456, "
-          "Pn0462, Pn0464 take effect when the drive is restarted"),
+          "131072 increments of 6064h per revolution, from the drive's parameters; Pn0458, Pn0456, Pn0462, "
+          "Pn0464 take effect when the drive is restarted"),
       std::string::npos)
       << notices;
   ASSERT_TRUE(jog({{"--turn", "131072"}})) << error;

@@ -114,7 +114,8 @@ TEST(Quantity, MayBeALabelInEitherLanguage) {
   const auto mode = labelled(labels);
   EXPECT_EQ(unsigned_of(parse_quantity(mode, "canopen")), 8U);
   EXPECT_EQ(unsigned_of(parse_quantity(mode, "位置模式")), 0U);
-  expect_refused(mode, "speed", "'speed' is not a value of this object", "values: 0 Position mode, 8 CANopen");
+  expect_refused(mode, "speed", "'speed' is not a value of this object",
+                 "values: 0 Position mode, 8 CANopen");
   ASSERT_NE(label_of(mode, od::Value(std::uint64_t{8})), nullptr);
   EXPECT_EQ(label_of(mode, od::Value(std::uint64_t{1})), nullptr);
 }

@@ -69,6 +69,11 @@ for header in ${frameless//|/ }; do
   if grep -nE '^#include "(can|canopen)/' "src/canopen/$header.hpp"; then echo "canopen/$header.hpp must know no frame"; bad=1; fi
 done
 
+# What is done with a drive knows nodes, objects and states (session/network.hpp); frames only where it is named here.
+frames='session/(can_network|can_object_channel|hearing|tpdo_values)\.hpp|can/|canopen/(frame|pdo|sdo_client|sdo_server|nmt|error_control)\.hpp'
+allowed='motion/(producer_claim|watchdog)\.cpp|trial/(comm_trial|io_trial)\.cpp'
+if grep -rnE "^#include \"($frames)" src/motion src/settings src/trial | grep -vE "$allowed"; then echo "frames above session/network.hpp"; bad=1; fi
+
 # The three heavy headers each stand in one file.
 for header in 'CLI/CLI.hpp' 'nlohmann/json.hpp' 'toml++/toml.h'; do
   count=$(grep -rlF "<$header>" src commands | wc -l)

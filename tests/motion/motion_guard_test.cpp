@@ -118,7 +118,7 @@ TEST_F(MotionTrouble, WhatATpdoBringsIsNotReadBySdo) {
   map_tpdo(bench);
   const auto done = bench.jog(jog_turns("60rpm", 2));
   ASSERT_TRUE(done.outcome) << done.outcome.error().message;
-  EXPECT_NEAR(*done.samples.back()[Channel::position], 720, 30);
+  EXPECT_NEAR(*done.samples.back()[Signal::position], 720, 30);
   EXPECT_GT(done.by_pdo, 2 * done.samples.size() * 9 / 10);
   const auto& frames = bench.bus->frames;
   const auto reads = [&](std::string_view object) {
@@ -144,7 +144,7 @@ TEST_F(MotionTrouble, AShortMoveIsDoneWhenTheMotorIsThereAndNotBefore) {
   MotionBench own("dm", 0);
   const auto done = own.move(move_to("0.4deg", "30rpm", true));
   ASSERT_TRUE(done.outcome) << done.outcome.error().message;
-  EXPECT_NEAR(*done.samples.back()[Channel::position], 0.4, 0.05);
+  EXPECT_NEAR(*done.samples.back()[Signal::position], 0.4, 0.05);
 }
 
 TEST_F(MotionTrouble, BothHomingSpeedsAreBoundByTheLimit) {

@@ -235,7 +235,7 @@ TEST(Learn, StopsAMotionWhoseKeptNumberIsThatOfAnotherMotor) {
   bench.options.learned = 8388608;
   const auto done = bench.jog(jog_for("60rpm", 5s));
   ASSERT_FALSE(done.outcome);
-  EXPECT_NE(done.outcome.error().message.find("by the kept counts of a turn"), std::string::npos)
+  EXPECT_NE(done.outcome.error().message.find("by the kept counts per rev"), std::string::npos)
       << done.outcome.error().message;
   EXPECT_FALSE(bench.energised());
   EXPECT_LT(done.series.front().values.back(), 360);
@@ -256,7 +256,7 @@ TEST(Learn, StopsAMotionWhoseParametersAreSetAndNotInForce) {
     ASSERT_TRUE(bench.session->download(1, {0x2002, 0x3B}, store_le(8388608, 4)));  // Pn0458
     const auto done = motion(bench);
     ASSERT_FALSE(done.outcome);
-    EXPECT_NE(done.outcome.error().message.find("by the 8388608 increments that its parameters tell"),
+    EXPECT_NE(done.outcome.error().message.find("by the 8388608 increments per revolution in its parameters"),
               std::string::npos)
         << done.outcome.error().message;
     EXPECT_NE(done.outcome.error().hint.find("Pn0458, Pn0456"), std::string::npos)
@@ -277,6 +277,23 @@ TEST(Learn, GoesOnWithWhatItsParametersTellWhereTheDriveDoesNotHaveTheMonitor) {
   EXPECT_TRUE(done.outcome) << done.outcome.error().message;
   ASSERT_FALSE(done.unchecked.empty());
   EXPECT_NE(done.unchecked.front().find("not held against Pn1002"), std::string::npos);
+}
+
+TEST(Learn, NamesTheOtherScaleOfTheMonitorWhereThatWouldExplainTheContradiction) {
+  LearnBench bench(131072);
+  ASSERT_TRUE(bench.session->download(1, kMode, store_le(1, 2)));
+  bench.lie([](double tenths) { return tenths * 10; });
+  const auto done = bench.jog(jog_for("60rpm", 1s));
+  ASSERT_FALSE(done.outcome);
+  EXPECT_NE(done.outcome.error().hint.find("two scales of Pn1002"), std::string::npos)
+      << done.outcome.error().hint;
+
+  LearnBench other(131072);
+  ASSERT_TRUE(other.session->download(1, kMode, store_le(1, 2)));
+  other.lie([](double tenths) { return tenths * 3; });
+  const auto thrice = other.jog(jog_for("60rpm", 1s));
+  ASSERT_FALSE(thrice.outcome);
+  EXPECT_EQ(thrice.outcome.error().hint.find("two scales"), std::string::npos);
 }
 
 TEST(Learn, LeavesAMotionAloneThatIsToldItsCounts) {

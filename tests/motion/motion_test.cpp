@@ -41,13 +41,13 @@ class MotionOfFamily : public testing::TestWithParam<Family> {
     const auto data = od::encode(target.entry->type, od::Value(std::int64_t{std::stoi(method) + 1}));
     ASSERT_TRUE(bench.session->download(1, {0x6098, 0}, *data));
   }
-  static double greatest(const MotionReport& done, Channel channel) {
+  static double greatest(const MotionReport& done, Signal signal) {
     double out = 0;
-    for (const auto& sample : done.samples) out = std::max(out, std::abs(sample[channel].value_or(0)));
+    for (const auto& sample : done.samples) out = std::max(out, std::abs(sample[signal].value_or(0)));
     return out;
   }
-  static double last(const MotionReport& done, Channel channel) {
-    return done.samples.back()[channel].value_or(-1);
+  static double last(const MotionReport& done, Signal signal) {
+    return done.samples.back()[signal].value_or(-1);
   }
 
   MotionBench bench;
@@ -56,15 +56,15 @@ class MotionOfFamily : public testing::TestWithParam<Family> {
 TEST_P(MotionOfFamily, JogTurnsForATimeAndLeavesNothingBehind) {
   const auto done = bench.jog(jog_for("60rpm", 1s));
   ASSERT_TRUE(done.outcome) << done.outcome.error().message;
-  EXPECT_NEAR(greatest(done, Channel::velocity), 60, 1);
-  EXPECT_GT(last(done, Channel::position), 200);
+  EXPECT_NEAR(greatest(done, Signal::velocity), 60, 1);
+  EXPECT_GT(last(done, Signal::position), 200);
   expect_left_alone(done);
 }
 
 TEST_P(MotionOfFamily, JogTurnsBackwardsSoManyTurns) {
   const auto done = bench.jog(jog_turns("-120rpm", 2));
   ASSERT_TRUE(done.outcome) << done.outcome.error().message;
-  EXPECT_NEAR(last(done, Channel::position), -720, 30);
+  EXPECT_NEAR(last(done, Signal::position), -720, 30);
   expect_left_alone(done);
 }
 
@@ -72,8 +72,8 @@ TEST_P(MotionOfFamily, MoveArrivesAtItsTargetAndLeavesNothingBehind) {
   for (const char* target : {"180deg", "-90deg"}) {
     const auto done = bench.move(move_to(target, "60rpm"));
     ASSERT_TRUE(done.outcome) << done.outcome.error().message;
-    EXPECT_NEAR(last(done, Channel::position), std::atof(target), 3);
-    EXPECT_LT(greatest(done, Channel::velocity), 61);
+    EXPECT_NEAR(last(done, Signal::position), std::atof(target), 3);
+    EXPECT_LT(greatest(done, Signal::velocity), 61);
     expect_left_alone(done);
   }
 }
@@ -82,7 +82,7 @@ TEST_P(MotionOfFamily, RelativeMoveCountsFromWhereTheMotorStands) {
   for (int i = 1; i <= 2; ++i) {
     const auto done = bench.move(move_to("90deg", "60rpm", true));
     ASSERT_TRUE(done.outcome) << done.outcome.error().message;
-    EXPECT_NEAR(last(done, Channel::position), 90 * i, 3);
+    EXPECT_NEAR(last(done, Signal::position), 90 * i, 3);
   }
 }
 
@@ -107,8 +107,8 @@ TEST_P(MotionOfFamily, TorquePushesForATimeAndNoFasterThanItsLimit) {
   bench.options.speed_limit = "100rpm";
   const auto done = bench.torque({.torque = GetParam().torque, .length = 500ms});
   ASSERT_TRUE(done.outcome) << done.outcome.error().message;
-  EXPECT_GT(greatest(done, Channel::velocity), 0);
-  EXPECT_LE(greatest(done, Channel::velocity), 120);
+  EXPECT_GT(greatest(done, Signal::velocity), 0);
+  EXPECT_LE(greatest(done, Signal::velocity), 120);
   expect_left_alone(done);
 }
 
@@ -116,10 +116,10 @@ TEST_P(MotionOfFamily, ARunawayUnderTorqueIsStopped) {
   bench.options.speed_limit = "30rpm";
   const auto done = bench.torque({.torque = GetParam().torque, .length = 60s});
   if (done.outcome) {
-    EXPECT_LE(greatest(done, Channel::velocity), 31);  // The drive itself held the limit.
+    EXPECT_LE(greatest(done, Signal::velocity), 31);  // The drive itself held the limit.
   } else {
     EXPECT_EQ(done.outcome.error().code, Errc::negative);
-    EXPECT_LE(greatest(done, Channel::velocity), 40);
+    EXPECT_LE(greatest(done, Signal::velocity), 40);
   }
   expect_left_alone(done);
 }
@@ -149,8 +149,8 @@ TEST_P(MotionOfFamily, EnablingMovesNothingWhateverTheTargetsHeld) {
     EXPECT_TRUE(bench.energised());
     EXPECT_TRUE(motion.watch([](const MotionSample&) -> Result<bool> { return false; }, 200ms));
     const auto done = motion.finish({});
-    EXPECT_EQ(greatest(done, Channel::velocity), 0);
-    EXPECT_EQ(greatest(done, Channel::position), 0);
+    EXPECT_EQ(greatest(done, Signal::velocity), 0);
+    EXPECT_EQ(greatest(done, Signal::position), 0);
     expect_left_alone(done);
   }
 }

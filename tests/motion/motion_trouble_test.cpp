@@ -58,7 +58,7 @@ TEST_F(MotionTrouble, LeavingTheWindowStopsTheMotion) {
   bench.options.window = "90deg";
   const auto done = bench.jog(kJog);
   expect_stopped(done, "the way");
-  EXPECT_LT(done.samples.back()[Channel::position].value_or(1e9), 110);
+  EXPECT_LT(done.samples.back()[Signal::position].value_or(1e9), 110);
 }
 
 TEST_F(MotionTrouble, AMissingIndexPulseEndsHomingInItsTime) {
@@ -96,8 +96,7 @@ TEST_F(MotionTrouble, AValueTheDriveWouldRefuseIsNotPutBackButTold) {
   ASSERT_TRUE(done.outcome) << done.outcome.error().message;
   EXPECT_EQ(own.drive().power_state(), DriveState::switch_on_disabled);
   ASSERT_EQ(done.end.notes.size(), 1U);
-  EXPECT_EQ(done.end.notes[0],
-            "object 0x6098:0 keeps its new value: its old value, 00, is out of its range");
+  EXPECT_EQ(done.end.notes[0], "object 0x6098:0 keeps its new value: its old value, 00, is out of its range");
 }
 
 TEST_F(MotionTrouble, AMethodThatMeansNoHomingIsRefused) {
@@ -217,8 +216,8 @@ TEST_F(MotionTrouble, KeysTurnWhileTheyAreHeld) {
   double most = 0;
   double least = 0;
   for (const auto& sample : done.samples) {
-    most = std::max(most, sample[Channel::velocity].value_or(0));
-    least = std::min(least, sample[Channel::velocity].value_or(0));
+    most = std::max(most, sample[Signal::velocity].value_or(0));
+    least = std::min(least, sample[Signal::velocity].value_or(0));
   }
   EXPECT_NEAR(most, 60, 1);
   EXPECT_NEAR(least, -60, 1);

@@ -212,11 +212,11 @@ TEST(EdsSheet, HasADeviceAndTheObjectsOfEveryDevice) {
     for (const auto& d : read_sheet(text).diagnostics) out.push_back(d.message);
     return out;
   };
-  EXPECT_EQ(missing(variable("2000", "7", "")),
-            (std::vector<std::string>{"there is no [DeviceInfo]",
-                                      "1000 (device type) is missing: it is mandatory",
-                                      "1001 (error register) is missing: it is mandatory",
-                                      "1018 (identity) is missing: it is mandatory"}));
+  EXPECT_EQ(
+      missing(variable("2000", "7", "")),
+      (std::vector<std::string>{"there is no [DeviceInfo]", "1000 (device type) is missing: it is mandatory",
+                                "1001 (error register) is missing: it is mandatory",
+                                "1018 (identity) is missing: it is mandatory"}));
   EXPECT_EQ(missing("[DeviceInfo]\nVendorName=A\n" + variable("1000", "7", "") + variable("1001", "5", "") +
                     "[1018]\nParameterName=I\nObjectType=9\nSubNumber=2\n" +
                     variable("1018sub0", "5", "DefaultValue=1") + variable("1018sub1", "7", "")),

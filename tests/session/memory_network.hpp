@@ -103,13 +103,11 @@ class MemoryNetwork final : public Network, private NodeRecords {
     return {};
   }
   void doubt_state(std::uint8_t node) override { told_[node].state.reset(); }
-  Result<void> arm_watchdog(std::uint8_t node, const LifeSign& sign) override {
-    watched_[node] = sign;
-    return {};
+  bool carries(LifeSign::Kind) const override { return false; }
+  Result<void> arm_watchdog(std::uint8_t, const LifeSign&) override {
+    return fail(Errc::usage, "memory: there are no signs of life here");
   }
-  void disarm_watchdog(std::uint8_t node) override { watched_.erase(node); }
-  /// The signs of life that each node gets now.
-  const std::map<std::uint8_t, LifeSign>& watched() const { return watched_; }
+  void disarm_watchdog(std::uint8_t) override {}
   void send_last_word(std::uint8_t id, ObjectAddress object, std::uint16_t value) noexcept override {
     const std::uint8_t bytes[] = {static_cast<std::uint8_t>(value), static_cast<std::uint8_t>(value >> 8U)};
     if (auto* node = node_at(id)) (void)node->objects->write(object, bytes);
@@ -153,7 +151,6 @@ class MemoryNetwork final : public Network, private NodeRecords {
   TimePoint now_{std::chrono::seconds(1)};
   std::map<std::uint8_t, MemoryNode> nodes_;
   std::map<std::uint8_t, Told> told_;
-  std::map<std::uint8_t, LifeSign> watched_;
   std::vector<Due> due_;
   std::deque<NodeEvent> events_;
 };

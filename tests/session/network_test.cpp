@@ -210,11 +210,11 @@ TEST_F(NetworkTest, BringsProcessValuesOfNodesThatExchangeThemEachOnce) {
   EXPECT_TRUE(values->take(objects::kPositionActual, since + 5ms));
 }
 
-TEST_F(NetworkTest, IsToldThatServoctlLivesAndTakesALastWord) {
-  ASSERT_TRUE(session->network().arm_watchdog(1, {LifeSign::Kind::heartbeat, 127, 100ms}));
-  EXPECT_EQ(network->watched().count(1), 1U);
-  session->network().disarm_watchdog(1);
-  EXPECT_TRUE(network->watched().empty());
+TEST_F(NetworkTest, RefusesASignOfLifeThatItDoesNotCarryAndTakesALastWord) {
+  ASSERT_FALSE(session->network().carries(LifeSign::Kind::heartbeat));
+  const auto armed = session->network().arm_watchdog(1, {LifeSign::Kind::heartbeat, 127, 100ms});
+  ASSERT_FALSE(armed);
+  EXPECT_EQ(armed.error().code, Errc::usage);
   session->network().send_last_word(1, objects::kControlword, 0x0002);
   EXPECT_EQ(objects.values[objects::kControlword], (Bytes{2, 0}));
 }

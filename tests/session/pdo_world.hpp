@@ -153,10 +153,10 @@ class PdoWorld {
   Session session(StepTrouble trouble) {
     auto bus = std::make_unique<PdoBus>(bus_, drive_, trouble);
     auto* seen = last_bus_ = bus.get();
-    Session out(std::move(bus), "sim", {});
-    out.options().timeout = std::chrono::milliseconds(50);  // The simulated drive answers at once or never.
-    out.options().cancelled = [seen] { return seen->is_cancelled(); };
-    return out;
+    Options options;
+    options.timeout = std::chrono::milliseconds(50);  // The simulated drive answers at once or never.
+    options.cancelled = [seen] { return seen->is_cancelled(); };
+    return Session(std::move(bus), "sim", std::move(options));
   }
 
  private:

@@ -119,10 +119,7 @@ class Parser {
   }
 
   void error(std::uint32_t line, std::string message, std::string hint) {
-    Error out;
-    out.code = Errc::usage;
-    out.message = std::move(message);
-    out.hint = std::move(hint);
+    auto out = make_error(Errc::usage, std::move(message), std::move(hint));
     out.line = line;
     batch_.errors.push_back(std::move(out));
   }

@@ -65,11 +65,7 @@ class BatchRun {
   }
 
   static Error interrupted_error() {
-    Error error;
-    error.code = Errc::interrupted;
-    error.message = "interrupted";
-    error.hint = "earlier lines were run, later ones were not";
-    return error;
+    return make_error(Errc::interrupted, "interrupted", "earlier lines were run, later ones were not");
   }
 
   Outcome perform(const Step& step) {

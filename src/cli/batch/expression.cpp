@@ -35,7 +35,7 @@ std::string_view symbol(Comparator comparator) {
 
 class Lexer {
  public:
-  Lexer(std::string_view text, const VariableLookup& variables) : text_(text), variables_(&variables) {}
+  Lexer(std::string_view text, const VariableLookup& variables) : text_(text), variables_(variables) {}
 
   Result<Token> next() {
     while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t')) ++at_;
@@ -53,14 +53,9 @@ class Lexer {
 
  private:
   Result<void> take(std::string& out) {
-    if (text_.substr(at_).starts_with("${") && *variables_) {
-      const auto value = expand_variable(text_, at_, *variables_);
+    if (variables_.begins(text_, at_)) {
+      const auto value = variables_.take(text_, at_);
       if (!value) return fail(value.error());
-      filled_in_ += value->size();
-      if (filled_in_ > kLongestLine)
-        return fail(Errc::usage,
-                    fmt::format("its variables make the line longer than {} MiB", kLongestLine >> 20U),
-                    "is a variable longer than it should be?");
       out += *value;
     } else {
       out += text_[at_];
@@ -95,9 +90,8 @@ class Lexer {
   }
 
   std::string_view text_;
-  const VariableLookup* variables_;
+  VariableExpansion variables_;
   std::size_t at_ = 0;
-  std::size_t filled_in_ = 0;  ///< Characters that came of variables.
 };
 
 Result<Operand> operand(const Token& token) {
@@ -135,18 +129,18 @@ std::string written(const Operand& operand) {
 }
 
 /// One side, as it is when it is compared.
-struct Side {
+struct Compared {
   std::string where;  ///< The path that leads to it; empty for what stands in the expression.
   report::Value value;
   bool word = false;  ///< A number or a text, as the other side is.
 };
 
-Result<std::vector<Side>> sides(const Operand& operand, const report::Value& result) {
+Result<std::vector<Compared>> sides(const Operand& operand, const report::Value& result) {
   if (operand.kind == Operand::Kind::word || operand.kind == Operand::Kind::quoted)
-    return std::vector<Side>{{{}, operand.text, operand.kind == Operand::Kind::word}};
+    return std::vector<Compared>{{{}, operand.text, operand.kind == Operand::Kind::word}};
   auto found = follow(result, operand.text);
   if (!found) return fail(found.error());
-  std::vector<Side> out;
+  std::vector<Compared> out;
   for (auto& part : *found) {
     if (operand.kind == Operand::Kind::path) {
       out.push_back({part.where, std::move(part.value)});
@@ -159,7 +153,7 @@ Result<std::vector<Side>> sides(const Operand& operand, const report::Value& res
   return out;
 }
 
-std::optional<long double> number_of(const Side& side) {
+std::optional<long double> number_of(const Compared& side) {
   if (side.word) {
     const auto& text = std::get<std::string>(side.value.data());
     if (const auto integer = parse_integer(text))
@@ -170,7 +164,7 @@ std::optional<long double> number_of(const Side& side) {
   return number(side.value);
 }
 
-bool is_integer(const Side& side) {
+bool is_integer(const Compared& side) {
   if (side.word) return parse_integer(std::get<std::string>(side.value.data())).has_value();
   const auto& data = side.value.data();
   return std::holds_alternative<std::int64_t>(data) || std::holds_alternative<std::uint64_t>(data) ||
@@ -190,13 +184,13 @@ bool holds(long double a, Comparator comparator, long double b, bool exact) {
   }
 }
 
-bool contains(const Side& left, const std::string& right) {
+bool contains(const Compared& left, const std::string& right) {
   const auto list = elements(left.value);
   if (!list) return text(left.value).find(right) != std::string::npos;
   return std::any_of(list->begin(), list->end(), [&](const auto& v) { return text(v) == right; });
 }
 
-Result<bool> compare(const Side& left, Comparator comparator, const Side& right) {
+Result<bool> compare(const Compared& left, Comparator comparator, const Compared& right) {
   if (comparator == Comparator::holds) return text(left.value) == "true";
   if (comparator == Comparator::contains) return contains(left, text(right.value));
   const auto a = number_of(left);
@@ -211,9 +205,9 @@ Result<bool> compare(const Side& left, Comparator comparator, const Side& right)
                           symbol(comparator)));
 }
 
-std::string shown(const Side& side) { return side.word ? text(side.value) : report::to_json(side.value); }
+std::string shown(const Compared& side) { return side.word ? text(side.value) : report::to_json(side.value); }
 
-tl::unexpected<Error> refuted(const Side& left, Comparator comparator, const Side& right) {
+tl::unexpected<Error> refuted(const Compared& left, Comparator comparator, const Compared& right) {
   if (comparator == Comparator::holds)
     return fail(Errc::negative, fmt::format("{} is {}, expected true", left.where, shown(left)));
   const auto expected =

@@ -1,4 +1,4 @@
-#include "cli/front_end.hpp"
+#include "cli/program.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
