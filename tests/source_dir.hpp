@@ -1,10 +1,14 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 namespace servoctl {
 
 /// The folder of the sources: tests read the drive data and their own files where they stand.
 std::string source_dir();
+
+/// Where the data of drives are looked for.
+inline const std::filesystem::path kFolders[] = {std::filesystem::path(source_dir()) / "eds"};
 
 }  // namespace servoctl

@@ -18,6 +18,7 @@ function(servoctl_tests layer)
   target_link_libraries(${layer}_tests PRIVATE ${ARGN} servoctl_options fmt::fmt GTest::gtest GTest::gtest_main ${rapidcheck_library})
   target_include_directories(${layer}_tests PRIVATE ${CMAKE_SOURCE_DIR})
   target_link_libraries(${layer}_tests PRIVATE servoctl_source_dir)
+  servoctl_unity(${layer}_tests)
   if(SERVOCTL_PCH AND layer STREQUAL "base")
     target_precompile_headers(base_tests PRIVATE <algorithm> <chrono> <filesystem> <functional> <map> <memory> <optional> <span>
                               <string> <variant> <vector> <fmt/format.h> <gtest/gtest.h> <tl/expected.hpp>)

@@ -30,7 +30,7 @@ std::string_view take_word(std::string_view& text) {
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 /// `12.345678`, in seconds; a point must be there.
-std::optional<Duration> parse_time(std::string_view text) {
+std::optional<Duration> parse_seconds(std::string_view text) {
   const auto point = text.find('.');
   if (point == std::string_view::npos || point > 9) return std::nullopt;
   const auto seconds = parse_digits(text.substr(0, point), 10);
@@ -98,7 +98,7 @@ AscLine AscReader::read(std::string_view line) {
     }
     return {};
   }
-  const auto time = parse_time(first);
+  const auto time = parse_seconds(first);
   if (!time) return {Kind::malformed};
   // Events that are no frames count as well: the next relative time begins there.
   time_ = std::min(relative_ ? time_ + *time : *time, kLongest);

@@ -11,12 +11,12 @@ namespace {
 
 using std::chrono::microseconds;
 
-constexpr std::uint32_t kErrorFlag = 0x2000'0000;
+constexpr std::uint32_t kReportFlag = 0x2000'0000;
 
 /// Words of a line one after the other.
-class Words {
+class WordCursor {
  public:
-  explicit Words(std::string_view line) : rest_(trim(line)) {}
+  explicit WordCursor(std::string_view line) : rest_(trim(line)) {}
   std::string_view next() {
     const auto end = std::min(rest_.find(' '), rest_.size());
     const auto out = rest_.substr(0, end);
@@ -67,7 +67,7 @@ std::optional<Duration> date_of(std::string_view date, std::string_view time) {
 }
 
 /// Takes `(…)`, if the line begins so; false when it is no time.
-bool take_time(Words& words, std::string_view& word, Duration& out) {
+bool take_time(WordCursor& words, std::string_view& word, Duration& out) {
   word = words.next();
   if (!word.starts_with('(')) return true;
   std::optional<Duration> time;
@@ -87,14 +87,14 @@ bool take_id(std::string_view text, Frame& out) {
   const auto id = text.size() == 3 || text.size() == 8 ? parse_digits(text, 16) : std::nullopt;
   if (!id) return false;
   auto number = static_cast<std::uint32_t>(*id);
-  out.error = text.size() == 8 && (number & kErrorFlag) != 0;
+  out.error = text.size() == 8 && (number & kReportFlag) != 0;
   out.extended = text.size() == 8 && !out.error;
-  if (out.error) number &= ~kErrorFlag;
+  if (out.error) number &= ~kReportFlag;
   out.id = number;
   return number <= (text.size() == 8 ? 0x1FFF'FFFFU : 0x7FFU);
 }
 
-bool take_data(Words& words, Frame& out) {
+bool take_data(WordCursor& words, Frame& out) {
   if (words.rest().starts_with("remote request")) {
     out.remote = true;
     return true;
@@ -112,7 +112,7 @@ bool take_data(Words& words, Frame& out) {
 }  // namespace
 
 std::optional<LogFrame> parse_candump_line(std::string_view line) {
-  Words words(line);
+  WordCursor words(line);
   LogFrame out;
   std::string_view interface_name;
   if (!take_time(words, interface_name, out.time) || interface_name.empty()) return std::nullopt;

@@ -33,7 +33,7 @@ constexpr unsigned kError = 4;
 constexpr std::size_t kInboxFrames = 100'000;
 constexpr Duration kPause = std::chrono::microseconds(50);
 
-Datagram encode(const Frame& frame) {
+Datagram datagram_of(const Frame& frame) {
   Datagram raw{};
   std::copy(kMagic.begin(), kMagic.end(), raw.begin());
   raw[kFlagsAt] = static_cast<std::uint8_t>((frame.extended ? kExtended : 0U) |
@@ -45,7 +45,7 @@ Datagram encode(const Frame& frame) {
 }
 
 /// Empty when the datagram does not come from a servoctl of this version.
-std::optional<Frame> decode(const Datagram& raw) {
+std::optional<Frame> frame_of(const Datagram& raw) {
   if (!std::equal(kMagic.begin(), kMagic.end(), raw.begin()) || raw[kSizeAt] > 8) return std::nullopt;
   Frame frame;
   frame.extended = (raw[kFlagsAt] & kExtended) != 0;
@@ -94,7 +94,7 @@ LocalBus::~LocalBus() {
 }
 
 Result<void> LocalBus::send(const Frame& frame) {
-  const auto datagram = encode(frame);
+  const auto datagram = datagram_of(frame);
   const auto limit = now() + send_limit_;
   if (!lock_until(limit)) return busy(name_, directory_);
   auto result = deliver_all(datagram, limit);
@@ -153,7 +153,7 @@ std::optional<Frame> LocalBus::take() const {
     if (size < 0 && errno == EINTR) continue;
     if (size < 0) return std::nullopt;
     if (static_cast<std::size_t>(size) != raw.size()) continue;
-    if (const auto frame = decode(raw)) return frame;
+    if (const auto frame = frame_of(raw)) return frame;
   }
 }
 

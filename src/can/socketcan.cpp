@@ -29,7 +29,7 @@ constexpr std::size_t kBatch = 64;
 /// Frames that wait here at most, some 24 MB; beyond that the kernel's queue has to do.
 constexpr std::size_t kMostWaiting = 1U << 20U;
 
-can_frame encode(const Frame& frame) {
+can_frame kernel_frame(const Frame& frame) {
   can_frame raw{};
   raw.can_id = frame.id;
   if (frame.extended) raw.can_id |= CAN_EFF_FLAG;
@@ -39,7 +39,7 @@ can_frame encode(const Frame& frame) {
   return raw;
 }
 
-Frame decode(const can_frame& raw) {
+Frame frame_of(const can_frame& raw) {
   Frame frame;
   frame.error = (raw.can_id & CAN_ERR_FLAG) != 0;
   frame.extended = !frame.error && (raw.can_id & CAN_EFF_FLAG) != 0;
@@ -105,7 +105,7 @@ Result<void> SocketCanBus::send(const Frame& frame) {
     return fail(Errc::bug,
                 fmt::format("a frame that cannot be sent: {}, {} bytes", to_string(frame), frame.size));
   if (is_bus_off_) return interface_bus_off(interface_name_);
-  const auto raw = encode(frame);
+  const auto raw = kernel_frame(frame);
   std::optional<TimePoint> limit;  // The clock is asked only when the first try fails.
   for (;;) {
     if (::send(socket_.get(), &raw, sizeof raw, MSG_NOSIGNAL) >= 0) return {};
@@ -203,7 +203,7 @@ Result<void> SocketCanBus::fill() {
 }
 
 void SocketCanBus::take(const can_frame& raw, std::optional<std::uint32_t> lost_in_all, TimePoint time) {
-  const auto frame = decode(raw);
+  const auto frame = frame_of(raw);
   // A frame of the bus, or the report of a restart, shows that the controller takes part again.
   is_bus_off_ =
       frame.error && (is_bus_off_ || (frame.id & CAN_ERR_BUSOFF) != 0) && (frame.id & CAN_ERR_RESTARTED) == 0;

@@ -8,53 +8,53 @@
 namespace servoctl::canopen {
 namespace {
 
-struct Row {
+struct EmergencyText {
   std::uint16_t code;
   std::uint16_t mask;
   std::string_view text;
 };
 
 /// The first row that fits wins: single codes stand before their class.
-constexpr std::array kRows{
-    Row{0x0000, 0xFF00, "error reset or no error"},
-    Row{0x1000, 0xFF00, "generic error"},
-    Row{0x2000, 0xFF00, "current, generic"},
-    Row{0x2100, 0xFF00, "current, input side"},
-    Row{0x2200, 0xFF00, "current inside the device"},
-    Row{0x2300, 0xFF00, "current, output side"},
-    Row{0x3000, 0xFF00, "voltage, generic"},
-    Row{0x3100, 0xFF00, "mains voltage"},
-    Row{0x3200, 0xFF00, "voltage inside the device"},
-    Row{0x3300, 0xFF00, "output voltage"},
-    Row{0x4000, 0xFF00, "temperature, generic"},
-    Row{0x4100, 0xFF00, "ambient temperature"},
-    Row{0x4200, 0xFF00, "device temperature"},
-    Row{0x6000, 0xFF00, "device software, generic"},
-    Row{0x6100, 0xFF00, "internal software"},
-    Row{0x6200, 0xFF00, "user software"},
-    Row{0x6300, 0xFF00, "data set"},
-    Row{0x8110, 0xFFFF, "CAN overrun: messages lost"},
-    Row{0x8120, 0xFFFF, "CAN in error passive mode"},
-    Row{0x8130, 0xFFFF, "life guard or heartbeat error"},
-    Row{0x8140, 0xFFFF, "recovered from bus-off"},
-    Row{0x8150, 0xFFFF, "CAN-ID collision"},
-    Row{0x8100, 0xFF00, "communication, generic"},
-    Row{0x8210, 0xFFFF, "PDO not processed: length error"},
-    Row{0x8220, 0xFFFF, "PDO length exceeded"},
-    Row{0x8230, 0xFFFF, "DAM MPDO not processed, destination object not available"},
-    Row{0x8240, 0xFFFF, "unexpected SYNC data length"},
-    Row{0x8250, 0xFFFF, "RPDO timed out"},
-    Row{0x8200, 0xFF00, "protocol error, generic"},
-    Row{0x9000, 0xFF00, "external error"},
-    Row{0xF000, 0xFF00, "additional functions"},
-    Row{0xFF00, 0xFF00, "device specific"},
-    Row{0x2000, 0xF000, "current"},
-    Row{0x3000, 0xF000, "voltage"},
-    Row{0x4000, 0xF000, "temperature"},
-    Row{0x5000, 0xF000, "device hardware"},
-    Row{0x6000, 0xF000, "device software"},
-    Row{0x7000, 0xF000, "additional modules"},
-    Row{0x8000, 0xF000, "monitoring"},
+constexpr std::array kEmergencyTexts{
+    EmergencyText{0x0000, 0xFF00, "error reset or no error"},
+    EmergencyText{0x1000, 0xFF00, "generic error"},
+    EmergencyText{0x2000, 0xFF00, "current, generic"},
+    EmergencyText{0x2100, 0xFF00, "current, input side"},
+    EmergencyText{0x2200, 0xFF00, "current inside the device"},
+    EmergencyText{0x2300, 0xFF00, "current, output side"},
+    EmergencyText{0x3000, 0xFF00, "voltage, generic"},
+    EmergencyText{0x3100, 0xFF00, "mains voltage"},
+    EmergencyText{0x3200, 0xFF00, "voltage inside the device"},
+    EmergencyText{0x3300, 0xFF00, "output voltage"},
+    EmergencyText{0x4000, 0xFF00, "temperature, generic"},
+    EmergencyText{0x4100, 0xFF00, "ambient temperature"},
+    EmergencyText{0x4200, 0xFF00, "device temperature"},
+    EmergencyText{0x6000, 0xFF00, "device software, generic"},
+    EmergencyText{0x6100, 0xFF00, "internal software"},
+    EmergencyText{0x6200, 0xFF00, "user software"},
+    EmergencyText{0x6300, 0xFF00, "data set"},
+    EmergencyText{0x8110, 0xFFFF, "CAN overrun: messages lost"},
+    EmergencyText{0x8120, 0xFFFF, "CAN in error passive mode"},
+    EmergencyText{0x8130, 0xFFFF, "life guard or heartbeat error"},
+    EmergencyText{0x8140, 0xFFFF, "recovered from bus-off"},
+    EmergencyText{0x8150, 0xFFFF, "CAN-ID collision"},
+    EmergencyText{0x8100, 0xFF00, "communication, generic"},
+    EmergencyText{0x8210, 0xFFFF, "PDO not processed: length error"},
+    EmergencyText{0x8220, 0xFFFF, "PDO length exceeded"},
+    EmergencyText{0x8230, 0xFFFF, "DAM MPDO not processed, destination object not available"},
+    EmergencyText{0x8240, 0xFFFF, "unexpected SYNC data length"},
+    EmergencyText{0x8250, 0xFFFF, "RPDO timed out"},
+    EmergencyText{0x8200, 0xFF00, "protocol error, generic"},
+    EmergencyText{0x9000, 0xFF00, "external error"},
+    EmergencyText{0xF000, 0xFF00, "additional functions"},
+    EmergencyText{0xFF00, 0xFF00, "device specific"},
+    EmergencyText{0x2000, 0xF000, "current"},
+    EmergencyText{0x3000, 0xF000, "voltage"},
+    EmergencyText{0x4000, 0xF000, "temperature"},
+    EmergencyText{0x5000, 0xF000, "device hardware"},
+    EmergencyText{0x6000, 0xF000, "device software"},
+    EmergencyText{0x7000, 0xF000, "additional modules"},
+    EmergencyText{0x8000, 0xF000, "monitoring"},
 };
 
 constexpr auto kRegisterBits =
@@ -92,7 +92,7 @@ can::Frame emergency_frame(const Emergency& emergency) {
 }
 
 std::string emergency_text(std::uint16_t code) {
-  for (const auto& row : kRows)
+  for (const auto& row : kEmergencyTexts)
     if ((code & row.mask) == row.code) return std::string(row.text);
   return "not listed in CiA 301";
 }

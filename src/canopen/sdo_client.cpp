@@ -11,12 +11,11 @@
 namespace servoctl::canopen {
 namespace {
 
-constexpr std::uint8_t kToggleBit = 0x10;
 /// An answer that a node had ready when it sent its boot-up comes at once; a node that has restarted has
 /// none.
 constexpr Duration kAnswerAfterBootUp = std::chrono::milliseconds(100);
 
-std::uint8_t specifier(const can::Frame& frame) { return frame.data[0] & 0xE0U; }
+std::uint8_t command_of(const can::Frame& frame) { return frame.data[0] & 0xE0U; }
 
 }  // namespace
 
@@ -127,7 +126,7 @@ void SdoClient::end_by_boot_up() {
 
 void SdoClient::on_upload_initiate(const can::Frame& frame, TimePoint now) {
   if (sdo_object(frame) != object_) return;
-  if (specifier(frame) != 0x40) {
+  if (command_of(frame) != 0x40) {
     abort(sdo_abort::kCommand, Errc::protocol,
           fmt::format("it answered a read with command 0x{:02X}", frame.data[0]));
     return;
@@ -156,9 +155,9 @@ void SdoClient::on_upload_initiate(const can::Frame& frame, TimePoint now) {
 }
 
 void SdoClient::on_upload_segment(const can::Frame& frame, TimePoint now) {
-  if (specifier(frame) == 0x40 && sdo_object(frame) == object_ && data_.empty())
+  if (command_of(frame) == 0x40 && sdo_object(frame) == object_ && data_.empty())
     return;  // The first answer, twice.
-  if (specifier(frame) != 0x00) {
+  if (command_of(frame) != 0x00) {
     abort(sdo_abort::kCommand, Errc::protocol,
           fmt::format("it answered a segment request with command 0x{:02X}", frame.data[0]));
     return;
@@ -183,7 +182,7 @@ void SdoClient::on_upload_segment(const can::Frame& frame, TimePoint now) {
 
 void SdoClient::on_download_initiate(const can::Frame& frame, TimePoint now) {
   if (sdo_object(frame) != object_) return;
-  if (specifier(frame) != 0x60) {
+  if (command_of(frame) != 0x60) {
     abort(sdo_abort::kCommand, Errc::protocol,
           fmt::format("it answered a write with command 0x{:02X}", frame.data[0]));
     return;
@@ -193,9 +192,9 @@ void SdoClient::on_download_initiate(const can::Frame& frame, TimePoint now) {
 }
 
 void SdoClient::on_download_segment(const can::Frame& frame, TimePoint now) {
-  if (specifier(frame) == 0x60 && sdo_object(frame) == object_ && offset_ <= 7)
+  if (command_of(frame) == 0x60 && sdo_object(frame) == object_ && offset_ <= 7)
     return;  // The first answer, twice.
-  if (specifier(frame) != 0x20) {
+  if (command_of(frame) != 0x20) {
     abort(sdo_abort::kCommand, Errc::protocol,
           fmt::format("it answered a segment with command 0x{:02X}", frame.data[0]));
     return;

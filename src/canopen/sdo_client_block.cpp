@@ -10,8 +10,6 @@
 namespace servoctl::canopen {
 namespace {
 
-constexpr std::uint8_t kCrcSupported = 0x04;
-
 /// Command specifier and sub-command, without the bits that carry data.
 std::uint8_t block_command(const can::Frame& frame) { return frame.data[0] & 0xE3U; }
 

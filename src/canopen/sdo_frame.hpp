@@ -28,4 +28,10 @@ inline constexpr std::size_t kMaxSdoDownload = std::size_t{16} << 20U;
 /// Byte 0 of an abort, from either side.
 inline constexpr std::uint8_t kSdoAbortCommand = 0x80;
 
+/// Of byte 0 of a segment.
+inline constexpr std::uint8_t kToggleBit = 0x10;
+
+/// Of byte 0 where a block transfer begins, from either side.
+inline constexpr std::uint8_t kCrcSupported = 0x04;
+
 }  // namespace servoctl::canopen

@@ -8,11 +8,6 @@
 #include "canopen/sdo_frame.hpp"
 
 namespace servoctl::canopen {
-namespace {
-
-constexpr std::uint8_t kToggleBit = 0x10;
-
-}  // namespace
 
 void SdoServer::on_frame(const can::Frame& frame, TimePoint now) {
   if (frame.id != kSdoRequest + node_ || frame.size != 8 || frame.extended || frame.remote || frame.error)

@@ -7,7 +7,6 @@
 namespace servoctl::canopen {
 namespace {
 
-constexpr std::uint8_t kCrcSupported = 0x04;
 constexpr std::uint8_t kSizeIndicated = 0x02;
 
 }  // namespace

@@ -46,9 +46,9 @@ std::size_t first_plain_word(const std::vector<std::string>& words) {
 
 /// One fresh CLI::App a line: no value can leak from one line of the prompt to the next. Every value stays
 /// text, because CLI11 reads "010" as 8 and refuses "6040h".
-class Parser {
+class LineParser {
  public:
-  explicit Parser(const Command& command)
+  explicit LineParser(const Command& command)
       : command_(&command), app_(std::string(command.summary), std::string(command.path)) {
     app_.set_help_flag();
     app_.allow_extras();
@@ -114,7 +114,7 @@ class Parser {
 
   /// How many words the arguments still take after these words.
   std::size_t room_behind(const std::vector<std::string>& words) const {
-    Parser before(*command_);
+    LineParser before(*command_);
     if (!before.take_words(words)) return 0;
     std::size_t room = 0;
     for (const auto& entry : before.bound_) {
@@ -242,7 +242,7 @@ Result<ParsedLine> parse_line(const std::vector<std::string>& words) {
   auto rest = words;
   const auto begin = rest.begin() + static_cast<std::ptrdiff_t>(match.first);
   rest.erase(begin, begin + static_cast<std::ptrdiff_t>(match.used));
-  auto arguments = Parser(*match.command).parse(std::move(rest));
+  auto arguments = LineParser(*match.command).parse(std::move(rest));
   if (!arguments) return fail(arguments.error());
   return ParsedLine{match.command, std::move(*arguments)};
 }

@@ -24,7 +24,7 @@ bool get(const toml::node& node, Quotient::Factor& out) {
 bool get(const toml::node& node, Quotient& out);
 
 template <class T>
-TableReader::Handler list_into(std::vector<T>& out) {
+TableReader::Handler quotient_list_into(std::vector<T>& out) {
   return [&out](const toml::node& node) {
     return get_list(node, out, [](const toml::node& n, T& o) { return get(n, o); });
   };
@@ -33,11 +33,11 @@ TableReader::Handler list_into(std::vector<T>& out) {
 bool get(const toml::node& node, Quotient& out) {
   const auto* table = node.as_table();
   return table != nullptr && TableReader(*table, "")
-                                 .read({{"multiply", list_into(out.multiply)},
-                                        {"divide", list_into(out.divide)},
+                                 .read({{"multiply", quotient_list_into(out.multiply)},
+                                        {"divide", quotient_list_into(out.divide)},
                                         {"power_of_two", into(out.power_of_two)},
                                         {"learned", into(out.learned)},
-                                        {"when", list_into(out.when)},
+                                        {"when", quotient_list_into(out.when)},
                                         {"assumed", into(out.assumed)}})
                                  .has_value();
 }
@@ -45,7 +45,7 @@ bool get(const toml::node& node, Quotient& out) {
 /// One quotient, or a list of those that hold under different conditions.
 TableReader::Handler quotients_into(Quotients& out) {
   return [&out](const toml::node& node) {
-    if (node.is_array()) return list_into(out)(node) && !out.empty();
+    if (node.is_array()) return quotient_list_into(out)(node) && !out.empty();
     out.assign(1, {});
     return get(node, out.front());
   };

@@ -7,11 +7,12 @@
 namespace servoctl::drive {
 namespace {
 
-struct Row {
+struct RampUnit {
   std::string_view ramp;
   std::string_view speed;
 };
-constexpr std::array kRows{Row{"rpm/s", "rpm"}, Row{"inc/s2", "inc/s"}, Row{"rad/s2", "rad/s"}};
+constexpr std::array kRampUnits{RampUnit{"rpm/s", "rpm"}, RampUnit{"inc/s2", "inc/s"},
+                                RampUnit{"rad/s2", "rad/s"}};
 
 constexpr double kSpeedOfTimes = 3000;
 constexpr double kShortestMs = 200;
@@ -22,7 +23,7 @@ constexpr double kLongestMs = 30000;
 std::optional<double> soft_ramp(std::string_view ramp_unit, std::string_view speed_unit, double speed,
                                 double seconds) {
   if (speed == 0 || seconds <= 0) return std::nullopt;
-  for (const auto& row : kRows)
+  for (const auto& row : kRampUnits)
     if (row.ramp == ramp_unit && row.speed == speed_unit) return std::abs(speed) / seconds;
   if (ramp_unit != "ms" || speed_unit != "rpm") return std::nullopt;
   return std::clamp(seconds * 1000 * kSpeedOfTimes / std::abs(speed), kShortestMs, kLongestMs);

@@ -16,8 +16,8 @@ using drive::DriveState;
 
 constexpr std::uint16_t kResetEdge = 0x0080;
 /// How long a drive may take for the transition; manuals name none.
-constexpr Duration kPatience = std::chrono::milliseconds(500);
-constexpr Duration kPause = std::chrono::milliseconds(20);
+constexpr Duration kResetPatience = std::chrono::milliseconds(500);
+constexpr Duration kResetPause = std::chrono::milliseconds(20);
 
 Result<DriveState> read_state(session::Session& session, std::uint8_t node) {
   const auto answer = session.upload(node, objects::kStatusword);
@@ -27,13 +27,13 @@ Result<DriveState> read_state(session::Session& session, std::uint8_t node) {
 
 /// Whether the drive is out of "fault" before the time is over.
 Result<bool> left_fault(session::Session& session, std::uint8_t node) {
-  const auto end = session.now() + kPatience;
+  const auto end = session.now() + kResetPatience;
   for (;;) {
     const auto state = read_state(session, node);
     if (!state) return fail(state.error());
     if (*state != DriveState::fault && *state != DriveState::fault_reaction_active) return true;
     if (session.now() >= end) return false;
-    if (const auto waited = session.wait([] { return false; }, session.now() + kPause); !waited)
+    if (const auto waited = session.wait([] { return false; }, session.now() + kResetPause); !waited)
       return fail(waited.error());
   }
 }

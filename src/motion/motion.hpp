@@ -14,6 +14,9 @@
 
 namespace servoctl::motion {
 
+/// What conversions of units may add to a number.
+inline constexpr double kUnitRounding = 1 + 1e-6;
+
 /// What a user says about a motion, as it was written: units are known to the drive alone.
 struct MotionOptions {
   std::optional<std::uint8_t> producer;  ///< servoctl's own node-ID for the watchdog.

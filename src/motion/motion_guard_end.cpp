@@ -15,9 +15,9 @@ namespace {
 
 using drive::DriveState;
 
-constexpr Duration kPause = std::chrono::milliseconds(10);
+constexpr Duration kEndPause = std::chrono::milliseconds(10);
 /// Longest wait for one answer while it is stopped: a drive that is lost is left to its own watchdog soon.
-constexpr Duration kPatience = std::chrono::milliseconds(200);
+constexpr Duration kEndPatience = std::chrono::milliseconds(200);
 
 bool is_lost(const Error& error) { return error.code == Errc::timeout || error.code == Errc::bus; }
 
@@ -61,7 +61,7 @@ PowerDownPlan MotionGuard::way_down() {
 }
 
 void MotionGuard::bring_down() {
-  const session::Hurry hurry(*session_, kPatience, 1);
+  const session::Hurry hurry(*session_, kEndPatience, 1);
   std::vector<PowerDownPlan> plans;
   plans.push_back(way_down());
   const auto done = std::move(take_down(*session_, std::move(plans)).front());
@@ -156,7 +156,7 @@ void MotionGuard::verify() {
     result_.state = drive::decode_state(*word);
     result_.verified = is_without_power(result_.state);
     // A fault reaction takes its time.
-    if (result_.verified || session_->now() >= end || !pause(*session_, kPause)) return;
+    if (result_.verified || session_->now() >= end || !pause(*session_, kEndPause)) return;
   }
 }
 

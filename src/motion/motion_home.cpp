@@ -13,16 +13,15 @@ namespace {
 /// Methods that take the present position for home (CiA 402-2): they may be done before anybody looks.
 constexpr std::array<std::int64_t, 2> kAtOnce{35, 37};
 constexpr Duration kStart = std::chrono::seconds(1);
-constexpr double kNearDegrees = 1;
-constexpr double kNearCounts = 100;
+constexpr double kNearHomeDegrees = 1;
+constexpr double kNearHomeCounts = 100;
 /// CiA 402-2, 6098h: no homing operation.
 constexpr std::int64_t kNoMethod = 0;
 /// To one end of the window, from there to the other one.
 constexpr double kWindows = 3;
 /// The index pulse comes once in a turn; the switch may have to be left first.
-constexpr double kTurns = 2;
-constexpr double kDegrees = 360;
-constexpr Duration kSettling = std::chrono::seconds(5);
+constexpr double kIndexTurns = 2;
+constexpr Duration kHomeSettling = std::chrono::seconds(5);
 
 bool takes_present_position(const MotionPlan& plan) {
   return std::find(kAtOnce.begin(), kAtOnce.end(), static_cast<std::int64_t>(plan.value)) != kAtOnce.end();
@@ -85,7 +84,7 @@ class Homing {
       return true;
     const auto answer = motion_->session().upload(motion_->node(), objects::kHomeOffset);
     const auto offset = answer ? units.physical(objects::kHomeOffset, *answer) : std::nullopt;
-    const double near = units.unit(objects::kPositionActual) == "deg" ? kNearDegrees : kNearCounts;
+    const double near = units.unit(objects::kPositionActual) == "deg" ? kNearHomeDegrees : kNearHomeCounts;
     return !offset || std::abs(std::abs(*position) - std::abs(offset->value)) <= near;
   }
 
@@ -165,8 +164,8 @@ Duration longest_homing(Motion& motion, double fast, double slow) {
   const bool in_degrees = motion.units().unit(objects::kPositionActual) == "deg";
   if (!window || !in_degrees) return kLongestHoming;
   const auto there = motion.duration(*window * kWindows, fast);
-  const auto index = motion.duration(kDegrees * kTurns, slow);
-  return there && index ? *there + *index + kSettling : kLongestHoming;
+  const auto index = motion.duration(kDegreesATurn * kIndexTurns, slow);
+  return there && index ? *there + *index + kHomeSettling : kLongestHoming;
 }
 
 }  // namespace

@@ -10,12 +10,9 @@
 namespace servoctl::motion {
 namespace {
 
-constexpr Duration kSettling = std::chrono::milliseconds(1500);
+constexpr Duration kJogSettling = std::chrono::milliseconds(1500);
 /// So long after the command a motor that obeys turns, and the right way round.
 constexpr Duration kMostDelay = std::chrono::milliseconds(1500);
-constexpr double kTurns = 0.1;  ///< Part of the commanded speed that counts as turning.
-constexpr int kWrongLooks = 3;  ///< Samples in a row that turn the wrong way.
-constexpr double kDegrees = 360;
 constexpr Duration kForEver = std::chrono::hours(24);
 
 class Jogging {
@@ -52,7 +49,7 @@ class Jogging {
 
   Duration longest() const {
     if (!jog_->turns) return kForEver;
-    return motion_->duration(plan_->way, plan_->speed).value_or(kForEver) * 3 / 2 + kSettling;
+    return motion_->duration(plan_->way, plan_->speed).value_or(kForEver) * 3 / 2 + kJogSettling;
   }
 
   Result<void> turn(int direction) {
@@ -103,17 +100,17 @@ class Jogging {
     const auto speed = sample[Signal::velocity];
     if (direction_ == 0 || !speed) return {};
     const double wanted = plan_->value * direction_;
-    const bool wrong = *speed * wanted < 0 && std::abs(*speed) > std::abs(wanted) * kTurns;
+    const bool wrong = *speed * wanted < 0 && std::abs(*speed) > std::abs(wanted) * kTurningPart;
     // After a change of direction it turns the old way for a while.
     const bool settled = sample.time - since_ >= kMostDelay;
     wrong_looks_ = wrong && (settled || !turned_before_) ? wrong_looks_ + 1 : 0;
-    turned_before_ = turned_before_ || (!wrong && std::abs(*speed) > std::abs(wanted) * kTurns);
+    turned_before_ = turned_before_ || (!wrong && std::abs(*speed) > std::abs(wanted) * kTurningPart);
     if (wrong_looks_ >= kWrongLooks)
       return fail(motion_->error(Errc::negative,
                                  fmt::format("turns the wrong way: {} {} instead of {}", number_text(*speed),
                                              plan_->unit, number_text(wanted)),
                                  "check encoder direction, polarity (607Eh), motor wiring"));
-    if (settled && std::abs(*speed) < std::abs(wanted) * kTurns)
+    if (settled && std::abs(*speed) < std::abs(wanted) * kTurningPart)
       return fail(motion_->error(Errc::negative, "does not turn although commanded to",
                                  "is it blocked, is the brake on, or does a limit hold it back?"));
     return {};
@@ -122,7 +119,7 @@ class Jogging {
   Result<void> rest() {
     if (direction_ != 0)
       if (const auto told = turn(0); !told) return told;
-    return motion_->wait_for_rest(kSettling);
+    return motion_->wait_for_rest(kJogSettling);
   }
 
   Motion* motion_;
@@ -142,7 +139,7 @@ class Jogging {
 
 /// The way of so many turns in the unit of the position.
 Result<double> way_of(const Motion& motion, double turns) {
-  if (motion.units().unit(objects::kPositionActual) == "deg") return std::abs(turns) * kDegrees;
+  if (motion.units().unit(objects::kPositionActual) == "deg") return std::abs(turns) * kDegreesATurn;
   return fail(motion.error(Errc::usage, "does not report its counts per motor revolution",
                            "add --turn (6064h increments per revolution), or use --for TIME"));
 }

@@ -16,6 +16,12 @@ enum class HoldKey : std::uint8_t { none, plus, minus, stop };
 /// Without a key held for so long nobody is there any more.
 inline constexpr Duration kLongestWithoutKey = std::chrono::seconds(5);
 
+/// Part of the commanded speed that counts as turning.
+inline constexpr double kTurningPart = 0.1;
+/// So many samples in a row that turn the wrong way are no noise.
+inline constexpr int kWrongLooks = 3;
+inline constexpr double kDegreesATurn = 360;
+
 /// Turning at a speed: for a time, for a way, or while a key is held. One of the three.
 struct Jog {
   std::string speed;  ///< Of 60FFh; the sign is the direction.

@@ -12,12 +12,10 @@ namespace servoctl::motion {
 namespace {
 
 /// From a new speed until the motor turns evenly at it: the ramp, and what a drive may add to it.
-constexpr Duration kSettling = std::chrono::milliseconds(800);
+constexpr Duration kSpeedSettling = std::chrono::milliseconds(800);
 /// The end of that time, by which the speed is judged.
 constexpr Duration kJudged = std::chrono::milliseconds(250);
 constexpr Duration kRest = std::chrono::milliseconds(1500);
-/// Longest wait for one answer of a drive that moves.
-constexpr Duration kPatience = std::chrono::milliseconds(200);
 constexpr double kRestRpm = 3;        ///< That a monitor may show at rest.
 constexpr double kNoise = 5;          ///< rpm that a monitor may show beyond what was asked.
 constexpr double kTooFast = 1.5;      ///< Of the speed that was asked.
@@ -27,8 +25,6 @@ constexpr double kSpeedUp = 4;        ///< From one speed to the next.
 constexpr double kBlind = 10;         ///< Of the first speed, while the monitor shows nothing.
 constexpr double kNearEnough = 0.1;   ///< Of the speed that was asked.
 constexpr double kMostChange = 0.35;  ///< Of counts a turn from one speed to the next; coarse at low ones.
-constexpr double kTurns = 0.1;        ///< Part of the commanded speed that counts as turning.
-constexpr int kWrongLooks = 3;
 constexpr int kMostSpeeds = 20;
 
 class Learning {
@@ -112,7 +108,7 @@ class Learning {
                                  "its target velocity (60FFh) cannot be set: its type or unit is not known"));
     if (const auto done = motion_->write(objects::kTargetVelocity, *data); !done) return done;
     looks_.clear();
-    if (const auto watched = watch(kSettling); !watched) return watched;
+    if (const auto watched = watch(kSpeedSettling); !watched) return watched;
     last_wanted_ = wanted_;
     return judge();
   }
@@ -138,7 +134,7 @@ class Learning {
     const auto speed = sample[Signal::velocity];
     if (!speed) return fail(motion_->error(Errc::negative, "does not report its speed (606Ch) while moving"));
     looks_.push_back({sample.time, *position, *speed, *rpm});
-    const bool wrong = !keeps_ && *speed * wanted_ < 0 && std::abs(*speed) > std::abs(wanted_) * kTurns;
+    const bool wrong = !keeps_ && *speed * wanted_ < 0 && std::abs(*speed) > std::abs(wanted_) * kTurningPart;
     wrong_looks_ = wrong ? wrong_looks_ + 1 : 0;
     if (wrong_looks_ >= kWrongLooks)
       return fail(motion_->error(Errc::negative, "turns the wrong way",
@@ -147,7 +143,7 @@ class Learning {
   }
 
   Result<double> read_monitor() {
-    const session::Hurry hurry(motion_->session(), kPatience, 1);
+    const session::Hurry hurry(motion_->session(), kMovingPatience, 1);
     const auto answer = motion_->session().upload(motion_->node(), learn_->monitor);
     if (!answer) return fail(answer.error());
     return rpm_of(*answer, 0);
@@ -169,7 +165,7 @@ class Learning {
     }
     shown_ = rpm / count;
     error_ = std::sqrt(std::max(squares / count - shown_ * shown_, 0.0) / count);
-    if (std::abs(speed / count) >= std::abs(wanted_) * kTurns) return {};
+    if (std::abs(speed / count) >= std::abs(wanted_) * kTurningPart) return {};
     return fail(motion_->error(Errc::negative, "does not turn although commanded to",
                                "is it blocked, is the brake on, or does a limit hold it back?"));
   }

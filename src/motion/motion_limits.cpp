@@ -13,14 +13,10 @@
 namespace servoctl::motion {
 namespace {
 
-/// What conversions of units may add to a number.
-constexpr double kRounding = 1 + 1e-6;
 /// From so many rpm on, the monitor of the speed and 606Ch must not differ by more than this factor.
 constexpr double kComparedRpm = 10;
 constexpr double kMostContradiction = 1.5;
 constexpr int kOddLooks = 2;
-/// Longest wait for one answer of a drive that moves.
-constexpr Duration kPatience = std::chrono::milliseconds(200);
 /// A torque in per cent is one of the rated torque.
 constexpr double kRatedTorque = 100;
 
@@ -88,7 +84,7 @@ Result<void> Motion::check_turn(const MotionSample& sample) {
   const auto& name = profile_->rules.learn.speed;
   const auto monitor = units_->turn_way() != nullptr ? units_->object(name) : std::nullopt;
   if (!monitor || !speed || units_->unit(objects::kVelocityActual) != "rpm") return {};
-  const session::Hurry hurry(*session_, kPatience, 1);
+  const session::Hurry hurry(*session_, kMovingPatience, 1);
   if (!turn_unchecked_.empty()) return {};
   const auto answer = session_->upload(node_, *monitor);
   // Kept counts were measured by this monitor; what the drive's own parameters tell holds without it.
@@ -171,11 +167,11 @@ Result<void> Motion::check_speed(double speed) const {
                 "this family does not report torque (6077h), so --max-torque cannot be monitored",
                 "leave this limit out");
   if (!speed_cap_) return fail(speed_cap_.error());
-  if (std::abs(speed) <= *speed_cap_ * kRounding) return {};
+  if (std::abs(speed) <= *speed_cap_ * kUnitRounding) return {};
   const auto unit = units_->unit(objects::kTargetVelocity);
   // What the drive itself does not allow, no option raises.
   const auto most = fastest();
-  const bool beyond = most && std::abs(speed) > *most * kRounding;
+  const bool beyond = most && std::abs(speed) > *most * kUnitRounding;
   const auto numbers = told_apart(std::abs(speed), beyond ? *most : *speed_cap_);
   if (beyond)
     return fail(error(
@@ -193,7 +189,7 @@ Result<double> Motion::torque_cap() const {
   const auto most = read_as(objects::kTargetTorque, objects::kMaxTorque);
   if (!options_.max_torque.empty()) {
     const auto asked = parse_limit(objects::kTargetTorque, "--max-torque", options_.max_torque);
-    if (asked && most && *asked > *most * kRounding) {
+    if (asked && most && *asked > *most * kUnitRounding) {
       const auto numbers = told_apart(*asked, *most);
       return fail(error(Errc::refused,
                         fmt::format("--max-torque of {} {} is above what the drive allows, {} {}",

@@ -15,11 +15,6 @@
 namespace servoctl::motion {
 namespace {
 
-constexpr std::array kEvery{Signal::position, Signal::velocity, Signal::torque, Signal::following_error};
-
-/// Longest wait for one answer of a drive that moves: meanwhile nothing is supervised.
-constexpr Duration kPatience = std::chrono::milliseconds(200);
-
 /// Between two looks a motor may go so much farther than their speeds say.
 constexpr double kUnevenness = 2;
 
@@ -43,7 +38,7 @@ ObjectAddress object_of(Signal signal) {
 
 MotionMonitor::MotionMonitor(session::Session& session, const MotionUnits& units, std::uint8_t node)
     : session_(&session), units_(&units), node_(node) {
-  for (const auto signal : kEvery)
+  for (const auto signal : kEverySignal)
     if (units.has(object_of(signal))) channels_.push_back(signal);
 }
 
@@ -68,7 +63,7 @@ std::vector<Result<Bytes>> MotionMonitor::look(std::span<const ObjectAddress> ob
       requests.push_back({.node = node_, .object = object, .size = object == objects::kStatusword ? 2U : 0U});
     out.emplace_back(brought ? std::move(*brought) : Bytes{});
   }
-  const session::Hurry hurry(*session_, kPatience, 1);
+  const session::Hurry hurry(*session_, kMovingPatience, 1);
   const auto answers = session_->transfer(requests);
   for (std::size_t i = 0, asked = 0; i < objects.size() && asked < requests.size(); ++i)
     if (requests[asked].object == objects[i]) out[i] = answers[asked++];
@@ -172,7 +167,7 @@ Result<void> MotionMonitor::check_limits(const MotionSample& sample) const {
 
 std::vector<Series> MotionMonitor::series() const {
   std::vector<Series> out;
-  for (const auto signal : kEvery) {
+  for (const auto signal : kEverySignal) {
     Series one{std::string(name(signal)), units_->unit(object_of(signal)), {}, {}};
     for (const auto& sample : samples_) {
       if (!sample[signal]) continue;

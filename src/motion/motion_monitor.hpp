@@ -17,8 +17,13 @@ namespace servoctl::motion {
 /// What is measured while a drive moves.
 enum class Signal : std::uint8_t { position, velocity, torque, following_error };
 inline constexpr std::size_t kSignals = 4;
+inline constexpr std::array kEverySignal{Signal::position, Signal::velocity, Signal::torque,
+                                         Signal::following_error};
 std::string_view name(Signal signal);  ///< `position velocity torque following_error`
 ObjectAddress object_of(Signal signal);
+
+/// Longest wait for one answer of a drive that moves: meanwhile nothing is supervised.
+inline constexpr Duration kMovingPatience = std::chrono::milliseconds(200);
 
 /// One look at a moving drive. Numbers are in the units of MotionUnits::physical(); one that the drive does
 /// not tell is missing.

@@ -17,7 +17,7 @@ constexpr std::uint16_t kAcknowledged = 1U << 12U;
 constexpr std::uint16_t kFollowingErrorBit = 1U << 13U;
 
 constexpr Duration kHandshake = std::chrono::seconds(1);
-constexpr Duration kSettling = std::chrono::seconds(2);
+constexpr Duration kMoveSettling = std::chrono::seconds(2);
 constexpr Duration kUnknownDuration = std::chrono::seconds(60);
 /// Nearer than this counts as there, unless 6067h says otherwise: a motor that holds a position trembles a
 /// little.
@@ -41,7 +41,7 @@ class Moving {
       if (const auto taken = hand_over(); !taken) return taken;
     const auto longest = motion_->duration(plan_->way, plan_->speed).value_or(kUnknownDuration) * 3 / 2;
     const auto arrived =
-        motion_->watch([this](const MotionSample& s) { return is_there(s); }, longest + kSettling);
+        motion_->watch([this](const MotionSample& s) { return is_there(s); }, longest + kMoveSettling);
     if (!arrived) return fail(arrived.error());
     if (*arrived) {
       judgement_.judge_target(*motion_, *plan_, nearness());

@@ -19,8 +19,6 @@ using report::Record;
 using report::Show;
 using report::Value;
 
-constexpr std::array kEvery{Signal::position, Signal::velocity, Signal::torque, Signal::following_error};
-
 double seconds_since(const MotionSample& sample, TimePoint begin) {
   return std::chrono::duration<double>(sample.time - begin).count();
 }
@@ -151,7 +149,7 @@ std::string preflight_text(const std::vector<PreflightItem>& items) {
 
 Record sample_record(const MotionSample& sample, TimePoint begin) {
   Record out{{"time", seconds_since(sample, begin)}, {"statusword", sample.statusword}};
-  for (const auto signal : kEvery)
+  for (const auto signal : kEverySignal)
     if (const auto value = sample[signal]) out.push_back({std::string(name(signal)), rounded(*value, 9)});
   return out;
 }
@@ -159,7 +157,7 @@ Record sample_record(const MotionSample& sample, TimePoint begin) {
 std::string sample_line(const MotionSample& sample, TimePoint begin, const MotionUnits& units) {
   auto out = fmt::format("{:8.3f} s", seconds_since(sample, begin));
   constexpr std::array<std::string_view, kSignals> kShort{"", "", "torque ", "error "};
-  for (const auto signal : kEvery) {
+  for (const auto signal : kEverySignal) {
     const auto value = sample[signal];
     if (!value) continue;
     const auto text = fmt::format("{}{} {}", kShort[static_cast<std::size_t>(signal)], number_text(*value),
@@ -172,12 +170,12 @@ std::string sample_line(const MotionSample& sample, TimePoint begin, const Motio
 Result<void> write_csv(const std::string& path, const std::vector<MotionSample>& samples,
                        const MotionUnits& units) {
   std::string out = "seconds,statusword";
-  for (const auto signal : kEvery)
+  for (const auto signal : kEverySignal)
     if (units.has(object_of(signal))) out += ',' + csv_heading(name(signal), units.unit(object_of(signal)));
   out += '\n';
   for (const auto& sample : samples) {
     out += fmt::format("{:.6f},0x{:04X}", seconds_since(sample, samples.front().time), sample.statusword);
-    for (const auto signal : kEvery) {
+    for (const auto signal : kEverySignal) {
       if (!units.has(object_of(signal))) continue;
       const auto value = sample[signal];
       out += value ? fmt::format(",{:.9g}", *value) : ",";

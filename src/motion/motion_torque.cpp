@@ -12,8 +12,6 @@ namespace {
 
 /// A drive that limits its speed overshoots a little.
 constexpr double kOvershoot = 1.2;
-/// What conversions of units may add to a number.
-constexpr double kRounding = 1 + 1e-6;
 
 /// The drive's own limit of the speed, where the family has one that can be said in this unit.
 Result<void> limit_speed(const Motion& motion, double cap, MotionPlan& plan) {
@@ -60,7 +58,7 @@ Result<void> check_torque(const Motion& motion, const Physical& torque) {
     return fail(Errc::usage, "a torque of 0 has no effect", "give a torque other than 0");
   const auto cap = motion.torque_cap();
   if (!cap) return fail(cap.error());
-  if (std::abs(torque.value) <= *cap * kRounding) return {};
+  if (std::abs(torque.value) <= *cap * kUnitRounding) return {};
   const auto numbers = told_apart(std::abs(torque.value), *cap);
   return fail(
       motion.error(Errc::refused,

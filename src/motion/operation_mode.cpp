@@ -10,8 +10,8 @@
 namespace servoctl::motion {
 namespace {
 
-constexpr Duration kPatience = std::chrono::seconds(1);
-constexpr Duration kPause = std::chrono::milliseconds(5);
+constexpr Duration kModePatience = std::chrono::seconds(1);
+constexpr Duration kModePause = std::chrono::milliseconds(5);
 
 std::string known_modes(const drive::Meaning& meaning) {
   std::string out;
@@ -62,7 +62,7 @@ Result<void> set_mode(session::Session& session, const drive::Profile& profile, 
                       std::int8_t mode) {
   const auto write = mode_write(profile, node, mode);
   if (const auto written = session.download(node, write.object, *write.data); !written) return written;
-  const auto end = session.now() + kPatience;
+  const auto end = session.now() + kModePatience;
   for (;;) {
     const auto now_in = read_mode(session, node);
     if (!now_in) return fail(now_in.error());
@@ -72,7 +72,7 @@ Result<void> set_mode(session::Session& session, const drive::Profile& profile, 
                               fmt::format("was set to mode {} but stays in mode {} (6061h)",
                                           mode_text(profile, mode), mode_text(profile, *now_in)),
                               "is it in the control mode for CANopen motion? `info` names what it needs"));
-    if (const auto paused = pause(session, kPause); !paused) return paused;
+    if (const auto paused = pause(session, kModePause); !paused) return paused;
   }
 }
 

@@ -11,9 +11,9 @@ namespace {
 
 using drive::DriveState;
 
-constexpr Duration kPause = std::chrono::milliseconds(5);
+constexpr Duration kStatePause = std::chrono::milliseconds(5);
 /// No way between two states has more steps; a drive that changes its state by itself could make it endless.
-constexpr int kMostSteps = 12;
+constexpr int kMostTransitions = 12;
 
 }  // namespace
 
@@ -78,7 +78,7 @@ Result<bool> Power::wait_for(DriveState wanted) {
     if (!now_in) return fail(now_in.error());
     if (*now_in == wanted) return true;
     if (session_->now() >= end) return false;
-    if (const auto paused = pause(*session_, kPause); !paused) return fail(paused.error());
+    if (const auto paused = pause(*session_, kStatePause); !paused) return fail(paused.error());
   }
 }
 
@@ -112,7 +112,7 @@ Result<void> Power::step(DriveState from, const drive::PowerStep& next) {
     if (*now_in != from && *now_in != DriveState::fault_reaction_active && *now_in != DriveState::unknown)
       return {};
     if (session_->now() >= end) return fail(stuck(from, next));
-    if (const auto paused = pause(*session_, kPause); !paused) return paused;
+    if (const auto paused = pause(*session_, kStatePause); !paused) return paused;
   }
 }
 
@@ -128,7 +128,7 @@ Result<std::vector<drive::PowerStep>> Power::path_to(DriveState from, DriveState
 }
 
 Result<void> Power::reach(DriveState goal) {
-  for (int i = 0; i < kMostSteps; ++i) {
+  for (int i = 0; i < kMostTransitions; ++i) {
     const auto from = state();
     if (!from) return fail(from.error());
     if (*from == goal) return {};

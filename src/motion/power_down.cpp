@@ -16,7 +16,7 @@ namespace {
 
 using drive::DriveState;
 
-constexpr Duration kPause = std::chrono::milliseconds(5);
+constexpr Duration kStepPause = std::chrono::milliseconds(5);
 /// Answers in a row that do not come.
 constexpr int kMostSilences = 4;
 
@@ -144,7 +144,7 @@ void PowerDown::enter(State state, TimePoint now) {
 /// Without taking the time anew.
 void PowerDown::poll_again(State state, TimePoint now) {
   state_ = state;
-  pause_ = now + kPause;
+  pause_ = now + kStepPause;
 }
 
 /// An answer may be lost, so it is asked again. Then the node may be one that was sent NMT "stop": it answers

@@ -17,7 +17,7 @@ constexpr Duration kHaltPatience = std::chrono::seconds(2);
 /// After a halt has not helped, a quick stop has to soon.
 constexpr Duration kShortQuickStop = std::chrono::seconds(1);
 /// A drive that obeys has lost a tenth of its speed by then.
-constexpr Duration kMostDelay = std::chrono::milliseconds(250);
+constexpr Duration kMostDownDelay = std::chrono::milliseconds(250);
 constexpr double kSlower = 0.9;
 constexpr int kTries = 3;
 /// Bits 0 to 3 of 6040h: enable operation.
@@ -66,7 +66,7 @@ void PowerDown::on_slowing_speed(const Result<Bytes>& answer, TimePoint now) {
   }
   if (speed && !first_speed_) first_speed_ = speed;
   const bool slower = speed && *speed < *first_speed_ * kSlower;
-  if (now >= since_ + (slower ? kHaltPatience : kMostDelay)) return enter(State::quick_stop, now);
+  if (now >= since_ + (slower ? kHaltPatience : kMostDownDelay)) return enter(State::quick_stop, now);
   poll_again(State::slowing, now);
 }
 

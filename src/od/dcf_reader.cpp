@@ -27,9 +27,9 @@ struct Place {
 /// Of a value in [1600Value]: the object's index and the number of the line's key.
 std::uint32_t list_key(std::uint16_t index, std::uint8_t sub) { return std::uint32_t{index} << 8U | sub; }
 
-class Reader {
+class DcfReader {
  public:
-  Reader(std::string_view text, const EdsFile& eds, std::string_view file)
+  DcfReader(std::string_view text, const EdsFile& eds, std::string_view file)
       : ini_(parse_ini(text)), eds_(&eds), file_(file) {
     mend_keys(ini_);
   }
@@ -161,7 +161,7 @@ Result<Dcf> read_dcf(std::string_view text, std::string_view file) {
   const auto eds = read_eds(text, file);
   if (!eds) return fail(eds.error());
   const auto decoded = to_utf8(text);
-  return Reader(decoded.text(text), *eds, file).read();
+  return DcfReader(decoded.text(text), *eds, file).read();
 }
 
 }  // namespace servoctl::od

@@ -28,9 +28,10 @@ bool is_heading(std::string_view text) {
   return text.starts_with("===") || std::none_of(text.begin(), text.end(), is_word);
 }
 
-class Reader {
+class EdsReader {
  public:
-  Reader(std::string_view text, Findings findings) : ini_(parse_ini(text)), findings_(std::move(findings)) {
+  EdsReader(std::string_view text, Findings findings)
+      : ini_(parse_ini(text)), findings_(std::move(findings)) {
     mend_keys(ini_, findings_);
   }
 
@@ -257,7 +258,7 @@ Result<EdsFile> read_eds(std::string_view text, std::string_view file) {
                   std::string(kHint));
   if (is_binary(text)) return refuse(file, "not a text file", std::string(kHint));
   const auto decoded = to_utf8(text);
-  auto out = Reader(decoded.text(text), findings_of(decoded)).read();
+  auto out = EdsReader(decoded.text(text), findings_of(decoded)).read();
   if (!out.dictionary.empty()) return out;
   if (starts_with_nocase(trim(decoded.text(text)), "<"))
     return refuse(file, "this is XML, not an EDS or DCF file",

@@ -8,7 +8,7 @@
 namespace servoctl::od {
 namespace {
 
-constexpr std::size_t kSample = 16384;
+constexpr std::size_t kGuessedFrom = 16384;
 
 bool is_ascii_letter(unsigned char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
@@ -144,7 +144,7 @@ TextEncoding guess_encoding(std::string_view bytes) {
   if (bytes.starts_with("\xEF\xBB\xBF")) return TextEncoding::utf8;
   if (bytes.starts_with("\xFF\xFE")) return TextEncoding::utf16le;
   if (bytes.starts_with("\xFE\xFF")) return TextEncoding::utf16be;
-  const auto sample = bytes.substr(0, kSample);
+  const auto sample = bytes.substr(0, kGuessedFrom);
   if (sample.find('\0') != std::string_view::npos)
     if (const auto utf16 = utf16_of(sample)) return *utf16;
   if (is_utf8_text(bytes)) return TextEncoding::utf8;

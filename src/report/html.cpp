@@ -48,11 +48,6 @@ svg { display: block; max-width: 100%; height: auto; margin: .5rem 0; }
 }
 )";
 
-bool is_number(const Value& value) {
-  return std::holds_alternative<std::int64_t>(value.data()) ||
-         std::holds_alternative<std::uint64_t>(value.data()) || std::holds_alternative<double>(value.data());
-}
-
 bool is_block(const Value& value) {
   if (const auto* list = std::get_if<List>(&value.data()))
     return std::any_of(list->begin(), list->end(), is_block);
@@ -134,11 +129,11 @@ class Writer {
 
   static bool is_all_numbers(const Table& table, std::size_t column) {
     return std::all_of(table.rows.begin(), table.rows.end(),
-                       [&](const List& row) { return is_number(row[column]) || row[column].is_null(); });
+                       [&](const List& row) { return row[column].is_number() || row[column].is_null(); });
   }
 
   static std::string_view cell_style(const Value& value, bool number) {
-    if (number || is_number(value)) return " class=\"number\"";
+    if (number || value.is_number()) return " class=\"number\"";
     return display_width(line_text(value)) <= kShort ? " class=\"short\"" : "";
   }
 

@@ -18,7 +18,7 @@ constexpr double kLeft = 72;  ///< Room for the numbers of the value axis.
 constexpr double kRight = 12;
 constexpr double kTitle = 22;
 constexpr double kPanel = 112;
-constexpr double kGap = 14;
+constexpr double kPlotGap = 14;
 constexpr double kTimeAxis = 34;
 constexpr double kInner = kWidth - kLeft - kRight;
 constexpr std::size_t kMostTicks = 5;
@@ -153,9 +153,9 @@ std::string svg_plot(std::span<const Series> series) {
   for (const auto& one : series) {
     append(names, title_of(one));
     drawing += panel(one, time, top);
-    top += height_of(one) + kGap;
+    top += height_of(one) + kPlotGap;
   }
-  top -= kGap;
+  top -= kPlotGap;
   drawing += time_axis(time, top);
   return fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" "

@@ -17,12 +17,7 @@ struct Overloaded : Fs... {
 template <class... Fs>
 Overloaded(Fs...) -> Overloaded<Fs...>;  // clang 14 has no aggregate deduction.
 
-constexpr std::size_t kGap = 2;
-
-bool is_number(const Value& value) {
-  return std::holds_alternative<std::int64_t>(value.data()) ||
-         std::holds_alternative<std::uint64_t>(value.data()) || std::holds_alternative<double>(value.data());
-}
+constexpr std::size_t kColumnGap = 2;
 
 }  // namespace
 
@@ -64,7 +59,7 @@ std::string title_of(const T& named) {
   return printable(named.title.empty() ? named.key : named.title);
 }
 
-bool is_block(const Value& value) {
+bool has_own_lines(const Value& value) {
   return std::holds_alternative<Table>(value.data()) || std::holds_alternative<Record>(value.data()) ||
          std::holds_alternative<Plot>(value.data());
 }
@@ -101,8 +96,8 @@ class TableText {
     bool any_number = false;
     for (const auto& row : table.rows) {
       out.width = std::max(out.width, display_width(cell_text(row[index])));
-      any_number = any_number || is_number(row[index]);
-      out.right = out.right && (is_number(row[index]) || row[index].is_null() ||
+      any_number = any_number || row[index].is_number();
+      out.right = out.right && (row[index].is_number() || row[index].is_null() ||
                                 std::holds_alternative<Hex>(row[index].data()));
     }
     const bool all_empty = std::all_of(table.rows.begin(), table.rows.end(),
@@ -114,7 +109,7 @@ class TableText {
   /// Takes what is too much from the widest column; a column of at most 12 is left alone.
   void shrink(std::size_t width) {
     for (;;) {
-      std::size_t total = columns_.empty() ? 0 : (columns_.size() - 1) * kGap;
+      std::size_t total = columns_.empty() ? 0 : (columns_.size() - 1) * kColumnGap;
       for (const auto& column : columns_) total += column.width;
       const auto widest =
           std::max_element(columns_.begin(), columns_.end(),
@@ -130,7 +125,7 @@ class TableText {
       const auto& head = table.columns[column.index];
       const auto cell = row == nullptr ? title_of(head) : cell_text((*row)[column.index]);
       const auto clipped = clip(cell, column.width);
-      if (!line.empty()) line += std::string(kGap, ' ');
+      if (!line.empty()) line += std::string(kColumnGap, ' ');
       line += column.right ? pad_left(clipped, column.width) : pad_right(clipped, column.width);
     }
     line.erase(line.find_last_not_of(' ') + 1);
@@ -144,17 +139,17 @@ class TableText {
 std::string record_text(const Record& record, std::size_t width) {
   std::size_t left = 0;
   for (const auto& field : record)
-    if (field.show != Show::json && !is_block(field.value))
+    if (field.show != Show::json && !has_own_lines(field.value))
       left = std::max(left, display_width(title_of(field)));
   std::string out;
   std::string blocks;  // Below the lines, whatever their place.
   for (const auto& field : record) {
     if (field.show == Show::json || field.value.is_null()) continue;
-    if (is_block(field.value))
+    if (has_own_lines(field.value))
       blocks += "\n" + title_of(field) + ":\n" + to_text(field.value, width);
     else
-      out += pad_right(title_of(field), left + kGap) + wrapped(cell_text(field.value), left + kGap, width) +
-             '\n';
+      out += pad_right(title_of(field), left + kColumnGap) +
+             wrapped(cell_text(field.value), left + kColumnGap, width) + '\n';
   }
   return out + blocks;
 }
@@ -163,7 +158,8 @@ std::string lines_below(const Table& table, std::size_t width) {
   std::string out;
   for (const auto& line : table.below) {
     const auto indent = std::min(line.find_first_not_of(' '), line.size());
-    out += std::string(indent, ' ') + wrapped(printable(line.substr(indent)), indent + kGap, width) + '\n';
+    out +=
+        std::string(indent, ' ') + wrapped(printable(line.substr(indent)), indent + kColumnGap, width) + '\n';
   }
   return out.empty() ? out : '\n' + out;
 }
@@ -180,7 +176,7 @@ std::string to_text(const Value& value, std::size_t width) {
   if (const auto* list = std::get_if<List>(&value.data())) {
     std::string out;
     for (const auto& element : *list)
-      out += (out.empty() || !is_block(element) ? "" : "\n") + to_text(element, width);
+      out += (out.empty() || !has_own_lines(element) ? "" : "\n") + to_text(element, width);
     return out;
   }
   return printable_lines(line_text(value)) + '\n';

@@ -84,6 +84,10 @@ class Value {
   const Data& data() const { return data_; }
   Data& data() { return data_; }
   bool is_null() const { return std::holds_alternative<std::monostate>(data_); }
+  bool is_number() const {
+    return std::holds_alternative<std::int64_t>(data_) || std::holds_alternative<std::uint64_t>(data_) ||
+           std::holds_alternative<double>(data_);
+  }
 
  private:
   Data data_;

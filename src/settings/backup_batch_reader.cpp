@@ -7,9 +7,9 @@ namespace servoctl::settings {
 namespace {
 
 /// Reads the lines of a batch file as values.
-class Reader {
+class BatchBackupReader {
  public:
-  Reader(const std::string& file, const drive::Profile& profile, std::uint8_t node)
+  BatchBackupReader(const std::string& file, const drive::Profile& profile, std::uint8_t node)
       : file_(&file), profile_(&profile), node_(node) {}
 
   Result<void> take(const SettingLine& line) {
@@ -87,7 +87,7 @@ Result<Backup> read_batch_backup(LineReader& lines_of, std::string_view text, co
                                  const drive::Profile& profile, std::uint8_t node) {
   const auto lines = lines_of.setting_lines(text, file);
   if (!lines) return fail(lines.error());
-  Reader reader(file, profile, node);
+  BatchBackupReader reader(file, profile, node);
   for (const auto& line : *lines)
     if (const auto taken = reader.take(line); !taken) return fail(taken.error());
   auto backup = reader.take_backup();

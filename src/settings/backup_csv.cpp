@@ -49,9 +49,10 @@ std::string row_text(const drive::Profile& profile, const Backup& backup, const 
 }
 
 /// Reads the rows of a table.
-class Reader {
+class CsvBackupReader {
  public:
-  Reader(const CsvTable& table, const std::string& file, const drive::Profile& profile, std::uint8_t node)
+  CsvBackupReader(const CsvTable& table, const std::string& file, const drive::Profile& profile,
+                  std::uint8_t node)
       : table_(&table), file_(&file), profile_(&profile), node_(node) {}
 
   Result<Backup> read() {
@@ -177,7 +178,7 @@ Result<Backup> read_csv_backup(std::string_view text, const std::string& file, c
                                std::uint8_t node) {
   const auto table = parse_csv(text, file);
   if (!table) return fail(table.error());
-  return Reader(*table, file, profile, node).read();
+  return CsvBackupReader(*table, file, profile, node).read();
 }
 
 }  // namespace servoctl::settings

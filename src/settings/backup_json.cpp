@@ -16,7 +16,7 @@ using report::List;
 using report::Record;
 using report::Value;
 
-constexpr std::int64_t kVersion = 1;
+constexpr std::int64_t kBackupVersion = 1;
 
 Record entry_record(const drive::Profile* profile, const Backup& backup, const Backup::Entry& entry) {
   Record out{{"id", report::text_or_null(entry.id)},
@@ -108,7 +108,7 @@ std::string checksum(const Backup& backup) {
 }
 
 std::string json_text(const drive::Profile* profile, const Backup& backup) {
-  const Record head{{"servoctl_backup", kVersion},
+  const Record head{{"servoctl_backup", kBackupVersion},
                     {"tool", backup.tool},
                     {"time", backup.time},
                     {"bus", backup.bus},
@@ -131,11 +131,11 @@ Result<Backup> read_json_backup(std::string_view text, const std::string& file) 
   show::FieldReader fields(*document, file);
   const auto version = fields.number("servoctl_backup", true);
   if (!version) return fail(Errc::file, fmt::format("{}: this is not a servoctl backup", file));
-  if (*version > static_cast<std::uint64_t>(kVersion))
-    return fail(
-        Errc::file,
-        fmt::format("{}: its version {} is newer than this program supports ({})", file, *version, kVersion),
-        "read it with the servoctl that wrote it, or a newer one");
+  if (*version > static_cast<std::uint64_t>(kBackupVersion))
+    return fail(Errc::file,
+                fmt::format("{}: its version {} is newer than this program supports ({})", file, *version,
+                            kBackupVersion),
+                "read it with the servoctl that wrote it, or a newer one");
   Backup out;
   out.tool = fields.text("tool");
   out.time = fields.text("time");

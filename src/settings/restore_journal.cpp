@@ -22,7 +22,7 @@ using report::Record;
 using report::Value;
 
 constexpr std::uintmax_t kMostBytes = 1U << 20U;
-constexpr std::uint64_t kVersion = 2;  ///< 1 had no seal.
+constexpr std::uint64_t kJournalVersion = 2;  ///< 1 had no seal.
 constexpr std::string_view kKeys[] = {"servoctl_journal", "checksum", "node", "with_address", "force", "keep",
                                       "unlock",           "means",    "seal"};
 
@@ -35,10 +35,14 @@ Record body_of(const RestoreJournal& journal) {
   List means;
   for (const auto& [object, bytes] : journal.means)
     means.emplace_back(Record{{"index", object.index}, {"sub", object.sub}, {"bytes", to_hex(bytes)}});
-  return {{"servoctl_journal", kVersion}, {"checksum", journal.checksum},
-          {"node", journal.node},         {"with_address", journal.with_address},
-          {"force", journal.force},       {"keep", journal.keep},
-          {"unlock", journal.unlock},     {"means", std::move(means)}};
+  return {{"servoctl_journal", kJournalVersion},
+          {"checksum", journal.checksum},
+          {"node", journal.node},
+          {"with_address", journal.with_address},
+          {"force", journal.force},
+          {"keep", journal.keep},
+          {"unlock", journal.unlock},
+          {"means", std::move(means)}};
 }
 
 /// Of all that the journal says: an edited one, and one whose end is missing, is noticed.
@@ -61,9 +65,9 @@ void refuse_other_keys(const Value& document, show::FieldReader& fields) {
 
 Result<RestoreJournal> parse_journal(const Value& document, const std::string& file) {
   show::FieldReader fields(document, file);
-  if (const auto version = fields.number("servoctl_journal", true); version && *version != kVersion)
+  if (const auto version = fields.number("servoctl_journal", true); version && *version != kJournalVersion)
     return no_journal(
-        fmt::format("{}: its version {} is not that of this program ({})", file, *version, kVersion));
+        fmt::format("{}: its version {} is not that of this program ({})", file, *version, kJournalVersion));
   RestoreJournal out;
   out.checksum = fields.text("checksum", true);
   const auto node = fields.number("node", true).value_or(0);

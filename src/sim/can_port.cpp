@@ -25,7 +25,6 @@ constexpr std::uint16_t kPdoLengthExceeded = 0x8220;
 constexpr std::uint16_t kLifeGuardError = 0x8130;
 /// Of 1014h: bit 31, the drive sends no EMCY; its CAN-ID has 11 bits.
 constexpr std::uint32_t kNoEmergency = 0x8000'0000;
-constexpr std::uint32_t kCanId = 0x7FF;
 
 canopen::SdoServer::Options server_options(const drive::Rules& rules) {
   canopen::SdoServer::Options options;
@@ -265,8 +264,8 @@ void CanPort::queue(const Emergency& emergency) {
                                          .error_register = emergency.error_register,
                                          .vendor = emergency.vendor,
                                          .size = rules().emergency.size});
-  if (values().has(objects::kEmergencyCobId) && !canopen::is_restricted(cob_id & kCanId))
-    frame.id = cob_id & kCanId;
+  if (values().has(objects::kEmergencyCobId) && !canopen::is_restricted(cob_id & canopen::kCanId))
+    frame.id = cob_id & canopen::kCanId;
   emergencies_.push(frame);
 }
 

@@ -12,14 +12,13 @@ namespace abort = canopen::sdo_abort;
 namespace {
 
 constexpr std::uint32_t kBit31 = 0x8000'0000;
-constexpr std::uint32_t kProduces = 0x4000'0000;  ///< Of 1005h and 1012h; reserved in 1014h.
-constexpr std::uint32_t kCanId = 0x7FF;
+constexpr std::uint32_t kProduces = 0x4000'0000;     ///< Of 1005h and 1012h; reserved in 1014h.
 constexpr std::uint32_t kBeyondCanId = 0x3FFF'F800;  ///< The frame bit and what only 29 bits need.
 constexpr std::uint64_t kMostCounted = 240;
 
 std::uint32_t check_can_id(std::uint32_t cob_id) {
   if ((cob_id & kBeyondCanId) != 0) return abort::kRange;
-  return canopen::is_restricted(cob_id & kCanId) ? abort::kRange : 0;
+  return canopen::is_restricted(cob_id & canopen::kCanId) ? abort::kRange : 0;
 }
 
 std::uint32_t check_sync(std::uint32_t cob_id) {

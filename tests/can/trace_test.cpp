@@ -27,7 +27,7 @@ using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-Frame frame_of(const char* text) { return parse_frame(text).value(); }
+Frame parsed(const char* text) { return parse_frame(text).value(); }
 
 /// A bus in virtual time: gives what the test put in, each at its time, and lets time pass while it waits.
 class ScriptedBus final : public Bus {
@@ -94,13 +94,13 @@ constexpr TimePoint kStart{microseconds(1'736'412'345'123'456)};
 
 TEST_F(Trace, HasALineForEveryFrameSentAndReceived) {
   auto bus = trace(kStart);
-  inner_->coming.emplace_back(kStart + microseconds(900), frame_of("581#4341600037020000"));
-  inner_->coming.emplace_back(kStart + seconds(1), frame_of("20000040#0000000000000000"));
-  ASSERT_TRUE(bus->send(frame_of("601#4041600000000000")));
-  EXPECT_EQ(bus->receive(kStart + seconds(2)).value(), frame_of("581#4341600037020000"));
-  EXPECT_EQ(bus->receive(kStart + seconds(2)).value(), frame_of("20000040#0000000000000000"));
-  ASSERT_TRUE(bus->send(frame_of("701#R")));
-  ASSERT_TRUE(bus->send(frame_of("00000123#")));
+  inner_->coming.emplace_back(kStart + microseconds(900), parsed("581#4341600037020000"));
+  inner_->coming.emplace_back(kStart + seconds(1), parsed("20000040#0000000000000000"));
+  ASSERT_TRUE(bus->send(parsed("601#4041600000000000")));
+  EXPECT_EQ(bus->receive(kStart + seconds(2)).value(), parsed("581#4341600037020000"));
+  EXPECT_EQ(bus->receive(kStart + seconds(2)).value(), parsed("20000040#0000000000000000"));
+  ASSERT_TRUE(bus->send(parsed("701#R")));
+  ASSERT_TRUE(bus->send(parsed("00000123#")));
   bus.reset();
   EXPECT_EQ(written(),
             "(1736412345.123456) can0 601#4041600000000000\n"
@@ -112,7 +112,7 @@ TEST_F(Trace, HasALineForEveryFrameSentAndReceived) {
 
 TEST_F(Trace, OfASimulatedBusCountsFromItsZero) {
   auto bus = trace(TimePoint{});
-  ASSERT_TRUE(bus->send(frame_of("000#8100")));
+  ASSERT_TRUE(bus->send(parsed("000#8100")));
   bus.reset();
   EXPECT_EQ(written(), "(0000000000.000000) can0 000#8100\n");
 }
@@ -120,7 +120,7 @@ TEST_F(Trace, OfASimulatedBusCountsFromItsZero) {
 TEST_F(Trace, OfARealBusShowsTheTimeOfDay) {
   auto bus = trace(TimePoint{seconds(3)}, TraceClock::wall);
   const auto before = std::chrono::system_clock::now().time_since_epoch();
-  ASSERT_TRUE(bus->send(frame_of("000#8100")));
+  ASSERT_TRUE(bus->send(parsed("000#8100")));
   bus.reset();
   const auto line = parse_log_line(written());
   ASSERT_TRUE(line);
@@ -128,19 +128,19 @@ TEST_F(Trace, OfARealBusShowsTheTimeOfDay) {
 }
 
 TEST_F(Trace, ReplacesAnOlderFile) {
-  EXPECT_TRUE(trace(kStart)->send(frame_of("080#0102")));
-  EXPECT_TRUE(trace(kStart)->send(frame_of("081#")));
+  EXPECT_TRUE(trace(kStart)->send(parsed("080#0102")));
+  EXPECT_TRUE(trace(kStart)->send(parsed("081#")));
   EXPECT_EQ(written(), "(1736412345.123456) can0 081#\n");
 }
 
 TEST_F(Trace, ReachesTheFileWithinATenthOfASecondOfWaiting) {
   const auto bus = trace(kStart);
-  ASSERT_TRUE(bus->send(frame_of("080#")));
+  ASSERT_TRUE(bus->send(parsed("080#")));
   EXPECT_EQ(written(), "");
   EXPECT_EQ(bus->receive(kStart + milliseconds(99)).value(), std::nullopt);
   EXPECT_EQ(written(), "");
-  inner_->coming.emplace_back(kStart + seconds(1), frame_of("701#00"));
-  EXPECT_EQ(bus->receive(kStart + seconds(5)).value(), frame_of("701#00"));
+  inner_->coming.emplace_back(kStart + seconds(1), parsed("701#00"));
+  EXPECT_EQ(bus->receive(kStart + seconds(5)).value(), parsed("701#00"));
   EXPECT_EQ(written(), "(1736412345.123456) can0 080#\n");
   const std::vector waits{kStart + milliseconds(99), kStart + milliseconds(100), kStart + seconds(5)};
   EXPECT_EQ(inner_->deadlines, waits);
@@ -148,25 +148,25 @@ TEST_F(Trace, ReachesTheFileWithinATenthOfASecondOfWaiting) {
 
 TEST_F(Trace, ReachesTheFileWhileFramesKeepComing) {
   const auto bus = trace(kStart);
-  for (int i = 0; i < 3; ++i) inner_->coming.emplace_back(kStart + milliseconds(60 * i), frame_of("181#00"));
-  for (int i = 0; i < 3; ++i) ASSERT_EQ(bus->receive(kStart + seconds(5)).value(), frame_of("181#00"));
+  for (int i = 0; i < 3; ++i) inner_->coming.emplace_back(kStart + milliseconds(60 * i), parsed("181#00"));
+  for (int i = 0; i < 3; ++i) ASSERT_EQ(bus->receive(kStart + seconds(5)).value(), parsed("181#00"));
   EXPECT_EQ(lines(), 2);
 }
 
 TEST_F(Trace, ReachesTheFileWhileFramesAreSentWithoutWaiting) {
   const auto bus = trace(kStart);
-  ASSERT_TRUE(bus->send(frame_of("080#")));
+  ASSERT_TRUE(bus->send(parsed("080#")));
   ASSERT_TRUE(inner_->receive(kStart + milliseconds(100)));
-  ASSERT_TRUE(bus->send(frame_of("080#")));
+  ASSERT_TRUE(bus->send(parsed("080#")));
   EXPECT_EQ(lines(), 2);
 }
 
 TEST_F(Trace, DoesNotChangeWhatReceiveReturnsOrWhen) {
   const auto bus = trace(kStart);
-  ASSERT_TRUE(bus->send(frame_of("080#")));
+  ASSERT_TRUE(bus->send(parsed("080#")));
   EXPECT_EQ(bus->receive(kStart + seconds(5)).value(), std::nullopt);
   EXPECT_EQ(bus->now(), kStart + seconds(5));
-  ASSERT_TRUE(bus->send(frame_of("080#")));
+  ASSERT_TRUE(bus->send(parsed("080#")));
   inner_->interrupted = true;
   inner_->deadlines.clear();
   EXPECT_EQ(bus->receive(kStart + seconds(9)).value(), std::nullopt);
@@ -178,7 +178,7 @@ TEST_F(Trace, TellsAPollLoopWhenItWantsToBeWritten) {
   const auto bus = trace(kStart);
   EXPECT_EQ(bus->poll_fd(), 77);
   EXPECT_EQ(bus->next_event(), kNever);
-  ASSERT_TRUE(bus->send(frame_of("080#")));
+  ASSERT_TRUE(bus->send(parsed("080#")));
   EXPECT_EQ(bus->next_event(), kStart + milliseconds(100));
   inner_->next = kStart + milliseconds(10);
   EXPECT_EQ(bus->next_event(), kStart + milliseconds(10));
@@ -186,12 +186,12 @@ TEST_F(Trace, TellsAPollLoopWhenItWantsToBeWritten) {
 
 TEST_F(Trace, IsCompleteWhenTheBusFails) {
   const auto bus = trace(kStart);
-  ASSERT_TRUE(bus->send(frame_of("080#")));
+  ASSERT_TRUE(bus->send(parsed("080#")));
   inner_->broken = true;
-  EXPECT_EQ(bus->send(frame_of("081#")).error().code, Errc::bus);
+  EXPECT_EQ(bus->send(parsed("081#")).error().code, Errc::bus);
   EXPECT_EQ(written(), "(1736412345.123456) can0 080#\n");
   inner_->broken = false;
-  ASSERT_TRUE(bus->send(frame_of("082#")));
+  ASSERT_TRUE(bus->send(parsed("082#")));
   inner_->broken = true;
   EXPECT_EQ(bus->receive(kStart + seconds(1)).error().code, Errc::bus);
   EXPECT_EQ(lines(), 2);
@@ -203,13 +203,13 @@ TEST_F(Trace, ThatCannotBeWrittenSaysSoOnceAndLeavesTheBusUsable) {
   auto bus = trace_to(std::move(inner), "/dev/full", "can0", TraceClock::bus, [&](const Error& error) {
                told.push_back(error);
              }).value();
-  ASSERT_TRUE(bus->send(frame_of("080#")));
+  ASSERT_TRUE(bus->send(parsed("080#")));
   EXPECT_TRUE(bus->receive(kStart + milliseconds(200)));
   ASSERT_EQ(told.size(), 1U);
   EXPECT_EQ(told.front().code, Errc::file);
   EXPECT_NE(told.front().message.find("/dev/full"), std::string::npos);
   for (int i = 3; i < 10; ++i) {
-    EXPECT_TRUE(bus->send(frame_of("080#")));
+    EXPECT_TRUE(bus->send(parsed("080#")));
     EXPECT_TRUE(bus->receive(kStart + i * milliseconds(100)));
   }
   bus.reset();
@@ -223,7 +223,7 @@ TEST_F(Trace, WhoseLastFramesCannotBeWrittenSaysSoAtItsEnd) {
     auto bus = trace_to(std::make_unique<ScriptedBus>(kStart), "/dev/full", "can0", TraceClock::bus,
                         [&](const Error& error) { told.push_back(error); })
                    .value();
-    ASSERT_TRUE(bus->send(frame_of("080#")));
+    ASSERT_TRUE(bus->send(parsed("080#")));
     EXPECT_TRUE(told.empty());
     if (flushed) bus->flush_trace();
     EXPECT_EQ(told.size(), flushed ? 1U : 0U);
@@ -270,7 +270,7 @@ TEST_F(TracePipe, ThatNobodyReadsHoldsNothingUpAndCountsWhatIsMissing) {
   open_reader();
   auto bus = trace(kStart);
   constexpr std::size_t kFrames = 50'000;
-  for (std::size_t i = 0; i < kFrames; ++i) ASSERT_TRUE(bus->send(frame_of("080#")));
+  for (std::size_t i = 0; i < kFrames; ++i) ASSERT_TRUE(bus->send(parsed("080#")));
   ASSERT_TRUE(bus->receive(kStart + seconds(1)));
   ASSERT_TRUE(bus->receive(bus->now()));
   EXPECT_GT(bus->next_event(), bus->now()) << "it is asked again later, not over and over";
@@ -294,7 +294,7 @@ TEST_F(TracePipe, IsNotWaitedForAtTheEndAndSaysWhatIsMissing) {
                       [&](const Error& error) { told.push_back(error); })
                  .value();
   constexpr std::size_t kFrames = 1'000;
-  for (std::size_t i = 0; i < kFrames; ++i) ASSERT_TRUE(bus->send(frame_of("080#")));
+  for (std::size_t i = 0; i < kFrames; ++i) ASSERT_TRUE(bus->send(parsed("080#")));
   const auto begin = std::chrono::steady_clock::now();
   bus.reset();
   EXPECT_LT(std::chrono::steady_clock::now() - begin, seconds(5));
@@ -315,14 +315,14 @@ TEST(LogLine, IsReadAsCandumpWritesIt) {
   ASSERT_TRUE(line);
   EXPECT_EQ(line->time, microseconds(1'736'412'345'123'456));
   EXPECT_EQ(line->interface_name, "vcan0");
-  EXPECT_EQ(line->frame, frame_of("601#4041600000000000"));
+  EXPECT_EQ(line->frame, parsed("601#4041600000000000"));
 }
 
 TEST(LogLine, IsReadWithDirectionNanosecondsAndMoreSpaces) {
   const auto line = parse_log_line(" (0000000001.500000999)  can0   701#R  T");
   ASSERT_TRUE(line);
   EXPECT_EQ(line->time, microseconds(1'500'000));
-  EXPECT_EQ(line->frame, frame_of("701#R"));
+  EXPECT_EQ(line->frame, parsed("701#R"));
   EXPECT_TRUE(parse_log_line("(1.5) can0 080# R"));
   EXPECT_EQ(parse_log_line("(1.5) can0 080#")->time, milliseconds(1500));
 }

@@ -3,15 +3,10 @@
 
 #include "canopen/sdo_abort.hpp"
 #include "canopen/sdo_block.hpp"
+#include "one_object.hpp"
 
 namespace servoctl::canopen {
 namespace {
-
-Bytes counted(std::size_t size) {
-  Bytes out(size);
-  for (std::size_t i = 0; i < size; ++i) out[i] = static_cast<std::uint8_t>(i + 1);
-  return out;
-}
 
 SdoSegment segment(std::uint8_t first, std::uint8_t content) {
   SdoSegment out;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 
 #include "canopen/sdo_server.hpp"
 
@@ -13,6 +14,8 @@ inline Bytes counted(std::size_t size) {
   for (std::size_t i = 0; i < size; ++i) out[i] = static_cast<std::uint8_t>(i + 1);
   return out;
 }
+
+inline Bytes text(std::string_view words) { return {words.begin(), words.end()}; }
 
 /// A server's dictionary with one object, that refuses when it is told to.
 class OneObject final : public ObjectStore {

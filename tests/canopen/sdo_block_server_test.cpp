@@ -12,8 +12,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-Bytes text(std::string_view words) { return {words.begin(), words.end()}; }
-
 class BlockServerTest : public testing::Test {
  protected:
   OneObject object;

@@ -12,8 +12,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-Bytes text(std::string_view words) { return {words.begin(), words.end()}; }
-
 TEST(SdoCrc, HasTheCheckValueOfItsPolynomial) {
   EXPECT_EQ(sdo_crc(text("123456789")), 0x31C3);  // CiA 301, 7.2.4.3.16.
   EXPECT_EQ(sdo_crc({}), 0);

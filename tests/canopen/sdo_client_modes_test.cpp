@@ -1,17 +1,12 @@
 // The kinds of transfer the SDO client can be asked for, and what disturbs them.
 #include "canopen/sdo_client.hpp"
+#include "one_object.hpp"
 #include "transcript.hpp"
 
 namespace servoctl::canopen {
 namespace {
 
 using namespace std::chrono_literals;
-
-Bytes counted(std::size_t size) {
-  Bytes out(size);
-  for (std::size_t i = 0; i < size; ++i) out[i] = static_cast<std::uint8_t>(i + 1);
-  return out;
-}
 
 class SdoClientModeTest : public testing::Test {
  protected:

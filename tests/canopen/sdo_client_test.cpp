@@ -1,5 +1,6 @@
 #include "canopen/sdo_client.hpp"
 
+#include "one_object.hpp"
 #include "transcript.hpp"
 
 namespace servoctl::canopen {
@@ -38,12 +39,6 @@ class SdoClientTest : public testing::Test {
   SdoClient client{2, 500ms};
   TimePoint now{1s};
 };
-
-Bytes counted(std::size_t size) {
-  Bytes out(size);
-  for (std::size_t i = 0; i < size; ++i) out[i] = static_cast<std::uint8_t>(i + 1);
-  return out;
-}
 
 TEST_F(SdoClientTest, ReadsOneToFourBytesExpedited) {
   upload({0x6041, 0}, {"> 602#4041600000000000", "< 582#4F41600050000000"});

@@ -1,5 +1,6 @@
 #include "canopen/sdo_observer.hpp"
 
+#include "one_object.hpp"
 #include "transcript.hpp"
 
 namespace servoctl::canopen {
@@ -21,8 +22,6 @@ class SdoObserverTest : public testing::Test {
   }
   SdoObserver observer;
 };
-
-Bytes text(std::string_view words) { return {words.begin(), words.end()}; }
 
 TEST_F(SdoObserverTest, FollowsAnExpeditedRead) {
   const auto asked = see("602#4041600000000000");

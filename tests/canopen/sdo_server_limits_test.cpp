@@ -3,6 +3,7 @@
 
 #include "canopen/sdo_abort.hpp"
 #include "canopen/sdo_server.hpp"
+#include "one_object.hpp"
 #include "transcript.hpp"
 
 namespace servoctl::canopen {
@@ -23,12 +24,6 @@ class OneObject final : public ObjectStore {
   Bytes value;
   std::uint32_t refusal = 0;
 };
-
-Bytes counted(std::size_t size) {
-  Bytes out(size);
-  for (std::size_t i = 0; i < size; ++i) out[i] = static_cast<std::uint8_t>(i + 1);
-  return out;
-}
 
 class SdoServerLimitTest : public testing::Test {
  protected:

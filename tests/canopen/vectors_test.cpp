@@ -64,7 +64,7 @@ Bytes value_of(const Vector& v) {
   return store_le(raw, sizes.at(v.meaning.at(2)));
 }
 
-class Store final : public ObjectStore {
+class VectorStore final : public ObjectStore {
  public:
   std::uint32_t read(ObjectAddress object, Bytes& out) override {
     last = object;
@@ -109,7 +109,7 @@ class Checker {
 
  private:
   void check_write(const Vector& v) {
-    Store store;
+    VectorStore store;
     SdoServer server(node_, store, {});
     server.on_frame(frame_, TimePoint{});
     EXPECT_EQ(store.last, object_of(v));
@@ -125,7 +125,7 @@ class Checker {
     SdoClient client(node_, std::chrono::seconds(1));
     client.start_upload(object_of(v), TimePoint{});
     EXPECT_EQ(can::to_string(*client.take_frame()), v.text);
-    Store store;
+    VectorStore store;
     SdoServer server(node_, store, {});
     server.on_frame(frame_, TimePoint{});
     EXPECT_EQ(store.last, object_of(v));
@@ -139,7 +139,7 @@ class Checker {
     const auto result = client.take_result();
     ASSERT_TRUE(result && *result);
     EXPECT_EQ(**result, value_of(v));
-    Store store;
+    VectorStore store;
     store.value = value_of(v);
     SdoServer server(node_, store, {});
     server.on_frame(*request, TimePoint{});
@@ -154,7 +154,7 @@ class Checker {
     const auto result = client.take_result();
     ASSERT_TRUE(result);
     EXPECT_TRUE(*result);
-    Store store;
+    VectorStore store;
     SdoServer server(node_, store, {});
     server.on_frame(*request, TimePoint{});
     EXPECT_EQ(can::to_string(*server.take_frame()), without_reserved(v.text));
@@ -169,7 +169,7 @@ class Checker {
     const auto result = client.take_result();
     ASSERT_TRUE(result && !*result);
     EXPECT_EQ(result->error().abort_code, code);
-    Store store;
+    VectorStore store;
     store.refusal = code;
     SdoServer server(node_, store, {});
     server.on_frame(*request, TimePoint{});

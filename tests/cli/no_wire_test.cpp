@@ -21,8 +21,6 @@ using session::MemoryNetwork;
 using session::NodeEvent;
 using session::NodeState;
 
-const fs::path kFolders[] = {fs::path(source_dir()) / "eds"};
-
 class NoWire : public testing::TestWithParam<const char*> {
  protected:
   NoWire()

@@ -8,15 +8,15 @@ namespace fs = std::filesystem;
 
 using RestoreTest = BackupTest;
 
-struct Changed {
+struct Change {
   const char* family;
   const char* line;
 };
 
 TEST_F(RestoreTest, IsPutBackIntoEveryFamily) {
-  for (const auto& c : {Changed{"da200", "param set P5.12 77"}, Changed{"dm", "write 6065h 1.25"},
-                        Changed{"gsd600", "param set Pn0214=450 Pn0215=900"},
-                        Changed{"sv2", "write 2001h:1 60"}, Changed{"ts", "param set Fn_33=120 Fn_3A=3"}}) {
+  for (const auto& c : {Change{"da200", "param set P5.12 77"}, Change{"dm", "write 6065h 1.25"},
+                        Change{"gsd600", "param set Pn0214=450 Pn0215=900"},
+                        Change{"sv2", "write 2001h:1 60"}, Change{"ts", "param set Fn_33=120 Fn_3A=3"}}) {
     SCOPED_TRACE(c.family);
     use(fmt::format("sim:{}@1", c.family), c.family);
     ASSERT_EQ(run("backup %drive.json"), 0);
@@ -129,9 +129,9 @@ TEST_F(RestoreTest, WritesNoMemorySwitchAndNoPasswordWhateverTheFileSays) {
 }
 
 TEST_F(RestoreTest, MakesAFactoryDriveOfEveryFamilyTheSame) {
-  for (const auto& c : {Changed{"da200", "param set P5.12 77"}, Changed{"dm", "write 6065h 1.25"},
-                        Changed{"gsd600", "param set Pn0214=450 Pn0215=900"},
-                        Changed{"sv2", "write 2001h:1 60"}, Changed{"ts", "param set Fn_33=120 Fn_3A=3"}}) {
+  for (const auto& c : {Change{"da200", "param set P5.12 77"}, Change{"dm", "write 6065h 1.25"},
+                        Change{"gsd600", "param set Pn0214=450 Pn0215=900"},
+                        Change{"sv2", "write 2001h:1 60"}, Change{"ts", "param set Fn_33=120 Fn_3A=3"}}) {
     SCOPED_TRACE(c.family);
     use(fmt::format("sim:{}@1", c.family), c.family);
     ASSERT_EQ(run(c.line), 0) << console.err_text;
@@ -145,7 +145,7 @@ TEST_F(RestoreTest, MakesAFactoryDriveOfEveryFamilyTheSame) {
 }
 
 TEST_F(RestoreTest, KeepsWhatTheDriveHeldInItsRamAlready) {
-  for (const auto& c : {Changed{"ts", "param set Fn_33=120"}, Changed{"sv2", "write 2001h:1 60"}}) {
+  for (const auto& c : {Change{"ts", "param set Fn_33=120"}, Change{"sv2", "write 2001h:1 60"}}) {
     SCOPED_TRACE(c.family);
     use(fmt::format("sim:{}@1", c.family), c.family);
     ASSERT_EQ(run(c.line), 0);

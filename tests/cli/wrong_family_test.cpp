@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kFamilies[] = {"gsd600", "dm", "da200", "sv2", "ts"};
+constexpr const char* kVendorFamilies[] = {"gsd600", "dm", "da200", "sv2", "ts"};
 
 /// A line of each command that touches a drive; `%` stands for a folder of the test.
 const std::map<std::string, std::string, std::less<>> kLines{
@@ -172,8 +172,8 @@ TEST_F(WrongFamily, TheTableHasEveryCommand) {
 }
 
 TEST_F(WrongFamily, WritesNothingByAnyCommand) {
-  for (const std::string drive : kFamilies)
-    for (const std::string named : kFamilies) {
+  for (const std::string drive : kVendorFamilies)
+    for (const std::string named : kVendorFamilies) {
       if (drive == named) continue;
       open(drive, named);
       for (const auto& [path, line] : kLines) {
@@ -236,7 +236,7 @@ TEST_F(WrongFamily, GoesOnWhenItIsForcedAndSaysSo) {
 TEST_F(WrongFamily, TellsWhatProvesNothingAndKeepsSilentOverAProof) {
   EXPECT_EQ(run("write 0x6060 1", "ts", "cia402"), 0);
   EXPECT_NE(said.find("node 1: nothing proves that it is a cia402"), std::string::npos) << said;
-  for (const std::string family : kFamilies) {
+  for (const std::string family : kVendorFamilies) {
     EXPECT_EQ(run("write 0x6060 1", family, family), 0) << said;
     EXPECT_EQ(said.find("proves"), std::string::npos) << said;
   }

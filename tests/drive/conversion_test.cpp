@@ -12,8 +12,6 @@
 namespace servoctl::drive {
 namespace {
 
-const std::filesystem::path kFolders[] = {std::filesystem::path(source_dir()) / "eds"};
-
 /// Everything of a family that has a unit, a scale or an encoding.
 const std::vector<Target>& measured_targets() {
   static std::vector<Profile> profiles;

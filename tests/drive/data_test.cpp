@@ -16,8 +16,6 @@
 namespace servoctl::drive {
 namespace {
 
-const std::filesystem::path kFolders[] = {std::filesystem::path(source_dir()) / "eds"};
-
 class DriveData : public testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {

@@ -12,8 +12,6 @@
 namespace servoctl::drive {
 namespace {
 
-const std::filesystem::path kFolders[] = {std::filesystem::path(source_dir()) / "eds"};
-
 Profile load(std::string_view family) {
   auto profile = load_profile(family, kFolders);
   EXPECT_TRUE(profile) << profile.error().message;

@@ -9,15 +9,15 @@
 namespace servoctl::drive {
 namespace {
 
-constexpr DriveState kAll[] = {DriveState::not_ready_to_switch_on,
-                               DriveState::switch_on_disabled,
-                               DriveState::ready_to_switch_on,
-                               DriveState::switched_on,
-                               DriveState::operation_enabled,
-                               DriveState::quick_stop_active,
-                               DriveState::fault_reaction_active,
-                               DriveState::fault,
-                               DriveState::unknown};
+constexpr DriveState kEveryState[] = {DriveState::not_ready_to_switch_on,
+                                      DriveState::switch_on_disabled,
+                                      DriveState::ready_to_switch_on,
+                                      DriveState::switched_on,
+                                      DriveState::operation_enabled,
+                                      DriveState::quick_stop_active,
+                                      DriveState::fault_reaction_active,
+                                      DriveState::fault,
+                                      DriveState::unknown};
 
 /// `06 07`, `auto 06`, `-` where there is no way.
 std::string way(DriveState from, DriveState to, bool resumes) {
@@ -33,7 +33,7 @@ std::string way(DriveState from, DriveState to, bool resumes) {
 }
 
 TEST(PowerPath, IsTheShortestLegalOneFromEveryStateToEveryState) {
-  // Rows: from; columns: to, both in the order of kAll. An empty text: already there.
+  // Rows: from; columns: to, both in the order of kEveryState. An empty text: already there.
   const std::vector<std::vector<std::string>> expected{
       {"", "auto", "auto 06", "auto 06 07", "auto 06 07 0F", "auto 06 07 0F 02", "-", "-", "-"},
       {"-", "", "06", "06 07", "06 07 0F", "06 07 0F 02", "-", "-", "-"},
@@ -45,10 +45,10 @@ TEST(PowerPath, IsTheShortestLegalOneFromEveryStateToEveryState) {
       {"-", "-", "-", "-", "-", "-", "-", "", "-"},
       {"-", "-", "-", "-", "-", "-", "-", "-", ""},
   };
-  for (std::size_t from = 0; from < std::size(kAll); ++from)
-    for (std::size_t to = 0; to < std::size(kAll); ++to)
-      EXPECT_EQ(way(kAll[from], kAll[to], false), expected[from][to])
-          << name(kAll[from]) << " -> " << name(kAll[to]);
+  for (std::size_t from = 0; from < std::size(kEveryState); ++from)
+    for (std::size_t to = 0; to < std::size(kEveryState); ++to)
+      EXPECT_EQ(way(kEveryState[from], kEveryState[to], false), expected[from][to])
+          << name(kEveryState[from]) << " -> " << name(kEveryState[to]);
 }
 
 TEST(PowerPath, ResumesAfterAQuickStopOnlyWhereTheDriveAllowsIt) {
@@ -67,8 +67,8 @@ TEST(PowerPath, NamesTheStateThatEachStepReaches) {
 }
 
 TEST(PowerPath, EveryStepIsOneTheStateMachineTakes) {
-  for (const auto from : kAll) {
-    for (const auto to : kAll) {
+  for (const auto from : kEveryState) {
+    for (const auto to : kEveryState) {
       auto state = from;
       for (const auto& step : power_path(from, to, true).value_or(std::vector<PowerStep>{})) {
         if (step.controlword) {

@@ -20,8 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kFolders[] = {fs::path(source_dir()) / "eds"};
-
 struct Manual {
   const char* family;
   const char* vendor;

@@ -12,7 +12,6 @@ using namespace servoctl;
 
 namespace {
 
-const std::filesystem::path kFolders[] = {std::filesystem::path(source_dir()) / "eds"};
 constexpr std::uint8_t kNode = 1;
 
 const drive::Profile& profile() {

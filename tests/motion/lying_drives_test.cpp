@@ -13,11 +13,11 @@ namespace {
 using namespace std::chrono_literals;
 using drive::DriveState;
 
-struct Family {
+struct LyingFamily {
   const char* name;
   double turn;
 };
-constexpr Family kFamilies[] = {
+constexpr LyingFamily kLyingFamilies[] = {
     {"gsd600", 131072}, {"da200", 10000}, {"ts", 10000}, {"sv2", 131072}, {"dm", 0}};
 
 int from_environment(const char* name, int otherwise) {
@@ -29,7 +29,7 @@ int from_environment(const char* name, int otherwise) {
 class LyingDrive {
  public:
   explicit LyingDrive(unsigned seed)
-      : random_(seed), family_(kFamilies[pick(5)]), bench_(family_.name, family_.turn) {}
+      : random_(seed), family_(kLyingFamilies[pick(5)]), bench_(family_.name, family_.turn) {}
 
   /// What is not as it was told; empty when nothing is.
   std::string run() {
@@ -96,7 +96,7 @@ class LyingDrive {
   }
 
   std::mt19937 random_;
-  Family family_;
+  LyingFamily family_;
   MotionBench bench_;
   std::vector<int> lies_;
 };

@@ -10,8 +10,8 @@ struct Asked {
   const char* name;
   double turn;
 };
-constexpr Asked kFamilies[] = {{"cia402", 10000}, {"gsd600", 131072}, {"da200", 10000},
-                               {"sv2", 0},        {"ts", 10000},      {"dm", 0}};
+constexpr Asked kAskedFamilies[] = {{"cia402", 10000}, {"gsd600", 131072}, {"da200", 10000},
+                                    {"sv2", 0},        {"ts", 10000},      {"dm", 0}};
 void PrintTo(const Asked& family, std::ostream* out) { *out << family.name; }
 
 class ValuesOfFamily : public testing::TestWithParam<Asked> {
@@ -113,7 +113,7 @@ TEST_P(ValuesOfFamily, ASpeedThatIsNotTheOneAskedForIsADifference) {
   EXPECT_EQ(shorter.unchecked.size(), 1U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Families, ValuesOfFamily, testing::ValuesIn(kFamilies),
+INSTANTIATE_TEST_SUITE_P(Families, ValuesOfFamily, testing::ValuesIn(kAskedFamilies),
                          [](const auto& test) { return std::string(test.param.name); });
 
 /// Changes what the drive tells of an object in 4 bytes.

@@ -10,13 +10,13 @@
 
 namespace servoctl::motion {
 
-struct Family {
+struct EnabledFamily {
   const char* name;
   double turn;
 };
-inline constexpr Family kFamilies[] = {{"cia402", 10000}, {"gsd600", 131072}, {"da200", 10000},
-                                       {"ts", 10000},     {"sv2", 131072},    {"dm", 0}};
-inline std::string name_of(const testing::TestParamInfo<Family>& one) { return one.param.name; }
+inline constexpr EnabledFamily kEnabledFamilies[] = {{"cia402", 10000}, {"gsd600", 131072}, {"da200", 10000},
+                                                     {"ts", 10000},     {"sv2", 131072},    {"dm", 0}};
+inline std::string name_of(const testing::TestParamInfo<EnabledFamily>& one) { return one.param.name; }
 
 /// Several drives of one family, enabled, each of which answers after 3 ms.
 class Several {
@@ -66,7 +66,7 @@ class Several {
   Duration took{};
 };
 
-class WayOut : public testing::TestWithParam<Family> {
+class WayOut : public testing::TestWithParam<EnabledFamily> {
  protected:
   const char* family() const { return GetParam().name; }
 };

@@ -205,7 +205,7 @@ TEST_P(WayOutInTrouble, AnExceptionInTheWayOutItselfStillStopsTheDrive) {
   EXPECT_FALSE(bench.energised());
 }
 
-INSTANTIATE_TEST_SUITE_P(Families, WayOutInTrouble, testing::ValuesIn(kFamilies), name_of);
+INSTANTIATE_TEST_SUITE_P(Families, WayOutInTrouble, testing::ValuesIn(kEnabledFamilies), name_of);
 
 }  // namespace
 }  // namespace servoctl::motion

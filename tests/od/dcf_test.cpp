@@ -1,5 +1,6 @@
 #include "od/dcf.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "od/eds.hpp"

@@ -5,13 +5,6 @@
 namespace servoctl::od {
 namespace {
 
-const std::string kGood = variable("2FFF", "7", "");
-
-std::string default_of(const EdsFile& file, ObjectAddress address) {
-  const auto* entry = file.dictionary.find(address);
-  return entry == nullptr || !entry->default_value ? "none" : to_string(entry->default_value->for_node(5));
-}
-
 std::string compact(std::string_view count, std::string_view more = "") {
   return variable("2000", "6", "ObjectType=8\nDefaultValue=9\nCompactSubObj=" + std::string(count)) +
          std::string(more);

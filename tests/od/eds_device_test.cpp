@@ -5,8 +5,6 @@
 namespace servoctl::od {
 namespace {
 
-const std::string kGood = variable("2FFF", "7", "");
-
 TEST(EdsDevice, HasNamesNumbersAndBitrates) {
   const auto file = read(
       "[DeviceInfo]\nVendorName=Example\nProductName=X1\nVendorNumber=0xFFFFFFFF\nProductNumber=2\n"

@@ -5,12 +5,6 @@
 namespace servoctl::od {
 namespace {
 
-std::string bytes(std::initializer_list<int> list) {
-  std::string out;
-  for (const int byte : list) out += static_cast<char>(byte);
-  return out;
-}
-
 struct Sample {
   const char* text;
   std::string written;

@@ -5,11 +5,6 @@
 namespace servoctl::od {
 namespace {
 
-std::string default_of(const EdsFile& file, ObjectAddress address) {
-  const auto* entry = file.dictionary.find(address);
-  return entry == nullptr || !entry->default_value ? "none" : to_string(entry->default_value->for_node(5));
-}
-
 /// A record with sub 0, which says `highest`, and sub-indexes of these names.
 EdsFile record(const char* highest, const std::vector<std::string>& subs) {
   std::string text = "[2000]\nParameterName=X\nObjectType=9\nSubNumber=" + std::to_string(subs.size() + 1) +
@@ -17,12 +12,6 @@ EdsFile record(const char* highest, const std::vector<std::string>& subs) {
                      "\n";
   for (const auto& sub : subs) text += variable("2000sub" + sub, "5", "");
   return read(text);
-}
-
-std::vector<std::string> numbers(int from, int to) {
-  std::vector<std::string> out;
-  for (int i = from; i <= to; ++i) out.push_back(std::to_string(i));
-  return out;
 }
 
 std::vector<std::string> rules(const EdsFile& file) {

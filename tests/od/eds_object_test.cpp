@@ -13,12 +13,6 @@ EdsFile with_subs(const std::vector<std::string>& subs) {
   return read(text);
 }
 
-std::vector<std::string> numbers(int from, int to) {
-  std::vector<std::string> out;
-  for (int i = from; i <= to; ++i) out.push_back(std::to_string(i));
-  return out;
-}
-
 TEST(EdsSubIndex, IsDecimalOnlyWhereNoNumberIsMissing) {
   EXPECT_EQ(findings(with_subs(numbers(0, 9))), Rules{});
   EXPECT_EQ(findings(with_subs(numbers(1, 10))), Rules{"5:1 decimal-sub-index"});

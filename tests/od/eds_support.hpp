@@ -46,4 +46,24 @@ inline std::string variable(std::string_view index, std::string_view type, std::
          "\nAccessType=rw\n" + std::string(more) + "\n";
 }
 
+/// One that nothing is found about.
+inline const std::string kGood = variable("2FFF", "7", "");
+
+inline std::string bytes(std::initializer_list<int> list) {
+  std::string out;
+  for (const int byte : list) out += static_cast<char>(byte);
+  return out;
+}
+
+inline std::string default_of(const EdsFile& file, ObjectAddress address) {
+  const auto* entry = file.dictionary.find(address);
+  return entry == nullptr || !entry->default_value ? "none" : to_string(entry->default_value->for_node(5));
+}
+
+inline std::vector<std::string> numbers(int from, int to) {
+  std::vector<std::string> out;
+  for (int i = from; i <= to; ++i) out.push_back(std::to_string(i));
+  return out;
+}
+
 }  // namespace servoctl::od

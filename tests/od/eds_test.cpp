@@ -8,14 +8,14 @@ namespace servoctl::od {
 namespace {
 
 /// `[1000]` as it should be, so that a file has one usable object; 7 lines.
-constexpr std::string_view kGood =
+constexpr std::string_view kGoodDevice =
     "[1000]\nParameterName=Device "
     "type\nObjectType=0x7\nDataType=0x0007\nAccessType=ro\nDefaultValue=0x192\nPDOMapping=0\n";
 
-/// The one finding of kGood followed by `text`.
+/// The one finding of kGoodDevice followed by `text`.
 void expect_finding(std::string_view text, Severity severity, std::string_view rule, std::uint32_t line,
                     std::uint32_t column) {
-  const auto file = read(std::string(kGood) + std::string(text));
+  const auto file = read(std::string(kGoodDevice) + std::string(text));
   ASSERT_EQ(file.diagnostics.size(), 1U)
       << text << (file.diagnostics.empty() ? "" : "\n" + to_string(file.diagnostics.back(), "x"));
   const auto& d = file.diagnostics.front();
@@ -111,12 +111,12 @@ TEST(Eds, OfADcfGivesNodeIdAndConfiguredValues) {
       "0\nParameterValue=250\n");
   EXPECT_EQ(file.node_id, 5);
   EXPECT_EQ(to_string(file.dictionary.find({0x1017, 0})->configured->value), "250");
-  EXPECT_EQ(read("[DeviceCommissioning]\nNodeID=6\n" + std::string(kGood)).node_id, 6);
+  EXPECT_EQ(read("[DeviceCommissioning]\nNodeID=6\n" + std::string(kGoodDevice)).node_id, 6);
 }
 
 TEST(Eds, TakesAllLineEndsCommentsAndAByteOrderMark) {
   for (const auto* end : {"\n", "\r\n", "\r"}) {
-    std::string text = "\xEF\xBB\xBF; a comment\n" + std::string(kGood);
+    std::string text = "\xEF\xBB\xBF; a comment\n" + std::string(kGoodDevice);
     std::string turned;
     for (const char c : text) turned += c == '\n' ? std::string(end) : std::string(1, c);
     const auto file = read(turned);
@@ -168,7 +168,7 @@ TEST(EdsFinding, OfEachRuleHasItsPlace) {
 }
 
 TEST(EdsFinding, TakesNothingOfAnEntryThatIsGood) {
-  const auto file = read(std::string(kGood) +
+  const auto file = read(std::string(kGoodDevice) +
                          "[1001]\nParameterName=E\nDataType=5\nAccessType=ro\nDefaultValue=\nLowLimit=\n");
   EXPECT_TRUE(file.diagnostics.empty());
   EXPECT_FALSE(file.dictionary.find({0x1001, 0})->default_value);

@@ -4,11 +4,6 @@
 namespace servoctl::od {
 namespace {
 
-std::string default_of(const EdsFile& file, ObjectAddress address) {
-  const auto* entry = file.dictionary.find(address);
-  return entry == nullptr || !entry->default_value ? "none" : to_string(entry->default_value->for_node(5));
-}
-
 TEST(EdsValue, MayHaveTheNodeIdInLimitsAndConfiguredValues) {
   const auto file = read(variable(
       "1400", "7",

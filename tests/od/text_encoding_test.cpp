@@ -9,12 +9,6 @@ namespace {
 /// What it is taken for; no byte behind it may be looked at.
 TextEncoding guess(std::string_view bytes) { return guess_encoding(GuardedText(bytes).text()); }
 
-std::string bytes(std::initializer_list<int> list) {
-  std::string out;
-  for (const int byte : list) out += static_cast<char>(byte);
-  return out;
-}
-
 std::string around(const char* before, int byte, const char* after) { return before + bytes({byte}) + after; }
 
 TEST(Utf8, HasTheFormsOfItsDefinition) {

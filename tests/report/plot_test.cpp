@@ -20,7 +20,7 @@ Series ramp(std::string name, std::string unit, double from, double to, std::siz
   return out;
 }
 
-std::string plot(std::vector<Series> series, std::size_t width = kPlotWidth) {
+std::string drawn(std::vector<Series> series, std::size_t width = kPlotWidth) {
   return braille_plot(series, width);
 }
 
@@ -42,7 +42,7 @@ TEST(Axis, BeginsAndEndsAtAMark) {
 }
 
 TEST(BraillePlot, ShowsARampWithItsAxes) {
-  EXPECT_EQ(plot({ramp("velocity", "rpm", 0, 60)}, 40),
+  EXPECT_EQ(drawn({ramp("velocity", "rpm", 0, 60)}, 40),
             "velocity (rpm)\n"
             "60 ┤                                ⢀⠤⠒⠋\n"
             "   │                            ⣀⠤⠖⠋⠁\n"
@@ -60,7 +60,7 @@ TEST(BraillePlot, ShowsARampWithItsAxes) {
 TEST(BraillePlot, StacksQuantitiesOverOneTime) {
   auto late = ramp("torque", "%", -3, 3);
   for (auto& second : late.seconds) second += 2;
-  const auto text = plot({ramp("position", "deg", 0, 12345), late});
+  const auto text = drawn({ramp("position", "deg", 0, 12345), late});
   EXPECT_NE(text.find("position (deg)\n"), std::string::npos);
   EXPECT_NE(text.find("torque (%)\n"), std::string::npos);
   EXPECT_EQ(text.find("└"), text.rfind("└")) << "one time axis for both";
@@ -68,9 +68,9 @@ TEST(BraillePlot, StacksQuantitiesOverOneTime) {
 }
 
 TEST(BraillePlot, DrawsAConstantAndASingleSample) {
-  const auto constant = plot({ramp("mode", "", 3, 3)});
+  const auto constant = drawn({ramp("mode", "", 3, 3)});
   EXPECT_NE(constant.find("3.0 ┤⠤⠤⠤⠤"), std::string::npos) << constant;
-  const auto single = plot({{"position", "deg", {0}, {90}}});
+  const auto single = drawn({{"position", "deg", {0}, {90}}});
   EXPECT_NE(single.find("position (deg)\n"), std::string::npos);
   EXPECT_EQ(single.find("no samples"), std::string::npos);
 }
@@ -78,16 +78,16 @@ TEST(BraillePlot, DrawsAConstantAndASingleSample) {
 TEST(BraillePlot, LeavesAGapWhereThereIsNoNumber) {
   auto series = ramp("torque", "%", 5, 5);
   for (std::size_t i = 40; i < 60; ++i) series.values[i] = std::numeric_limits<double>::quiet_NaN();
-  const auto text = plot({series});
+  const auto text = drawn({series});
   EXPECT_NE(text.find("┤⠒⠒⠒⠒⠒⠒⠒⠒⠒⠒⠒⠒⠒⠒⠒⠒⠒⠒⠒⠒⠒⠒⠒⠒⠒⠒⠒⠒⠒⠒               ⠒⠒"), std::string::npos) << text;
 }
 
 TEST(BraillePlot, SaysThatThereAreNoSamples) {
-  EXPECT_EQ(plot({}), "");
-  EXPECT_EQ(plot({{"torque", "%", {}, {}}}), "torque (%): no samples\n");
+  EXPECT_EQ(drawn({}), "");
+  EXPECT_EQ(drawn({{"torque", "%", {}, {}}}), "torque (%): no samples\n");
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(plot({{"torque", "%", {0, 1}, {nan, nan}}}), "torque (%): no samples\n");
-  EXPECT_EQ(plot({{"torque", "%", {nan}, {1}}}), "torque (%): no samples\n");
+  EXPECT_EQ(drawn({{"torque", "%", {0, 1}, {nan, nan}}}), "torque (%): no samples\n");
+  EXPECT_EQ(drawn({{"torque", "%", {nan}, {1}}}), "torque (%): no samples\n");
 }
 
 TEST(BraillePlot, StandsNumbersOfEverySize) {
@@ -95,13 +95,13 @@ TEST(BraillePlot, StandsNumbersOfEverySize) {
   for (const auto& values : {std::vector<double>{-largest, largest}, std::vector<double>{1e299, -1e299},
                              std::vector<double>{1e-310, 2e-310}, std::vector<double>{1e15, 1e15 + 1},
                              std::vector<double>{0, INFINITY, -INFINITY}}) {
-    const auto text = plot({{"x", "", std::vector<double>(values.size(), 7.0), values}});
+    const auto text = drawn({{"x", "", std::vector<double>(values.size(), 7.0), values}});
     for (const auto line : split(std::string_view(text), '\n')) EXPECT_LE(display_width(line), 80U) << line;
   }
 }
 
 TEST(BraillePlot, WritesOutControlCharactersOfAName) {
-  const auto text = plot({{"bad\x1b[2J", "", {0}, {1}}});
+  const auto text = drawn({{"bad\x1b[2J", "", {0}, {1}}});
   EXPECT_EQ(text.find('\x1b'), std::string::npos);
 }
 

@@ -20,8 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 using Kind = FamilyVerdict::Kind;
 
-const fs::path kFolders[] = {fs::path(source_dir()) / "eds"};
-
 drive::Profile profile(std::string_view family) { return drive::load_profile(family, kFolders).value(); }
 
 FamilyVerdict judge(const Identity& identity, const drive::Profile& named) {

@@ -12,8 +12,6 @@
 namespace servoctl::session {
 namespace {
 
-const std::filesystem::path kFolders[] = {std::filesystem::path(source_dir()) / "eds"};
-
 /// A drive of each family whose objects stand in memory.
 class DriveInMemory : public testing::TestWithParam<const char*> {
  protected:

@@ -14,7 +14,7 @@ using canopen::Pdo;
 
 /// A change of every kind: another mapping, another type, switched on, switched off, COB-IDs exchanged where
 /// the family lets them change.
-struct Wish {
+struct PdoWish {
   std::vector<Pdo> pdos;
   Values assignments;
 };
@@ -23,8 +23,8 @@ bool has_cob_ids(const PdoWorld& world) {
   return !assignment_of(&world.profile(), canopen::PdoDirection::receive);
 }
 
-Wish wish_of(PdoWorld& world) {
-  Wish out;
+PdoWish wish_of(PdoWorld& world) {
+  PdoWish out;
   if (!has_cob_ids(world)) {
     auto rpdo = world.pdo("RPDO1");
     rpdo.entries = {entry(0x60400010), entry(0x607A0020)};
@@ -54,8 +54,8 @@ class EveryFamily : public testing::TestWithParam<const char*> {
     EXPECT_EQ(out->drive().nmt_state(), NmtState::operational);
     return out;
   }
-  using Expect =
-      std::function<void(PdoWorld& world, const RestoreOutcome& outcome, const Values& before, const Wish&)>;
+  using Expect = std::function<void(PdoWorld& world, const RestoreOutcome& outcome, const Values& before,
+                                    const PdoWish&)>;
   /// Changes a new drive once for every SDO request of the change, with trouble at that one.
   void at_every_step(int StepTrouble::*kind, const Expect& expect) {
     int steps = 1;
@@ -78,7 +78,7 @@ class EveryFamily : public testing::TestWithParam<const char*> {
 };
 
 /// The promise: never a value that is neither as wanted, nor as it was, nor told.
-void expect_kept(PdoWorld& world, const RestoreOutcome& outcome, const Values& before, const Wish& wish) {
+void expect_kept(PdoWorld& world, const RestoreOutcome& outcome, const Values& before, const PdoWish& wish) {
   const auto now = world.read();
   if (!outcome.failure) {
     for (const auto& pdo : wish.pdos) EXPECT_EQ(world.pdo(canopen::name(pdo.direction, pdo.number)), pdo);

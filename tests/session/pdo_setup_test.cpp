@@ -14,8 +14,6 @@ namespace {
 using canopen::Pdo;
 using canopen::PdoDirection;
 
-const std::filesystem::path kFolders[] = {std::filesystem::path(source_dir()) / "eds"};
-
 drive::Profile profile_of(std::string_view family) { return drive::load_profile(family, kFolders).value(); }
 
 /// Hands frames to a bus that outlives the session.

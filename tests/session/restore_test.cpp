@@ -13,8 +13,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-const std::filesystem::path kFolders[] = {std::filesystem::path(source_dir()) / "eds"};
-
 /// Name or address of an object, and what it is to hold.
 using Wish = std::pair<const char*, std::int64_t>;
 

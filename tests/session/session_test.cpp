@@ -17,8 +17,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-const std::filesystem::path kFolders[] = {std::filesystem::path(source_dir()) / "eds"};
-
 /// A bus whose drives the test can reach, with a count of what was sent.
 class Bench final : public can::Bus {
  public:

@@ -42,7 +42,7 @@ TEST_P(FaultsOf, HasNoPowerLeftWhenItsMasterIsLost) {
     ASSERT_EQ(write(objects::kAbortConnectionOption, kFault), 0U);
   }
   enable();
-  ASSERT_EQ(write(kVelocity, 100), 0U);
+  ASSERT_EQ(write(kTargetVelocity, 100), 0U);
   run(500ms);
   model().on_master_lost(0x8130, now_);
   EXPECT_EQ(told(), (std::vector<Emergency>{{0x8130, 0x11, {}}})) << "generic and communication";
@@ -104,11 +104,11 @@ TEST_F(DriveModelTest, MisbehavesAsItIsToldWithoutAWire) {
   build("cia402");
   Bytes out;
   model().misbehaviour().missing = {0x60FF};
-  EXPECT_EQ(model().read(kVelocity, out), abort::kNoObject);
+  EXPECT_EQ(model().read(kTargetVelocity, out), abort::kNoObject);
   model().misbehaviour() = {};
   model().misbehaviour().feigned = {0x60FF};
-  EXPECT_EQ(write(kVelocity, 5), 0U);
-  EXPECT_EQ(number(kVelocity), 0U);
+  EXPECT_EQ(write(kTargetVelocity, 5), 0U);
+  EXPECT_EQ(number(kTargetVelocity), 0U);
   model().misbehaviour() = {};
   model().misbehaviour().ignores_disable = true;
   enable();

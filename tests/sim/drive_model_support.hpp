@@ -15,7 +15,7 @@
 
 namespace servoctl::sim {
 
-inline constexpr ObjectAddress kVelocity{0x60FF, 0};
+inline constexpr ObjectAddress kTargetVelocity{0x60FF, 0};
 
 /// A drive model by itself: no bus, no frame, and no port but one that the test makes.
 class DriveModelTest : public testing::Test {

@@ -29,41 +29,41 @@ TEST_P(DriveModelOf, TellsWhoItIs) {
 
 TEST_P(DriveModelOf, GivesBackWhatWasWritten) {
   for (const std::uint64_t value : {1000U, 0U, 77U}) {
-    EXPECT_EQ(write(kVelocity, value), 0U);
-    EXPECT_EQ(number(kVelocity), value);
+    EXPECT_EQ(write(kTargetVelocity, value), 0U);
+    EXPECT_EQ(number(kTargetVelocity), value);
   }
 }
 
 TEST_P(DriveModelOf, RefusesWithAnAbortCodeAndChangesNothing) {
-  ASSERT_EQ(write(kVelocity, 1000), 0U);
+  ASSERT_EQ(write(kTargetVelocity, 1000), 0U);
   EXPECT_EQ(write(objects::kStatusword, 0), abort::kReadOnly);
   EXPECT_EQ(model().check_writable(objects::kStatusword), abort::kReadOnly);
   const auto limits = drive::meaning(drive::target_at(profile_.get(), objects::kModeOfOperation), 1);
   EXPECT_EQ(write(objects::kModeOfOperation, 99), limits.max ? abort::kTooHigh : abort::kRange);
   const auto wrong_length = profile_->rules.sdo.exact_length ? abort::kLength : abort::kTooShort;
-  EXPECT_EQ(model().write(kVelocity, store_le(1, 2)), wrong_length);
-  EXPECT_EQ(number(kVelocity), 1000U);
+  EXPECT_EQ(model().write(kTargetVelocity, store_le(1, 2)), wrong_length);
+  EXPECT_EQ(number(kTargetVelocity), 1000U);
   Bytes out;
   EXPECT_EQ(model().read({0x5FFF, 0}, out), abort::kNoObject);
   EXPECT_EQ(model().read({0x1018, 200}, out), abort::kNoSubIndex);
 }
 
 TEST_P(DriveModelOf, KeepsOverAPowerCycleWhatWentToItsMemoryAlone) {
-  ASSERT_EQ(write(kVelocity, 1000), 0U);
+  ASSERT_EQ(write(kTargetVelocity, 1000), 0U);
   const auto before = model().flash_writes();
   power_cycle();
-  EXPECT_EQ(number(kVelocity), 0U);
+  EXPECT_EQ(number(kTargetVelocity), 0U);
   EXPECT_EQ(model().flash_writes(), before);
   if (!has(objects::kStoreAll)) return;
-  ASSERT_EQ(write(kVelocity, 1000), 0U);
+  ASSERT_EQ(write(kTargetVelocity, 1000), 0U);
   EXPECT_EQ(write(objects::kStoreAll, 1), abort::kCannotStore) << "not its signature";
   EXPECT_EQ(write(objects::kStoreAll, objects::kSaveSignature), 0U);
   power_cycle();
-  EXPECT_EQ(number(kVelocity), 1000U);
+  EXPECT_EQ(number(kTargetVelocity), 1000U);
   EXPECT_EQ(write(objects::kRestoreAll, objects::kLoadSignature), 0U);
-  EXPECT_EQ(number(kVelocity), 1000U) << "not before the start";
+  EXPECT_EQ(number(kTargetVelocity), 1000U) << "not before the start";
   power_cycle();
-  EXPECT_EQ(number(kVelocity), 0U);
+  EXPECT_EQ(number(kTargetVelocity), 0U);
 }
 
 TEST_P(DriveModelOf, GoesThroughTheStatesOfCia402) {
@@ -97,12 +97,12 @@ TEST_P(DriveModelOf, JogsByItsTargetVelocity) {
   enable();
   run(100ms);
   EXPECT_EQ(amount(objects::kPositionActual), start) << "nobody asked";
-  ASSERT_EQ(write(kVelocity, 100), 0U);
+  ASSERT_EQ(write(kTargetVelocity, 100), 0U);
   run(2s);
   EXPECT_TRUE(model().is_moving());
   EXPECT_GT(amount(objects::kVelocityActual), 0);
   EXPECT_GT(amount(objects::kPositionActual), start);
-  ASSERT_EQ(write(kVelocity, 0), 0U);
+  ASSERT_EQ(write(kTargetVelocity, 0), 0U);
   run(2s);
   EXPECT_FALSE(model().is_moving());
   EXPECT_EQ(amount(objects::kVelocityActual), 0);
@@ -141,12 +141,12 @@ TEST_F(DriveModelTest, APanelParameterIsKeptAtOnceAndOneForTheNextStartTakesEffe
 TEST_F(DriveModelTest, AResetOfTheCommunicationLeavesStateAndMotionAlone) {
   build("cia402");
   enable();
-  ASSERT_EQ(write(kVelocity, 100), 0U);
+  ASSERT_EQ(write(kTargetVelocity, 100), 0U);
   ASSERT_EQ(write(objects::kProducerHeartbeat, 500), 0U);
   run(1s);
   model().reset_communication(now_);
   EXPECT_EQ(number(objects::kProducerHeartbeat), 0U);
-  EXPECT_EQ(number(kVelocity), 100U);
+  EXPECT_EQ(number(kTargetVelocity), 100U);
   EXPECT_EQ(state(), DriveState::operation_enabled);
   EXPECT_TRUE(model().is_moving());
 }
@@ -168,9 +168,9 @@ TEST_F(DriveModelTest, ItsPortIsAskedBeforeAWriteAndHearsOfItAfterwards) {
   model().attach(port);
   EXPECT_EQ(write(objects::kProducerHeartbeat, 500), abort::kLocalControl);
   EXPECT_EQ(number(objects::kProducerHeartbeat), 0U);
-  EXPECT_EQ(write(kVelocity, 5), 0U);
+  EXPECT_EQ(write(kTargetVelocity, 5), 0U);
   EXPECT_EQ(write(objects::kModeOfOperation, 99), abort::kRange);
-  EXPECT_EQ(port.written, std::vector<ObjectAddress>{kVelocity});
+  EXPECT_EQ(port.written, std::vector<ObjectAddress>{kTargetVelocity});
 }
 
 }  // namespace

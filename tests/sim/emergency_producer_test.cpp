@@ -19,7 +19,7 @@ class EmergencyCobId : public DrivenTest, public testing::WithParamInterface<con
   void take(const std::string& request) { ASSERT_EQ(sdo(request).substr(0, 6), "581#60") << request; }
 };
 
-std::string family_name(const testing::TestParamInfo<const char*>& test) { return test.param; }
+std::string name_of_family(const testing::TestParamInfo<const char*>& test) { return test.param; }
 
 TEST_P(EmergencyCobId, IsThatOf1014h) {
   take("601#2314100081000080");  // Bit 31: not valid.
@@ -57,7 +57,7 @@ INSTANTIATE_TEST_SUITE_P(Values, EmergencyDefault,
                          testing::Values("", "DefaultValue=0", "DefaultValue=0x701"));
 
 INSTANTIATE_TEST_SUITE_P(Families, EmergencyCobId, testing::Values("gsd600", "dm", "ts", "cia402"),
-                         family_name);
+                         name_of_family);
 
 class EmergencyInhibitTime : public EmergencyCobId {};
 
@@ -85,7 +85,8 @@ TEST_P(EmergencyInhibitTime, DoesNotOutliveAReset) {
   EXPECT_EQ(next(1s), "");
 }
 
-INSTANTIATE_TEST_SUITE_P(Families, EmergencyInhibitTime, testing::Values("dm", "ts", "cia402"), family_name);
+INSTANTIATE_TEST_SUITE_P(Families, EmergencyInhibitTime, testing::Values("dm", "ts", "cia402"),
+                         name_of_family);
 
 TEST_F(DrivenTest, AFamilyWithout1014hSendsEmergenciesAsPredefined) {
   boot("da200");

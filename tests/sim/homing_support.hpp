@@ -9,9 +9,7 @@ namespace servoctl::sim {
 
 using namespace std::chrono_literals;
 
-inline constexpr unsigned kReached = 1U << 10U;
 inline constexpr unsigned kAttained = 1U << 12U;
-inline constexpr unsigned kError = 1U << 13U;
 
 inline constexpr double kTurn = 10000;  // Increments and pulses in one turn.
 

@@ -41,9 +41,7 @@ inline std::vector<ManualRow> manual_rows(const std::string& family, const std::
   return out;
 }
 
-inline constexpr unsigned kReached = 1U << 10U;
 inline constexpr unsigned kLimit = 1U << 11U;
-inline constexpr unsigned kError = 1U << 13U;
 
 inline constexpr ObjectAddress kControlword{0x6040, 0};
 inline constexpr ObjectAddress kMode{0x6060, 0};

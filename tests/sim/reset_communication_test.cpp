@@ -19,14 +19,14 @@ class Reset : public DrivenTest {
 constexpr const char* kResetNode = "000#8101";
 constexpr const char* kResetCommunication = "000#8201";
 
-struct OfFamily {
+struct FamilyFrames {
   const char* family;
   const char* cob_id;                     ///< Of TPDO1, low byte first: another than the factory's …
   const char* factory_cob_id;             ///< … which is this.
   const char* mode = "2F60600003000000";  ///< A write of 3 to 6060h.
 };
 
-class ResetOfFamily : public Reset, public testing::WithParamInterface<OfFamily> {};
+class ResetOfFamily : public Reset, public testing::WithParamInterface<FamilyFrames> {};
 
 TEST_P(ResetOfFamily, OfTheCommunicationBringsBackItsAreaAlone) {
   boot(GetParam().family);
@@ -44,11 +44,11 @@ TEST_P(ResetOfFamily, OfTheCommunicationBringsBackItsAreaAlone) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Families, ResetOfFamily,
-                         testing::Values(OfFamily{"gsd600", "810100C0", "81010040"},
-                                         OfFamily{"dm", "81010000", "81010080", "2B60600003000000"},
-                                         OfFamily{"da200", "81010080", "81010000"},
-                                         OfFamily{"ts", "81010080", "81010000"},
-                                         OfFamily{"cia402", "81010080", "81010000"}),
+                         testing::Values(FamilyFrames{"gsd600", "810100C0", "81010040"},
+                                         FamilyFrames{"dm", "81010000", "81010080", "2B60600003000000"},
+                                         FamilyFrames{"da200", "81010080", "81010000"},
+                                         FamilyFrames{"ts", "81010080", "81010000"},
+                                         FamilyFrames{"cia402", "81010080", "81010000"}),
                          [](const auto& test) { return std::string(test.param.family); });
 
 class StoredCommunication : public Reset, public testing::WithParamInterface<const char*> {};

@@ -12,6 +12,10 @@
 
 namespace servoctl::sim {
 
+/// Bits of the statusword in positioning and homing.
+inline constexpr unsigned kReached = 1U << 10U;
+inline constexpr unsigned kError = 1U << 13U;
+
 /// The drives of `spec` on a bus with virtual time, made from the project's own data.
 class CellTest : public testing::Test {
  protected:

@@ -60,7 +60,7 @@ std::string_view take_word(std::string_view& text) {
   return word;
 }
 
-class Parser {
+class BatchParser {
  public:
   Batch parse(std::string_view text) {
     for (const auto& line : logical_lines(text)) take(line);
@@ -135,7 +135,7 @@ class Parser {
 
 }  // namespace
 
-Batch parse_batch(std::string_view text) { return Parser().parse(text); }
+Batch parse_batch(std::string_view text) { return BatchParser().parse(text); }
 
 bool is_variable_name(std::string_view name) {
   const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };

@@ -12,8 +12,6 @@ namespace {
 using command::Effect;
 using command::Needs;
 
-constexpr std::size_t kMostErrors = 100;
-
 class Check {
  public:
   explicit Check(Shell& shell) : shell_(&shell), settings_(shell.defaults()) {}

@@ -9,10 +9,9 @@
 namespace servoctl::cli {
 namespace {
 
-/// Loops in loops and variables in long lines grow fast: more is a mistake, and more errors help nobody.
+/// Loops in loops and variables in long lines grow fast: more is a mistake.
 constexpr std::size_t kMostTaken = 20'000;
 constexpr std::size_t kMostText = 16U << 20U;
-constexpr std::size_t kMostErrors = 100;
 
 class Planner {
  public:

@@ -34,6 +34,9 @@ struct Plan {
   std::vector<Error> errors;  ///< Each with its line; what a loop repeats is told once.
 };
 
+/// More errors than these help nobody.
+inline constexpr std::size_t kMostErrors = 100;
+
 /// Errors of lines, each reported once however often a loop meets it.
 class LineErrors {
  public:
