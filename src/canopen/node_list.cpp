@@ -35,6 +35,7 @@ Result<std::vector<std::uint8_t>> parse_node_ids(std::string_view text, std::str
       return fail(Errc::usage, fmt::format("'{}' is not a node-ID", part), std::string(hint));
     for (auto node = *first; node <= *last; ++node) out.push_back(static_cast<std::uint8_t>(node));
   }
+  if (out.empty()) return fail(Errc::usage, fmt::format("'{}' is not a node-ID", text), std::string(hint));
   std::sort(out.begin(), out.end());
   out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;

@@ -12,7 +12,7 @@ namespace servoctl::motion {
 
 /// After a request of a state, before anything else is sent to the node: nothing confirms it, and CiA 301
 /// names no time.
-inline constexpr Duration kStatePause = std::chrono::milliseconds(20);
+inline constexpr Duration kRequestPause = std::chrono::milliseconds(20);
 
 /// What a dialogue wants next: one of these.
 struct DialogueStep {

@@ -148,7 +148,7 @@ Result<void> MotionGuard::start_node() {
   }
   if (auto sent = session_->network().request_state(node_, session::NodeState::operational); !sent)
     return sent;
-  return pause(*session_, kStatePause);
+  return pause(*session_, kRequestPause);
 }
 
 Result<void> MotionGuard::enable() {

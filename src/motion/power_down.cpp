@@ -98,11 +98,11 @@ DialogueStep PowerDown::next(TimePoint now) {
     case State::cut: return {.request = command(kDisableVoltageWord)};
     case State::silence_by_nmt:
       state_ = State::wake_again;
-      return {.state = session::NodeState::stopped, .pause = now + kStatePause};
+      return {.state = session::NodeState::stopped, .pause = now + kRequestPause};
     case State::wake:
     case State::wake_again:
       enter(back_to_, now);
-      return {.state = session::NodeState::pre_operational, .pause = now + kStatePause};
+      return {.state = session::NodeState::pre_operational, .pause = now + kRequestPause};
     case State::done: break;
   }
   return {.done = true};

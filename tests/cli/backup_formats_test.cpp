@@ -136,7 +136,7 @@ TEST_F(BackupTest, AsADcfIsEditedInAnotherToolAndRestored) {
   spill("edited.dcf", text.replace(value, 18, "ParameterValue=0x1C2"));
   EXPECT_EQ(run("verify %edited.dcf"), 1);
   ASSERT_EQ(run("restore %edited.dcf --yes"), 0) << console.err_text;
-  EXPECT_NE(console.err_text.find("it proves neither its drive nor that it is whole"), std::string::npos);
+  EXPECT_NE(console.err_text.find("it proves neither its drive nor its completeness"), std::string::npos);
   EXPECT_EQ(run("param get Pn0214 --json"), 0);
   EXPECT_NE(console.out_text.find("\"raw\":450"), std::string::npos) << console.out_text;
   EXPECT_EQ(run("diff %drive.dcf %edited.dcf"), 1);
@@ -160,7 +160,7 @@ TEST_F(BackupTest, OfAnotherToolWritesSettingsOnly) {
   ASSERT_EQ(run("restore %foreign.dcf --yes"), 0) << console.err_text;
   EXPECT_NE(
       console.err_text.find(
-          "no settings, and left out: 0x1000:0 Device type (read-only), 0x6040:0 Controlword (process data)"),
+          "not settings, left out: 0x1000:0 Device type (read-only), 0x6040:0 Controlword (process data)"),
       std::string::npos)
       << console.err_text;
   EXPECT_NE(console.out_text.find("different  2"), std::string::npos) << console.out_text;
@@ -194,7 +194,7 @@ TEST_F(BackupTest, OfAConciseDcfIsRestored) {
   EXPECT_NE(console.out_text.find("compared     3"), std::string::npos) << console.out_text;
   const std::pair<std::string, const char*> wrong[] = {
       {concise(one + procedure, 5), "bad.cdc:5: the file ends within this entry, of 5"},
-      {concise(one + procedure, 3), "11 bytes stand behind the last of 3 entries"},
+      {concise(one + procedure, 3), "11 bytes follow the last of 3 entries"},
       {concise(one.substr(0, one.size() - 1), 1), "bad.cdc:1: the file ends within this entry, of 1"},
       {concise("", 0), "there is no entry in it"},
       {concise(one + one, 2), "bad.cdc:2: 0x1017:0 appears again, first in 1"},
@@ -284,14 +284,14 @@ TEST_F(BackupTest, InAFormatWithoutChecksumIsRefusedByLineAndEntry) {
       {"x.csv", head + "0x2000,0x32,128\n", "x.csv:2: value: 128 is out of range: 1..127"},
       {"x.csv", head + "heartbeat,0,1\n", "x.csv:2: 'heartbeat:0' is not an index and sub-index"},
       {"x.csv", "index,sub,raw\n0x100C,0,hex:01\n", "x.csv:2: 0x100C:0 (Guard time): has 1 bytes"},
-      {"x.csv", "index,sub,raw\n0x1017,0,hex:1\n", "x.csv:2: raw: 'hex:1' is no bytes"},
+      {"x.csv", "index,sub,raw\n0x1017,0,hex:1\n", "x.csv:2: raw: 'hex:1' is not hexadecimal bytes"},
       {"x.csv", "node,index,value\n1,0x100C,1\n2,0x1005,1\n", "x.csv:3: is of node 2, the rows before"},
       {"x.csv", "node,index,value\n128,0x1017,1\n", "x.csv:2: '128' is not a node-ID"},
       {"x.csv", "index,sub\n0x1017,0\n", "has the columns index and raw or value"},
       {"x.csv", head + "0x1017,0\n", "x.csv:2:"},
       {"x.dcf", replaced(kForeign, "0x1F4", "0x1F400"), "x.dcf:8: ParameterValue: 0x1F400 does not fit u16"},
       {"x.dcf", replaced(kForeign, "[1017]", "[5FFF]"), "x.dcf:8: 0x5FFF:0 is unknown to gsd600"},
-      {"x.dcf", slurp("all.json").substr(0, 300), "this is no"},
+      {"x.dcf", slurp("all.json").substr(0, 300), "not JSON"},
       {"x.txt", "param set Pn0214=450\nparam set Pn214=451\n", "x.txt:2: 0x2001:F appears again, first in 1"},
       {"x.txt", "param set Pn0214=999999\n", "x.txt:1: Pn0214 Speed loop gain 1: 999999"},
       {"x.txt", "param set Pn9999=1\n", "x.txt:1: "},
@@ -300,7 +300,7 @@ TEST_F(BackupTest, InAFormatWithoutChecksumIsRefusedByLineAndEntry) {
       {"x.txt", "use 1\nwrite 0x100C 5\nuse 2\nwrite 0x1005 5\n", "x.txt:4: is for another node"},
       {"x.txt", "drive dm\nwrite 0x1017 5\n", "x.txt:2: is for dm, not for gsd600"},
       {"x.txt", "hello world\n", "x.txt:1: "},
-      {"x.txt", "# nothing\n", "this is no"},
+      {"x.txt", "# nothing\n", "not JSON"},
       {"x.txt", "drive gsd600\n", "no line in it writes a value"},
   };
   for (const auto& c : cases) {

@@ -69,9 +69,9 @@ TEST_F(BackupTest, OfADriveThatFallsSilentIsNotWritten) {
   use("sim:gsd600@1,gsd600@2?silent=300ms&delay=5ms", "gsd600");
   EXPECT_EQ(run("backup %cabinet -n 1,2"), 4);
   EXPECT_FALSE(fs::exists(folder / "cabinet/node-1.json"));
-  spill("old.json", "what was there before");
+  spill("old.json", "restores the old values");
   EXPECT_EQ(run("backup %old.json"), 4);
-  EXPECT_EQ(slurp("old.json"), "what was there before");
+  EXPECT_EQ(slurp("old.json"), "restores the old values");
 }
 
 TEST_F(BackupTest, RecordsWhatTheDriveRefuses) {
@@ -91,9 +91,9 @@ TEST_F(BackupTest, ThatWasEditedCutOrIsForeignIsRefusedWithTheReason) {
     const char* said;
   };
   const Case cases[] = {
-      {replaced(good, "\"bytes\":\"58 02\"", "\"bytes\":\"59 02\""), "its checksum does not fit"},
-      {good.substr(0, good.size() / 2), "this is no JSON, or it ends too early"},
-      {replaced(good, "\"servoctl_backup\":1", "\"servoctl_backup\":2"), "newer than this program knows"},
+      {replaced(good, "\"bytes\":\"58 02\"", "\"bytes\":\"59 02\""), "its checksum does not match"},
+      {good.substr(0, good.size() / 2), "not JSON, or truncated"},
+      {replaced(good, "\"servoctl_backup\":1", "\"servoctl_backup\":2"), "newer than this program supports"},
       {replaced(good, "\"index\":4108,\"sub\":0", "\"index\":4101,\"sub\":0"),
        "bad.json:5: 0x1005:0 appears twice"},
       {replaced(good, "\"type\":\"u32\"", "\"type\":\"u33\""), "bad.json:4: 'type' is missing or wrong"},
@@ -101,9 +101,9 @@ TEST_F(BackupTest, ThatWasEditedCutOrIsForeignIsRefusedWithTheReason) {
        "bad.json:4: 'bytes' is missing or wrong"},
       {replaced(good, "\"index\":4101", "\"index\":74101"), "'index' is missing or wrong"},
       {replaced(good, "\"node\":1", "\"node\":0"), "'node' is missing or wrong"},
-      {"[]", "this is no backup of servoctl"},
-      {"", "this is no JSON"},
-      {std::string(100000, '['), "bad.json:1: column 65: lists and records stand in each other deeper"},
+      {"[]", "this is not a servoctl backup"},
+      {"", "not JSON, or truncated"},
+      {std::string(100000, '['), "bad.json:1: column 65: lists and records are nested deeper"},
   };
   for (const auto& c : cases) {
     spill("bad.json", c.text);

@@ -110,7 +110,8 @@ TEST(Expectation, OfWhatIsNotThereDoesNotHold) {
   const auto met = expect(parse_expression("[0].volts == 1", no_variable).value(), two_nodes());
   EXPECT_EQ(met.error().code, Errc::negative);
   EXPECT_EQ(met.error().hint, "it has node, value, state, ready, bits or fault");
-  EXPECT_EQ(refusal("[0].state < 5"), "[0].state (\"operation enabled\") is no number: < cannot compare it");
+  EXPECT_EQ(refusal("[0].state < 5"),
+            "[0].state (\"operation enabled\") is not a number: < cannot compare it");
 }
 
 TEST(Expectation, KeepsTheLastDigitOfLongNumbers) {

@@ -148,7 +148,7 @@ TEST_F(BatchTest, SaysWhichFamilyIsMissing) {
 TEST_F(BatchTest, ShowsThePlanAndSendsNothingInADryRun) {
   EXPECT_EQ(run("for N in 1-2\n${N} w 0x1017 0 u16 500\nend\nwait 1s", {"--dry-run"}), 0);
   EXPECT_EQ(console.out_text,
-            "line  what is run\n"
+            "line  command\n"
             "   2  write 0x1017:0 500 --type u16 -n 1\n"
             "   2  write 0x1017:0 500 --type u16 -n 2\n"
             "   4  wait 1s\n");

@@ -34,7 +34,7 @@ TEST_F(ForeignInput, PutsNoPdosIntoADriveThatPdoMapWouldRefuse) {
     use(fmt::format("sim:{}@1", family), std::string(family));
     const bool fixed = family == "gsd600" || family == "da200";
     spill("two.csv", "index,sub,raw\n0x1800,1,hex:A1 02 00 00\n0x1801,1,hex:A1 02 00 00\n");
-    refused("restore %two.csv --yes", "0x1801:1", fixed ? "keeps its COB-ID" : "of the same node");
+    refused("restore %two.csv --yes", "0x1801:1", fixed ? "has the fixed COB-ID" : "of the same node");
     if (family == "cia402") continue;  // What it does not list is left to the drive.
     spill("absent.csv", "index,sub,raw\n0x1A01,0,hex:01\n0x1A01,1,hex:10 00 FF 5F\n");
     refused("restore %absent.csv --yes", "0x1A01:1", "0x5FFF");
@@ -88,7 +88,7 @@ TEST_F(ForeignInput, PutsNoDcfOfAnotherMakersDriveIntoOne) {
     };
     spill("other.dcf", sheet("VendorNumber=0x123\nProductNumber=0x77\n"));
     EXPECT_EQ(run("restore %other.dcf --yes"), 8) << console.err_text;
-    EXPECT_NE(console.err_text.find("is another drive than that of"), std::string::npos) << console.err_text;
+    EXPECT_NE(console.err_text.find("is not the drive of"), std::string::npos) << console.err_text;
     spill("silent.dcf", sheet("VendorNumber=0\n"));
     EXPECT_EQ(run("restore %silent.dcf --yes --dry-run"), 0) << console.err_text;
     // What servoctl makes of the family's own data sheet goes back.
@@ -139,12 +139,12 @@ TEST_F(ForeignInput, PutsNoCobIdOfAnotherServiceIntoADrive) {
 }
 
 TEST_F(ForeignInput, TakesTheRuleForSyncTimeEmcyAndStoredCopiesAsWell) {
-  refused("write 0x1005 0x601", "0x1005", "that of SDO");
-  refused("write 0x1014 0x000", "0x1014", "that of NMT");
+  refused("write 0x1005 0x601", "0x1005", "belongs to SDO");
+  refused("write 0x1014 0x000", "0x1014", "belongs to NMT");
   refused("param set Pn0118 0", "0x2000:77", "out of range: 512");
   refused("param set Pn0121 0", "0x2000:7A", "a reserved service");
-  refused("param set Pn0118 0x600", "0x2000:77", "that of SDO");
-  EXPECT_EQ(run("param set Pn0118 0x80000600"), 0) << "not valid, so it is no CAN-ID of anybody";
+  refused("param set Pn0118 0x600", "0x2000:77", "belongs to SDO");
+  EXPECT_EQ(run("param set Pn0118 0x80000600"), 0) << "not valid, so not an assigned CAN-ID";
   use("sim:dm@1", "dm");
   refused("write 0x1012 0x80000701", "0x1012", "error control");
   EXPECT_EQ(run("write 0x1801:1 0x80000601"), 0) << console.err_text;
@@ -269,7 +269,7 @@ TEST_F(ForeignInput, AFileIsKeptWhenItIsAskedFor) {
   // Its password is on the panel only: that is said, and nothing written.
   spill("other.bin", std::string("\x3D\x00", 2));
   EXPECT_EQ(run("write 2001h:1 --from %other.bin --keep --unlock"), 2);
-  EXPECT_NE(console.err_text.find("no password that the bus can give"), std::string::npos);
+  EXPECT_NE(console.err_text.find("no password over the bus"), std::string::npos);
   ASSERT_EQ(run("nmt reset --yes --wait"), 0);
   EXPECT_EQ(run("read 2001h:1 --json"), 0);
   EXPECT_NE(console.out_text.find("\"raw\":60"), std::string::npos)

@@ -33,7 +33,7 @@ class Jog:
         self.process = subprocess.Popen([servoctl, "jog", "60rpm", "--turn", "131072", "--yes"], env=env, stdin=tty,
                                         stdout=tty, stderr=tty, start_new_session=True)
         self.text = b""
-        self.read_until(b"any other key ends")
+        self.read_until(b"any other key, or 5 s")
 
     def read_until(self, part, seconds=10):
         end = time.monotonic() + seconds

@@ -176,7 +176,7 @@ TEST_F(ShellTest, TellsATraceThatCannotBeWrittenAndDoesWhatItWasAskedFor) {
                                   "  hint: the trace ends here; the command continues without it\n"),
             std::string::npos)
       << console.err_text;
-  EXPECT_EQ(run("read 0x6041 -n 1 --trace /dev/full"), 0) << "the bus goes on without it";
+  EXPECT_EQ(run("read 0x6041 -n 1 --trace /dev/full"), 0) << "the command continues without it";
   EXPECT_EQ(run("watch 0x6041 -n 1 --for 1s --trace /dev/full -b sim:gsd600@1,gsd600@2"), 7);
   EXPECT_NE(console.err_text.find("notice: cannot write the trace"), std::string::npos) << console.err_text;
   EXPECT_GE(std::count(console.out_text.begin(), console.out_text.end(), '\n'), 10) << "it watched on";

@@ -74,7 +74,7 @@ TEST_F(LongId, IsLeftOutOfAReplayAndTold) {
   use("sim:gsd600@1", "gsd600");
   std::ofstream(folder_ / "mixed.log") << "(1.000000) can0 601#4000100000000000\n(1.1) can0 18ABCDEF#3702\n";
   EXPECT_EQ(run("replay " + (folder_ / "mixed.log").string() + " --yes"), 0) << all();
-  EXPECT_TRUE(says("1 frame with an identifier of 29 bits is left out")) << all();
+  EXPECT_TRUE(says("1 frame with a 29-bit identifier is left out")) << all();
   std::ofstream(folder_ / "timeless.log") << "  can0  601   [8]  40 00 10 00 00 00 00 00\n"
                                              "  can0  601   [8]  40 18 10 01 00 00 00 00\n";
   EXPECT_EQ(run("replay " + (folder_ / "timeless.log").string() + " --yes"), 2) << all();

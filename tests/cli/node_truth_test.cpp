@@ -107,16 +107,16 @@ TEST_F(NodeTruth, AResetOfTheCommunicationSaysWhatIsGone) {
     SCOPED_TRACE(family);
     use("sim:" + family + "@1", "1");
     EXPECT_EQ(run("nmt reset-comm --yes --wait"), 0) << all();
-    EXPECT_TRUE(says("node 1: by CiA 301, 1000h to 1FFFh are now as after power-on")) << all();
+    EXPECT_TRUE(says("node 1: by CiA 301 1000h to 1FFFh now have their power-on values")) << all();
     EXPECT_FALSE(says("go back")) << all();
     for (const char* unseen : {"nmt reset-comm --yes", "nmt reset-comm --dry-run", "nmt reset-comm"}) {
       (void)run(unseen);
-      EXPECT_TRUE(says("1000h to 1FFFh go back to what they are after power-on")) << all();
+      EXPECT_TRUE(says("1000h to 1FFFh go back to their power-on values")) << all();
       EXPECT_TRUE(says("the watchdog")) << all();
       EXPECT_FALSE(says("are now")) << all();
     }
     EXPECT_EQ(run("nmt reset-comm --yes --wait -n 1,9"), 4) << all();
-    EXPECT_TRUE(says("node 1: by CiA 301, 1000h to 1FFFh are now")) << all();
+    EXPECT_TRUE(says("node 1: by CiA 301 1000h to 1FFFh now")) << all();
     EXPECT_FALSE(says("node 9: by CiA 301")) << all();
     EXPECT_TRUE(says("go back")) << all();
     EXPECT_EQ(run("nmt reset --yes --wait"), 0) << all();
@@ -128,7 +128,7 @@ TEST_F(NodeTruth, ASyncPeriodThatTheDriveRefusesIsNotSent) {  // da200, line 145
   use("sim:da200@1", "1");
   EXPECT_EQ(run("write 0x1006 999 -d da200"), 2) << all();
   EXPECT_TRUE(says("999 is out of range: 0, or at least 1000")) << all();
-  EXPECT_TRUE(says("hint: 0 switches it off; that 1000 is the least is assumed")) << all();
+  EXPECT_TRUE(says("hint: 0 switches it off; the minimum 1000 is assumed")) << all();
   EXPECT_EQ(run("write 0x1006 0 -d da200"), 0) << all();
   EXPECT_EQ(run("write 0x1006 1000 -d da200"), 0) << all();
 }
@@ -136,7 +136,7 @@ TEST_F(NodeTruth, ASyncPeriodThatTheDriveRefusesIsNotSent) {  // da200, line 145
 TEST_F(NodeTruth, ATypeForRemoteFramesIsRefusedWhereBit30ForbidsThem) {
   use("sim:gsd600@1", "1");
   EXPECT_EQ(run("pdo map TPDO1 0x6041 --type 253 -y -d gsd600"), 2) << all();
-  EXPECT_TRUE(says("does not know transmission type 253")) << all();  // Line 1664 of its manual: reserved.
+  EXPECT_TRUE(says("does not support transmission type 253")) << all();  // Line 1664 of its manual: reserved.
   EXPECT_TRUE(says("hint: 0 to 240 by SYNC, 254 and 255 by event")) << all();
   use("sim:cia402@1", "1");
   EXPECT_EQ(run("write 0x1800:1 0xC0000181 -d cia402"), 0) << all();
@@ -155,7 +155,7 @@ TEST_F(NodeTruth, ATypeForRemoteFramesIsRefusedWhereBit30ForbidsThem) {
   EXPECT_EQ(run("pdo map TPDO1 0x6041 --type 253 -y -d ts"), 0) << all();
   EXPECT_EQ(run("nmt start"), 0) << all();
   EXPECT_EQ(run("pdo watch TPDO1 --for 100ms -d ts"), 0) << all();
-  EXPECT_TRUE(says("come when somebody asks for them by a remote frame")) << all();
+  EXPECT_TRUE(says("are sent only on a remote frame")) << all();
 }
 
 TEST_F(NodeTruth, ANodeThatWasStoppedIsConfirmedByItsHeartbeat) {
@@ -181,7 +181,7 @@ TEST_F(NodeTruth, ANodeWithoutHeartbeatIsNotWaitedFor) {
   EXPECT_EQ(run("nmt start --wait"), 4) << all();
   EXPECT_TRUE(says("sends no heartbeat")) << all();
   EXPECT_EQ(run("read 0x1000 -n 9"), 4) << all();
-  EXPECT_TRUE(says("one that is stopped does not: `nmt preop -n 9`")) << all();
+  EXPECT_TRUE(says("a stopped node does not: `nmt preop -n 9`")) << all();
 }
 
 }  // namespace

@@ -84,7 +84,7 @@ TEST_F(Told, OneTestOfTheCommunicationInAReport) {
   const auto once = report_of(tests);
   EXPECT_EQ(tests_in(once), 1U);
   EXPECT_NE(console.out_text.find("1 passed"), std::string::npos) << console.out_text;
-  EXPECT_EQ(tests_in(report_of(tests + tests)), 1U) << "the last one counts";
+  EXPECT_EQ(tests_in(report_of(tests + tests)), 1U) << "the last one is used";
 }
 
 TEST_F(Told, CloneTakesRangesOfNodes) {

@@ -38,7 +38,7 @@ for number, (first, second) in enumerate([("gsd600@1", "gsd600@1"), ("gsd600@1",
     try:
         for words in (["scan"], ["info", "-n", "1"]):
             answer = run(bus, *words)
-            check(what + f"{words[0]} names them\n{answer.stdout}{answer.stderr}", "node 1: two nodes answer under this number" in answer.stderr)
+            check(what + f"{words[0]} names them\n{answer.stdout}{answer.stderr}", "node 1: two nodes answer under this node-ID" in answer.stderr)
             notices = json.loads(run(bus, *words, "--json").stdout)["notices"]
             check(what + f"{words[0]} --json names them", any("two nodes answer" in notice for notice in notices))
         if first.split("@")[0] != second.split("@")[0]:

@@ -188,7 +188,7 @@ TEST_F(WrongFamily, WritesNothingByAnyCommand) {
           continue;
         }
         EXPECT_EQ(code, 8) << said;
-        EXPECT_NE(said.find("node 1 is no " + named), std::string::npos) << said;
+        EXPECT_NE(said.find("node 1: not a " + named), std::string::npos) << said;
         EXPECT_NE(said.find("--force-family"), std::string::npos) << said;
       }
       close();

@@ -189,7 +189,7 @@ TEST_F(MotionTests, AllMovesNothingWhereTheHomingWouldBeRefusedLater) {
   EXPECT_TRUE(questions.empty());
   ASSERT_FALSE(context.errors.empty());
   EXPECT_EQ(context.errors.front().code, Errc::refused);
-  EXPECT_TRUE(context.errors.front().message.starts_with("the test home could not be run, so nothing is"));
+  EXPECT_TRUE(context.errors.front().message.starts_with("`test home` cannot be run, so nothing is moved"));
   EXPECT_TRUE(context.errors.front().hint.ends_with("add --no-home")) << context.errors.front().hint;
 }
 

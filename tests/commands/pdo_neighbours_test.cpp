@@ -48,7 +48,7 @@ TEST_F(Neighbours, ALinkFromTheTpdoOfAnotherIsTold) {
   const auto result = map("RPDO2", "target_velocity", "0x182");
   ASSERT_TRUE(result) << result.error().message;
   ASSERT_FALSE(context.notices.empty());
-  EXPECT_NE(context.notices.front().find("RPDO2 takes what TPDO1 of node 2 sends with 0x182"),
+  EXPECT_NE(context.notices.front().find("RPDO2 receives what TPDO1 of node 2 sends with 0x182"),
             std::string::npos)
       << context.notices.front();
 }
@@ -94,7 +94,7 @@ TEST_F(SyncBesideOthers, IsToldWhereTheOtherComesLater) {
   const auto result = run("sync start", {{"--for", "1s"}});
   ASSERT_TRUE(result) << result.error().message;
   ASSERT_EQ(context.notices.size(), 1U);
-  EXPECT_NE(context.notices.front().find("somebody else sent"), std::string::npos);
+  EXPECT_NE(context.notices.front().find("another producer sent"), std::string::npos);
 }
 
 }  // namespace

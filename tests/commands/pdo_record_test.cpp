@@ -174,7 +174,7 @@ TEST_P(KilledChange, IsPutBackFromAnyStepByItsRecord) {
     EXPECT_NE(world.notices.find("pdo apply " + world.record().string()), std::string::npos) << world.notices;
     ASSERT_TRUE(world.put_back()) << world.error;
     EXPECT_FALSE(world.has_record());
-    EXPECT_EQ(world.notices.find("did not come to its end"), std::string::npos);
+    EXPECT_EQ(world.notices.find("was interrupted"), std::string::npos);
     EXPECT_EQ(world.read(), world.before);
     EXPECT_EQ(world.means(), world.means_before);
     if (!GetParam().keep) continue;
@@ -204,7 +204,7 @@ TEST(PdoRecord, OfAnEarlierChangeIsNotReplacedByThatOfALaterOne) {
   ASSERT_FALSE(world.map(trouble));
   ASSERT_TRUE(world.has_record());
   ASSERT_TRUE(world.map()) << world.error;
-  EXPECT_NE(world.notices.find("did not come to its end"), std::string::npos);
+  EXPECT_NE(world.notices.find("was interrupted"), std::string::npos);
   ASSERT_TRUE(world.has_record());
   ASSERT_TRUE(world.put_back()) << world.error;
   EXPECT_EQ(world.read(), world.before);
@@ -220,7 +220,7 @@ TEST(PdoRecord, StaysWhenTheDriveFallsSilentAndGoesWhenItRefuses) {
     trouble.*kind = measure.frames - 6;
     ASSERT_FALSE(world.map(trouble));
     EXPECT_EQ(world.has_record(), kind == &Trouble::silent_at);
-    EXPECT_EQ(world.notices.find("did not come to its end") != std::string::npos, world.has_record());
+    EXPECT_EQ(world.notices.find("was interrupted") != std::string::npos, world.has_record());
   }
 }
 
@@ -245,10 +245,10 @@ TEST(PdoRecord, IsFoundWhateverWayTheInterfaceIsWritten) {
   cut_off(world, frames);
   world.url = "socketcan:can0";
   ASSERT_TRUE(world.run("pdo show", {}));
-  EXPECT_NE(world.notices.find("did not come to its end"), std::string::npos);
+  EXPECT_NE(world.notices.find("was interrupted"), std::string::npos);
   world.url = "can1";
   ASSERT_TRUE(world.run("pdo show", {}));
-  EXPECT_EQ(world.notices.find("did not come to its end"), std::string::npos);
+  EXPECT_EQ(world.notices.find("was interrupted"), std::string::npos);
   world.url = "socketcan:can0";
   ASSERT_TRUE(world.put_back()) << world.error;
   EXPECT_EQ(world.read(), world.before);
@@ -263,7 +263,7 @@ TEST(PdoRecord, OfAnotherDriveAtTheNodeIsNotPutBack) {
   ASSERT_TRUE(world.run("pdo show", {}));
   EXPECT_NE(world.notices.find("of another drive that was node 1"), std::string::npos) << world.notices;
   EXPECT_FALSE(world.put_back());
-  EXPECT_NE(world.error.find("is another drive"), std::string::npos) << world.error;
+  EXPECT_NE(world.error.find("is not the drive"), std::string::npos) << world.error;
   EXPECT_EQ(world.read(), of_the_other);
   EXPECT_TRUE(world.has_record());
 }

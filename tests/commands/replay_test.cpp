@@ -115,7 +115,7 @@ TEST_F(Replay, NamesWhatLastsAndWhatRestarts) {
   const auto address = node_id->address;
   EXPECT_NE(question(fmt::format("(0.0) can0 601#2B{:02X}{:02X}{:02X}02000000\n", address.index & 0xFFU,
                                  address.index >> 8U, address.sub))
-                .find("Some last or restart a drive: 1 write of"),
+                .find("Some store, restart or re-address a drive: 1 write of"),
             std::string::npos);
 }
 
@@ -136,7 +136,7 @@ TEST_F(Replay, AnswersOfTheRecordingAreNoAnswersOfADrive) {
   drive().wire_faults().silent = true;
   ASSERT_TRUE(replay("(0.0) can0 601#4041600000000000\n(0.001) can0 581#4B41600033020000\n"));
   EXPECT_TRUE(context.errors.empty());
-  EXPECT_TRUE(is_noticed("by the recording alone, by no drive: 1"));
+  EXPECT_TRUE(is_noticed("only by the recording, not by a drive: 1"));
 }
 
 }  // namespace

@@ -114,8 +114,8 @@ TEST_F(Units, AreUsedByTheMotionsOfTheDriveThatWasMeasured) {
   EXPECT_FALSE(jog()) << "nobody knows what 60rpm is";
   ASSERT_TRUE(learn()) << error;
   ASSERT_TRUE(jog()) << error;
-  EXPECT_NE(notices.find("by the 8388608 counts of its encoder (2^23"), std::string::npos) << notices;
-  EXPECT_NE(notices.find("it has no serial number"), std::string::npos) << notices;
+  EXPECT_NE(notices.find("from the 8388608 encoder counts (2^23"), std::string::npos) << notices;
+  EXPECT_NE(notices.find("the drive has no serial number"), std::string::npos) << notices;
   EXPECT_EQ(cell(run("units show"), "source"), "\"kept\"");
   ASSERT_TRUE(run("units forget"));
   EXPECT_TRUE(file().empty());
@@ -139,13 +139,13 @@ TEST_F(Units, GiveWayToWhatIsSaidAndToWhatTheDriveTells) {
   EXPECT_NE(
       notices.find(
           "131072 increments of 6064h per revolution, from the drive's parameters; Pn0458, Pn0456, Pn0462, "
-          "Pn0464 take effect when the drive is restarted"),
+          "Pn0464 take effect at a restart of the drive"),
       std::string::npos)
       << notices;
   ASSERT_TRUE(jog({{"--turn", "131072"}})) << error;
   EXPECT_EQ(notices.find("restarted"), std::string::npos) << notices;
   EXPECT_FALSE(learn());
-  EXPECT_NE(error.find("its own parameters tell that a turn has 131072 increments once they take effect"),
+  EXPECT_NE(error.find("its parameters already give 131072 increments per revolution once they take effect"),
             std::string::npos)
       << error;
 }
@@ -211,7 +211,7 @@ TEST_F(Units, TellWhenTheyCannotBeKept) {
   const auto done = run("units learn");
   ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
   (void)std::signal(SIGXFSZ, old);
-  EXPECT_NE(error.find("the 8388608 counts that were measured are not kept"), std::string::npos) << error;
+  EXPECT_NE(error.find("the measured 8388608 counts are not kept"), std::string::npos) << error;
   EXPECT_TRUE(file().empty()) << "nothing is left behind";
   EXPECT_FALSE(drive::is_energised(drive->power_state()));
 }

@@ -54,7 +54,7 @@ TEST(Inputs, AreReadByThePolarityOfTheFamily) {
   bench.drive().track().positive_limit.stuck = true;
   EXPECT_TRUE(look(bench).has("60FDh is 0x003F0002: positive limit, home switch"));
   MotionBench other("sv2");
-  EXPECT_TRUE(look(other).has("the manual does not say which level", PreflightItem::Weight::good));
+  EXPECT_TRUE(look(other).has("the manual does not state the active level", PreflightItem::Weight::good));
 }
 
 TEST(LostCommunication, ThatTheManualNamesAnAlarmForIsNotSaidToStopNothing) {
@@ -68,7 +68,7 @@ TEST(LostCommunication, ThatTheManualNamesAnAlarmForIsNotSaidToStopNothing) {
   WatchdogPlan nothing;
   EXPECT_EQ(to_string(nothing), "none: nothing stops the drive if the cable is cut or servoctl dies");
   nothing.alarms = {"AL.20"};
-  EXPECT_NE(to_string(nothing).find("alarm AL.20 for a lost communication"), std::string::npos);
+  EXPECT_NE(to_string(nothing).find("alarm AL.20 for lost communication"), std::string::npos);
 }
 
 }  // namespace

@@ -124,7 +124,7 @@ TEST(Learn, TakesADecimalNumberOnlyWhereTheScaleOfTheMonitorIsCertainOrSomebodyK
 
   LearnBench disputed(100000);
   disputed.how.expected.disputed = true;
-  expect_refused(disputed, disputed.learn(), "100000 is near, but the manual prints two scales");
+  expect_refused(disputed, disputed.learn(), "100000 is near, but the manual gives two scales");
 
   LearnBench told(100000);
   told.how.expected = {100000, true};
@@ -143,21 +143,21 @@ TEST(Learn, RefusesANumberThatIsNoneOfThese) {
 TEST(Learn, NeverGoesFasterThanIsSafeWhileTheMonitorShowsNothing) {
   LearnBench bench(32768);
   bench.lie([](double) { return 0.; });
-  expect_refused(bench, bench.learn(), "Pn1002 shows 0 rpm: nothing to measure by");
+  expect_refused(bench, bench.learn(), "Pn1002 shows 0 rpm: not usable");
   EXPECT_LE(bench.fastest(), 300. * 32768 / 60);
 }
 
 TEST(Learn, RefusesAMonitorThatDoesNotGoWithTheSpeeds) {
   LearnBench bench(8388608);
   bench.lie([](double raw) { return raw == 0 ? 0 : 100; });
-  expect_refused(bench, bench.learn(), "does not go with what it showed");
+  expect_refused(bench, bench.learn(), "which contradicts its values at other speeds");
 }
 
 TEST(Learn, RefusesAMonitorThatWavers) {
   LearnBench bench(131072);
   int look = 0;
   bench.lie([&look](double raw) { return raw * (++look < 90 ? 1 : look / 40 % 2 == 0 ? 0.75 : 1.2); });
-  expect_refused(bench, bench.learn(), "does not go with its way");
+  expect_refused(bench, bench.learn(), "a speed that does not match its position");
 }
 
 TEST(Learn, ToleratesTheNoiseOfAMonitor) {
@@ -276,7 +276,7 @@ TEST(Learn, GoesOnWithWhatItsParametersTellWhereTheDriveDoesNotHaveTheMonitor) {
   const auto done = bench.jog(jog_for("60rpm", 1s));
   EXPECT_TRUE(done.outcome) << done.outcome.error().message;
   ASSERT_FALSE(done.unchecked.empty());
-  EXPECT_NE(done.unchecked.front().find("not held against Pn1002"), std::string::npos);
+  EXPECT_NE(done.unchecked.front().find("not compared with Pn1002"), std::string::npos);
 }
 
 TEST(Learn, NamesTheOtherScaleOfTheMonitorWhereThatWouldExplainTheContradiction) {

@@ -40,7 +40,7 @@ TEST_F(MotionTrouble, AStallOnTheWayToATargetIsAFollowingError) {
 TEST_F(MotionTrouble, AMoveThatNeverArrivesEndsInTheTimeItNeeds) {
   bench.drive().axis_faults().stalled = true;
   const auto done = bench.move(move_to("90deg", "30rpm"));
-  expect_stopped(done, "did not arrive");
+  expect_stopped(done, "did not reach");
   EXPECT_LT(done.samples.back().time - done.samples.front().time, 6s);
 }
 
@@ -64,7 +64,7 @@ TEST_F(MotionTrouble, LeavingTheWindowStopsTheMotion) {
 TEST_F(MotionTrouble, AMissingIndexPulseEndsHomingInItsTime) {
   bench.drive().track().no_index = true;
   const auto done = bench.home(home_by("1", 3s));
-  expect_stopped(done, "found no home");
+  expect_stopped(done, "no home found");
 }
 
 TEST_F(MotionTrouble, AStuckSwitchEndsHomingWithItsError) {
@@ -136,7 +136,7 @@ TEST_F(MotionTrouble, AnExceptionOnTheWayLeavesNothingEnergised) {
 TEST_F(MotionTrouble, AClosedPipeEndsTheMotion) {
   int samples = 0;
   bench.options.unheard = [&] { return ++samples > 20; };
-  expect_stopped(bench.jog(kJog), "nobody reads");
+  expect_stopped(bench.jog(kJog), "the output is no longer read");
 }
 
 TEST_F(MotionTrouble, SignalsAreHeldBackUntilTheDriveIsAtRest) {

@@ -111,7 +111,7 @@ TEST_F(Stubborn, AQuickStopThatChangesNothingIsNoSuccess) {
 TEST_F(Stubborn, AFaultReactionThatDoesNotEndIsNotDisabled) {
   const auto done = disable("0F02");
   ASSERT_FALSE(done);
-  EXPECT_NE(done.error().message.find("still brakes"), std::string::npos) << done.error().message;
+  EXPECT_NE(done.error().message.find("is still braking"), std::string::npos) << done.error().message;
 }
 
 TEST(OperationMode, IsRefusedWhenTheDriveItselfDoesNotHaveIt) {

@@ -47,7 +47,7 @@ TEST(TurnEstimate, RefusesWhatIsNotExactEnough) {
   for (auto& look : quarrel) look.speed *= 1.03;
   const auto found = measure_turn(quarrel, 0.1);
   ASSERT_FALSE(found);
-  EXPECT_NE(found.error().message.find("tells two speeds"), std::string::npos);
+  EXPECT_NE(found.error().message.find("reports two speeds"), std::string::npos);
 }
 
 TEST(TurnEstimate, TakesWhatIsWithinOnePercent) {

@@ -119,7 +119,7 @@ TEST_P(WayOutOfFamily, AWordThatCannotBeWrittenIsToldAlsoWithoutPower) {
   };
   const auto done = bench.jog(jog_for("60rpm", 3s));
   ASSERT_EQ(done.end.left.size(), 1U);
-  EXPECT_NE(done.end.left.front().find("6040h has not taken 0000h"), std::string::npos)
+  EXPECT_NE(done.end.left.front().find("6040h did not accept 0000h"), std::string::npos)
       << done.end.left.front();
 }
 

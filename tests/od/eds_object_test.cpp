@@ -117,7 +117,7 @@ TEST(EdsDuplicate, OfAnySectionIsToldWithTheLineOfTheFirst) {
     ASSERT_EQ(findings(file), Rules{fmt::format("{}:1 duplicate-section", lines + 1)}) << section;
     const auto name = section.substr(0, section.find(']') + 1);
     EXPECT_EQ(file.diagnostics.front().message,
-              name + " appears again, first in line 1; the first one counts");
+              name + " appears again, first in line 1; the first one is used");
   }
 }
 

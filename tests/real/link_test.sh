@@ -45,7 +45,7 @@ check_link() {
   done
   case $after in false*) ;; *) fail "$family, $how: the drive is '$after'"; cat "$work/err" ;; esac
   [ "$code" -ne 0 ] || fail "$family, $how: the exit code is 0"
-  grep -q 'stopping node 1 is tried again' "$work/err" || fail "$family, $how: it does not say that it goes on: $(cat "$work/err")"
+  grep -q 'stopping node 1 waits for the bus' "$work/err" || fail "$family, $how: it does not say that it goes on: $(cat "$work/err")"
   grep -q 'can0 is back after' "$work/err" || fail "$family, $how: it does not say that the link is back"
 }
 

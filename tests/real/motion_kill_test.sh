@@ -124,7 +124,7 @@ case $bus in
       ip link set can0 down
       wait "$pid"
       [ $? -eq 3 ] || fail "cable cut: the exit code is not 3: $(cat "$work/err")"
-      grep -q 'TAKE THE POWER AWAY' "$work/err" || fail "cable cut: it does not say that nothing could be verified"
+      grep -q 'SWITCH OFF THE SUPPLY' "$work/err" || fail "cable cut: it does not say that nothing could be verified"
       sleep 0.6
       after=$(SERVOCTL_BUS=can1 state)
       case $watched-$after in

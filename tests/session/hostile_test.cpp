@@ -166,7 +166,7 @@ TEST_F(HostileBus, LooksUpAWriteInWhichTheNodeBooted) {
   EXPECT_EQ(
       written.front().error().message,
       "node 2, object 0x6060:0: the write was sent, but no answer came, and it had no effect: the object "
-      "still holds 01");
+      "holds 01");
   EXPECT_EQ(std::count(bus->sent.begin(), bus->sent.end(), "602#2F60600003000000"), 1);
 }
 
