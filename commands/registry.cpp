@@ -1,6 +1,8 @@
 #include "command/registry.hpp"
 
 #include <algorithm>
+#include <array>
+#include <iterator>
 
 namespace servoctl {
 namespace commands {
@@ -81,85 +83,100 @@ extern const Command kCompletion;
 
 namespace command {
 
-std::span<const Command* const> registry() {
-  static constexpr const Command* kAll[] = {
-      &commands::kScan,
-      &commands::kInfo,
-      &commands::kStatus,
-      &commands::kRead,
-      &commands::kWrite,
-      &commands::kObjects,
-      &commands::kParamList,
-      &commands::kParamGet,
-      &commands::kParamSet,
-      &commands::kParamSearch,
-      &commands::kParamExplain,
-      &commands::kBackup,
-      &commands::kDiff,
-      &commands::kVerify,
-      &commands::kRestore,
-      &commands::kClone,
-      &commands::kStore,
-      &commands::kDefaults,
-      &commands::kFaultShow,
-      &commands::kFaultList,
-      &commands::kFaultReset,
-      &commands::kFaultClearHistory,
-      &commands::kEnable,
-      &commands::kDisable,
-      &commands::kQuickStopCommand,
-      &commands::kMode,
-      &commands::kJog,
-      &commands::kMove,
-      &commands::kHome,
-      &commands::kTorque,
-      &commands::kUnitsShow,
-      &commands::kUnitsLearn,
-      &commands::kUnitsForget,
-      &commands::kNmtStart,
-      &commands::kNmtStop,
-      &commands::kNmtPreop,
-      &commands::kNmtReset,
-      &commands::kNmtResetComm,
-      &commands::kNmtWatch,
-      &commands::kPdoShow,
-      &commands::kPdoMap,
-      &commands::kPdoEnable,
-      &commands::kPdoDisable,
-      &commands::kPdoClear,
-      &commands::kPdoPreset,
-      &commands::kPdoApply,
-      &commands::kPdoSave,
-      &commands::kPdoWatch,
-      &commands::kPdoSend,
-      &commands::kTestComm,
-      &commands::kTestIo,
-      &commands::kTestJog,
-      &commands::kTestHome,
-      &commands::kTestAll,
-      &commands::kReport,
-      &commands::kSyncOnce,
-      &commands::kSyncStart,
-      &commands::kSyncStop,
-      &commands::kWatch,
-      &commands::kScope,
-      &commands::kMonitor,
-      &commands::kDecode,
-      &commands::kReplay,
-      &commands::kDrives,
-      &commands::kEdsCheck,
-      &commands::kRun,
-      &commands::kSim,
-      &commands::kHelp,
-      &commands::kCompletion,
-  };
-  return kAll;
-}
+namespace {
+
+/// The paths stand together: to find a command touches one page of memory, and those of no other command.
+struct Named {
+  char path[24];
+  const Command* command;
+};
+constexpr Named kNamed[] = {
+    {"scan", &commands::kScan},
+    {"info", &commands::kInfo},
+    {"status", &commands::kStatus},
+    {"read", &commands::kRead},
+    {"write", &commands::kWrite},
+    {"objects", &commands::kObjects},
+    {"param list", &commands::kParamList},
+    {"param get", &commands::kParamGet},
+    {"param set", &commands::kParamSet},
+    {"param search", &commands::kParamSearch},
+    {"param explain", &commands::kParamExplain},
+    {"backup", &commands::kBackup},
+    {"diff", &commands::kDiff},
+    {"verify", &commands::kVerify},
+    {"restore", &commands::kRestore},
+    {"clone", &commands::kClone},
+    {"store", &commands::kStore},
+    {"defaults", &commands::kDefaults},
+    {"fault show", &commands::kFaultShow},
+    {"fault list", &commands::kFaultList},
+    {"fault reset", &commands::kFaultReset},
+    {"fault clear-history", &commands::kFaultClearHistory},
+    {"enable", &commands::kEnable},
+    {"disable", &commands::kDisable},
+    {"quick-stop", &commands::kQuickStopCommand},
+    {"mode", &commands::kMode},
+    {"jog", &commands::kJog},
+    {"move", &commands::kMove},
+    {"home", &commands::kHome},
+    {"torque", &commands::kTorque},
+    {"units show", &commands::kUnitsShow},
+    {"units learn", &commands::kUnitsLearn},
+    {"units forget", &commands::kUnitsForget},
+    {"nmt start", &commands::kNmtStart},
+    {"nmt stop", &commands::kNmtStop},
+    {"nmt preop", &commands::kNmtPreop},
+    {"nmt reset", &commands::kNmtReset},
+    {"nmt reset-comm", &commands::kNmtResetComm},
+    {"nmt watch", &commands::kNmtWatch},
+    {"pdo show", &commands::kPdoShow},
+    {"pdo map", &commands::kPdoMap},
+    {"pdo enable", &commands::kPdoEnable},
+    {"pdo disable", &commands::kPdoDisable},
+    {"pdo clear", &commands::kPdoClear},
+    {"pdo preset", &commands::kPdoPreset},
+    {"pdo apply", &commands::kPdoApply},
+    {"pdo save", &commands::kPdoSave},
+    {"pdo watch", &commands::kPdoWatch},
+    {"pdo send", &commands::kPdoSend},
+    {"test comm", &commands::kTestComm},
+    {"test io", &commands::kTestIo},
+    {"test jog", &commands::kTestJog},
+    {"test home", &commands::kTestHome},
+    {"test all", &commands::kTestAll},
+    {"report", &commands::kReport},
+    {"sync once", &commands::kSyncOnce},
+    {"sync start", &commands::kSyncStart},
+    {"sync stop", &commands::kSyncStop},
+    {"watch", &commands::kWatch},
+    {"scope", &commands::kScope},
+    {"monitor", &commands::kMonitor},
+    {"decode", &commands::kDecode},
+    {"replay", &commands::kReplay},
+    {"drives", &commands::kDrives},
+    {"eds check", &commands::kEdsCheck},
+    {"run", &commands::kRun},
+    {"sim", &commands::kSim},
+    {"help", &commands::kHelp},
+    {"completion", &commands::kCompletion},
+};
+constexpr auto kAll = [] {
+  std::array<const Command*, std::size(kNamed)> out{};
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = kNamed[i].command;
+  return out;
+}();
+
+}  // namespace
+
+std::span<const Command* const> registry() { return kAll; }
+
+std::string_view registered_path(std::size_t index) { return kNamed[index].path; }
 
 const Command* find_command(std::string_view path) {
-  const auto all = registry();
-  const auto found = std::find_if(all.begin(), all.end(), [&](const Command* c) { return c->path == path; });
-  return found == all.end() ? nullptr : *found;
+  const auto* const found =
+      std::find_if(std::begin(kNamed), std::end(kNamed), [&](const Named& n) { return n.path == path; });
+  return found == std::end(kNamed) ? nullptr : found->command;
 }
 
 }  // namespace command

@@ -25,7 +25,7 @@ void NodeWatch::on_frame(const can::Frame& frame, TimePoint now) {
 
 /// A node that repeats itself while nobody takes its events is counted, not listed.
 void NodeWatch::on_emergency(const Emergency& emergency, TimePoint now) {
-  auto& recent = nodes_[emergency.node].emergencies;
+  auto& recent = emergencies_[emergency.node];
   if (emergency.is_reset())
     recent.clear();
   else
@@ -49,7 +49,7 @@ void NodeWatch::on_error_control(const ErrorControl& message, TimePoint now) {
     node.last.reset();
     node.intervals = 0;
     node.lost = false;
-    node.emergencies.clear();
+    emergencies_.erase(message.node);
     const auto told = std::find_if(events_.rbegin(), events_.rend(),
                                    [&](const NodeEvent& event) { return event.node == message.node; });
     if (told != events_.rend() && std::holds_alternative<NodeEvent::BootUp>(told->what))
@@ -106,6 +106,7 @@ void NodeWatch::on_command(std::uint8_t node) {
 void NodeWatch::forget(std::uint8_t node) {
   const auto before = nodes_[node];
   nodes_[node] = {};
+  emergencies_.erase(node);
   nodes_[node].boots = before.boots;
   nodes_[node].guarded = before.guarded;
   update_deadline();

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -64,7 +65,10 @@ class NodeWatch {
   /// The longest interval seen between two heartbeats; zero until two were.
   Duration period(std::uint8_t node) const { return nodes_[node].period; }
   /// The last emergencies of the node since its boot-up or error reset, oldest first, at most eight.
-  const std::deque<Emergency>& emergencies(std::uint8_t node) const { return nodes_[node].emergencies; }
+  const std::deque<Emergency>& emergencies(std::uint8_t node) const {
+    const auto found = emergencies_.find(node);
+    return found == emergencies_.end() ? no_emergencies_ : found->second;
+  }
   /// The node's 1014h holds this: emergencies come under its CAN-ID as well.
   void learn_emergency_id(std::uint8_t node, std::uint32_t cob_id) { emergency_ids_.learn(node, cob_id); }
   /// The node answers a master's questions and sends nothing by itself: its silence means nothing.
@@ -85,7 +89,6 @@ class NodeWatch {
     std::uint32_t intervals = 0;    ///< Intervals measured.
     bool lost = false;
     bool guarded = false;
-    std::deque<Emergency> emergencies;
     TimePoint deadline() const;
   };
   void on_emergency(const Emergency& emergency, TimePoint now);
@@ -94,6 +97,9 @@ class NodeWatch {
   void update_deadline();
 
   std::array<Node, 128> nodes_{};
+  std::map<std::uint8_t, std::deque<Emergency>>
+      emergencies_;  ///< An empty deque of each node would be 80 kB.
+  std::deque<Emergency> no_emergencies_;
   EmergencyIds emergency_ids_;
   TimePoint deadline_ = kNever;  ///< Of all nodes; asked with every frame, changed by heartbeats only.
   std::deque<NodeEvent> events_;

@@ -25,11 +25,14 @@ const Parameter* global_option(std::string_view word) {
 
 /// Number of words of `path` that stand in `words` from `first` on; 0 when one differs.
 std::size_t words_that_fit(std::string_view path, const std::vector<std::string>& words, std::size_t first) {
-  const auto parts = split(path, ' ');
-  if (first + parts.size() > words.size()) return 0;
-  for (std::size_t i = 0; i < parts.size(); ++i)
-    if (parts[i] != words[first + i]) return 0;
-  return parts.size();
+  std::size_t used = 0;
+  while (!path.empty()) {
+    const auto word = path.substr(0, path.find(' '));
+    if (first + used >= words.size() || words[first + used] != word) return 0;
+    ++used;
+    path.remove_prefix(std::min(word.size() + 1, path.size()));
+  }
+  return used;
 }
 
 /// Position of the first word that is neither a global option nor its value.
@@ -217,10 +220,11 @@ tl::unexpected<Error> unknown_command(const std::vector<std::string>& words, std
 CommandMatch match_command(const std::vector<std::string>& words) {
   CommandMatch best;
   best.first = first_plain_word(words);
-  for (const auto* command : command::registry()) {
-    const auto used = words_that_fit(command->path, words, best.first);
+  const auto commands = command::registry();
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    const auto used = words_that_fit(command::registered_path(i), words, best.first);
     if (used > best.used) {
-      best.command = command;
+      best.command = commands[i];
       best.used = used;
     }
   }

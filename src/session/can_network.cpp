@@ -111,7 +111,7 @@ void CanNetwork::hear(const can::Frame& frame) {
 void CanNetwork::dispatch(const can::Frame& frame) {
   if (frame.id < canopen::kSdoAnswer || frame.id > canopen::kErrorControl + canopen::kLastNode) return;
   for (auto* channel = channels_[frame.id & 0x7FU]; channel != nullptr; channel = channel->next_)
-    channel->client_.on_frame(frame, stepped_at_);
+    channel->on_frame(frame, stepped_at_);
 }
 
 Result<void> CanNetwork::send_heartbeat(std::uint8_t node) {

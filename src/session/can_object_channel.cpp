@@ -22,6 +22,7 @@ Result<void> CanObjectChannel::on_time(TimePoint now) {
     if (!frame) break;
     if (auto sent = network_->send(*frame); !sent) return sent;
   }
+  stirred_ = false;
   return {};
 }
 
@@ -29,6 +30,7 @@ void CanObjectChannel::start_upload(ObjectAddress object, TimePoint now, canopen
                                     std::size_t size) {
   object_ = object;
   emergency_id_.reset();
+  stirred_ = true;
   client_.start_upload(object, now, transfer, size);
 }
 
@@ -36,6 +38,7 @@ void CanObjectChannel::start_download(ObjectAddress object, Bytes data, TimePoin
                                       canopen::Transfer transfer) {
   object_ = object;
   emergency_id_.reset();
+  stirred_ = true;
   if (data.size() == 4) emergency_id_ = static_cast<std::uint32_t>(load_le(data));
   client_.start_download(object, std::move(data), now, transfer);
 }

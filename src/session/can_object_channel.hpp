@@ -15,6 +15,12 @@ class CanObjectChannel final : public ObjectChannel {
   CanObjectChannel(CanNetwork& network, std::uint8_t node, Duration timeout);
   ~CanObjectChannel() override;
 
+  /// A frame of its node.
+  void on_frame(const can::Frame& frame, TimePoint now) {
+    stirred_ = true;
+    client_.on_frame(frame, now);
+  }
+
   void set_timeout(Duration timeout) override { client_.set_timeout(timeout); }
   void start_upload(ObjectAddress object, TimePoint now, canopen::Transfer transfer,
                     std::size_t size) override;

@@ -58,6 +58,13 @@ class ObjectChannel {
   virtual std::size_t transferred()
       const = 0;  ///< Bytes of this transfer that the other side has, or that came.
   virtual std::optional<std::size_t> total() const = 0;  ///< Bytes of the whole transfer, when known.
+
+  /// Whether anything was started or came in since the last on_time(): else there is nothing to do before the
+  /// deadline. A channel that does not keep account says so always.
+  bool stirred() const { return stirred_; }
+
+ protected:
+  bool stirred_ = true;
 };
 
 /// Values that one node sends unasked while this lives: from its TPDOs, or its part of a process

@@ -46,9 +46,8 @@ std::vector<Result<Bytes>> TransferRun::run() {
   for (;;) {
     TimePoint next = kNever;
     for (auto& channel : channels_) {
-      while (advance(channel)) {
-      }
-      next = std::min(next, channel.objects->deadline());
+      serve(channel);
+      next = std::min(next, channel.deadline);
     }
     if (open_ == 0) return give_back();
     const auto stepped = session_->step(next);
@@ -76,6 +75,14 @@ void TransferRun::tell_progress() {
     if (total.value_or(done) > kLongTransfer)
       session_->options().progress(done, total, session_->received_at());
   }
+}
+
+/// One arrival concerns one channel; the others are not asked again before their deadline.
+void TransferRun::serve(Lane& channel) {
+  if (!channel.objects->stirred() && channel.deadline > session_->received_at()) return;
+  while (advance(channel)) {
+  }
+  channel.deadline = channel.objects->deadline();
 }
 
 bool TransferRun::advance(Lane& channel) {

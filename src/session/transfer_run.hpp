@@ -23,10 +23,12 @@ class TransferRun {
     std::deque<std::size_t> waiting;  ///< Requests not started yet.
     std::size_t current = 0;
     std::uint32_t tries = 0;
-    bool asked = false;    ///< The present request has no result yet.
-    std::size_t told = 0;  ///< Bytes of the present transfer that were told as progress.
+    bool asked = false;                     ///< The present request has no result yet.
+    std::size_t told = 0;                   ///< Bytes of the present transfer that were told as progress.
+    TimePoint deadline = TimePoint::min();  ///< Of `objects`, as it last was.
   };
 
+  void serve(Lane& channel);
   bool advance(Lane& channel);
   void ask(Lane& channel, canopen::Transfer transfer);
   void start(Lane& channel);

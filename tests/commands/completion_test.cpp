@@ -17,6 +17,15 @@ namespace {
 
 const std::string kFolder = source_dir() + "/completions/";
 
+TEST(Registry, FindsEveryCommandByThePathItSays) {
+  const auto commands = registry();
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    EXPECT_EQ(registered_path(i), commands[i]->path);
+    EXPECT_EQ(find_command(commands[i]->path), commands[i]);
+  }
+  EXPECT_EQ(find_command("param"), nullptr);
+}
+
 TEST(CompletionScripts, InTheTreeAreFresh) {
   const std::pair<const char*, const char*> files[] = {
       {"bash", "servoctl.bash"}, {"zsh", "_servoctl"}, {"fish", "servoctl.fish"}};

@@ -73,10 +73,11 @@ struct sigaction set_handler(int signal, Handler handler) {
   return before;
 }
 
-/// A profiler's own timer stays, and what whoever started us wants ignored.
+/// A profiler's own timer stays, and what whoever started us wants ignored. While it is set all signals are
+/// held.
 void catch_if_deadly(int signal) {
-  struct sigaction now {};
-  if (sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_DFL) set_handler(signal, on_signal);
+  const auto before = set_handler(signal, on_signal);
+  if (before.sa_handler != SIG_DFL) sigaction(signal, &before, nullptr);
 }
 
 /// A call that is entered just after a signal would block in spite of it.
