@@ -18,14 +18,9 @@ inline double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-/// How long so many SDO reads of the statusword take with nothing but write() and read(): the floor. Ends the
-/// program when something fails.
-inline double raw_reads(const char* interface, unsigned node, int reads) {
-  const int fd = ::socket(PF_CAN, SOCK_RAW, CAN_RAW);
-  sockaddr_can address{};
-  address.can_family = AF_CAN;
-  address.can_ifindex = static_cast<int>(::if_nametoindex(interface));
-  if (fd < 0 || ::bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) std::exit(3);
+/// How long so many SDO reads of the statusword take on a bus with nothing but write() and read(): the floor.
+/// Ends the program when something fails.
+inline double raw_reads(int fd, unsigned node, int reads) {
   can_frame request{};
   request.can_id = 0x600 + node;
   request.can_dlc = 8;
@@ -39,7 +34,17 @@ inline double raw_reads(const char* interface, unsigned node, int reads) {
       if (::read(fd, &answer, sizeof answer) != sizeof answer) std::exit(3);
     } while (answer.can_id != 0x580 + node);
   }
-  const auto out = seconds_since(begin);
+  return seconds_since(begin);
+}
+
+/// The same on an interface.
+inline double raw_reads(const char* interface, unsigned node, int reads) {
+  const int fd = ::socket(PF_CAN, SOCK_RAW, CAN_RAW);
+  sockaddr_can address{};
+  address.can_family = AF_CAN;
+  address.can_ifindex = static_cast<int>(::if_nametoindex(interface));
+  if (fd < 0 || ::bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) std::exit(3);
+  const auto out = raw_reads(fd, node, reads);
   ::close(fd);
   return out;
 }

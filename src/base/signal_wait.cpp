@@ -10,6 +10,11 @@
 namespace servoctl {
 namespace {
 
+Duration left_until(TimePoint deadline) {
+  const auto now = steady_now();
+  return deadline > now ? deadline - now : Duration::zero();
+}
+
 // A signal handler can reach nothing else.
 std::atomic<unsigned> g_noted{0};
 std::atomic<unsigned> g_answered{0};
@@ -27,18 +32,23 @@ void note_signal() { g_noted.fetch_add(1); }
 unsigned signals_noted() { return g_noted.load(); }
 
 int wait_or_signal(std::span<pollfd> descriptors, std::optional<Duration> longest) {
+  if (!longest) return wait_or_signal_until(descriptors, std::nullopt);
+  const auto now = steady_now();
+  return wait_or_signal_until(descriptors, *longest < kNever - now ? now + *longest : kNever);
+}
+
+int wait_or_signal_until(std::span<pollfd> descriptors, std::optional<TimePoint> deadline) {
   sigset_t all;
   sigset_t before;
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);
-  const auto begin = steady_now();
   int count = -1;
   int error = EINTR;
   // A signal that nobody noted is none for who waits.
   while (count < 0 && error == EINTR && !take_noted()) {
-    const auto left = std::max(Duration::zero(), longest.value_or(Duration::zero()) - (steady_now() - begin));
-    const auto limit = to_timespec(left);
-    count = ::ppoll(descriptors.data(), descriptors.size(), longest ? &limit : nullptr, &before);
+    timespec limit{};
+    if (deadline) limit = to_timespec(left_until(*deadline));
+    count = ::ppoll(descriptors.data(), descriptors.size(), deadline ? &limit : nullptr, &before);
     error = errno;
   }
   pthread_sigmask(SIG_SETMASK, &before, nullptr);

@@ -19,5 +19,7 @@ unsigned signals_noted();
 /// vain. Other signals do not end it. `longest`: empty for ever, else not negative. The answer is that of
 /// ppoll().
 int wait_or_signal(std::span<pollfd> descriptors, std::optional<Duration> longest);
+/// The same until a time of steady_now(); asks the clock once, which is a system call on some machines.
+int wait_or_signal_until(std::span<pollfd> descriptors, std::optional<TimePoint> deadline);
 
 }  // namespace servoctl

@@ -39,8 +39,8 @@ Wake wait_for(int fd, short events, TimePoint deadline) {
 
 Wake wait_or_signal(int fd, short events, TimePoint deadline) {
   pollfd entry{fd, events, 0};
-  const auto longest = deadline == kNever ? std::nullopt : std::optional(left_until(deadline));
-  return wake(servoctl::wait_or_signal(std::span(&entry, 1), longest));
+  const auto end = deadline == kNever ? std::nullopt : std::optional(deadline);
+  return wake(servoctl::wait_or_signal_until(std::span(&entry, 1), end));
 }
 
 void nap(Duration time) { wait_for(-1, 0, steady_now() + time); }

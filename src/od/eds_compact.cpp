@@ -66,22 +66,22 @@ constexpr std::array kPdoKinds{PdoKind{"NrOfRXPDO", "RPDO", 0x1400, 0x1600, 0x20
 Object communication_object(const PdoKind& kind, std::uint16_t number, std::uint64_t mask) {
   constexpr std::uint64_t kUnused = 0x8000'0000;
   constexpr std::uint16_t kPredefined = 4;
-  struct Row {
+  struct Sub {
     std::string_view name;
     DataType type;
   };
-  static constexpr std::array kRows{
-      Row{"COB-ID", DataType::u32},       Row{"Transmission type", DataType::u8},
-      Row{"Inhibit time", DataType::u16}, Row{"Compatibility entry", DataType::u8},
-      Row{"Event timer", DataType::u16},  Row{"SYNC start value", DataType::u8}};
+  static constexpr std::array kSubs{
+      Sub{"COB-ID", DataType::u32},       Sub{"Transmission type", DataType::u8},
+      Sub{"Inhibit time", DataType::u16}, Sub{"Compatibility entry", DataType::u8},
+      Sub{"Event timer", DataType::u16},  Sub{"SYNC start value", DataType::u8}};
   const auto index = static_cast<std::uint16_t>(kind.communication + number);
   Object object{index, fmt::format("{} communication parameter", kind.word), ObjectCode::record, {}};
   object.entries.push_back(count_entry(index, 0, Access::constant));
-  for (std::uint8_t bit = 0; bit < kRows.size(); ++bit) {
+  for (std::uint8_t bit = 0; bit < kSubs.size(); ++bit) {
     if ((mask >> bit & 1U) == 0) continue;
     const auto sub = static_cast<std::uint8_t>(bit + 1);
     object.entries.push_back(
-        entry_of({index, sub}, std::string(kRows[bit].name), kRows[bit].type, Access::rw, std::nullopt));
+        entry_of({index, sub}, std::string(kSubs[bit].name), kSubs[bit].type, Access::rw, std::nullopt));
     object.entries.front().default_value = NodeValue{Value(std::uint64_t{sub}), false};
   }
   if ((mask & 1U) != 0)

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <unistd.h>
+
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -90,6 +92,7 @@ class StandardConsole final : public Console {
   void show(LiveOutput& output, std::string_view text) const;
 
   session::Care care_ = session::Care::none;
+  bool shows_output_ = ::isatty(STDOUT_FILENO) == 1;
   LiveOutput out_{1};
   LiveOutput err_{2};
 };
