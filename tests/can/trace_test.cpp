@@ -1,24 +1,19 @@
-#include "can/trace.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
-#include <rapidcheck.h>
-#include <rapidcheck/gtest.h>
-#include <stdlib.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "base/file.hpp"
+#include "tests/can/trace_fixture.hpp"
 
 namespace servoctl::can {
 namespace {
@@ -28,67 +23,6 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 Frame parsed(const char* text) { return parse_frame(text).value(); }
-
-/// A bus in virtual time: gives what the test put in, each at its time, and lets time pass while it waits.
-class ScriptedBus final : public Bus {
- public:
-  explicit ScriptedBus(TimePoint start) : now_(start) {}
-
-  TimePoint now() const override { return now_; }
-  Result<void> send(const Frame&) override {
-    if (broken) return fail(Errc::bus, "can0 went down");
-    return {};
-  }
-  Result<std::optional<Frame>> receive(TimePoint deadline) override {
-    deadlines.push_back(deadline);
-    if (broken) return fail(Errc::bus, "can0 went down");
-    if (interrupted) return std::optional<Frame>();
-    if (!coming.empty() && coming.front().first <= std::max(deadline, now_)) {
-      const auto [time, frame] = coming.front();
-      coming.pop_front();
-      now_ = std::max(now_, time);
-      return frame;
-    }
-    now_ = std::max(now_, deadline);
-    return std::optional<Frame>();
-  }
-  int poll_fd() const override { return 77; }
-  TimePoint next_event() const override { return next; }
-
-  std::deque<std::pair<TimePoint, Frame>> coming;
-  std::vector<TimePoint> deadlines;  ///< Of every receive().
-  TimePoint next = kNever;
-  bool broken = false;
-  bool interrupted = false;
-
- private:
-  TimePoint now_;
-};
-
-class Trace : public testing::Test {
- protected:
-  Trace() {
-    std::string name = testing::TempDir() + "servoctl-trace-XXXXXX";
-    ::close(::mkstemp(name.data()));
-    file_ = name;
-  }
-  ~Trace() override { std::filesystem::remove(file_); }
-
-  std::unique_ptr<Bus> trace(TimePoint start, TraceClock clock = TraceClock::bus) {
-    auto inner = std::make_unique<ScriptedBus>(start);
-    inner_ = inner.get();
-    return trace_to(std::move(inner), file_, "can0", clock).value();
-  }
-  std::string written() const { return read_file(file_).value(); }
-
-  std::ptrdiff_t lines() const {
-    const auto text = written();
-    return std::count(text.begin(), text.end(), '\n');
-  }
-
-  std::filesystem::path file_;
-  ScriptedBus* inner_ = nullptr;
-};
 
 constexpr TimePoint kStart{microseconds(1'736'412'345'123'456)};
 
@@ -308,45 +242,6 @@ TEST_F(Trace, IsRefusedWhenTheFileCannotBeMade) {
   ASSERT_FALSE(bus);
   EXPECT_EQ(bus.error().code, Errc::file);
   EXPECT_NE(bus.error().message.find("/nosuchfolder/trace.log"), std::string::npos);
-}
-
-TEST(LogLine, IsReadAsCandumpWritesIt) {
-  const auto line = parse_log_line("(1736412345.123456) vcan0 601#4041600000000000\r\n");
-  ASSERT_TRUE(line);
-  EXPECT_EQ(line->time, microseconds(1'736'412'345'123'456));
-  EXPECT_EQ(line->interface_name, "vcan0");
-  EXPECT_EQ(line->frame, parsed("601#4041600000000000"));
-}
-
-TEST(LogLine, IsReadWithDirectionNanosecondsAndMoreSpaces) {
-  const auto line = parse_log_line(" (0000000001.500000999)  can0   701#R  T");
-  ASSERT_TRUE(line);
-  EXPECT_EQ(line->time, microseconds(1'500'000));
-  EXPECT_EQ(line->frame, parsed("701#R"));
-  EXPECT_TRUE(parse_log_line("(1.5) can0 080# R"));
-  EXPECT_EQ(parse_log_line("(1.5) can0 080#")->time, milliseconds(1500));
-}
-
-TEST(LogLine, IsRefusedWhenItIsSomethingElse) {
-  for (const auto* text :
-       {"", "can0 080#", "(1.0) can0", "(1.0) can0 080# X", "(1.0) can0 080# R R", "1.0 can0 080#",
-        "(1) can0 080#", "(.5) can0 080#", "(1.) can0 080#", "(1.0000000000) can0 080#", "(-1.0) can0 080#",
-        "(1.0) can0 123##10", "(9999999999999.0) can0 080#", "() can0 080#", "( can0 080#", "(1.0)can0 080#",
-        "# (1.0) can0 080#"})
-    EXPECT_EQ(parse_log_line(text), std::nullopt) << text;
-}
-
-RC_GTEST_PROP(LogLine, SurvivesBeingWrittenAndRead, ()) {
-  LogFrame line;
-  line.time = microseconds(*rc::gen::inRange<std::int64_t>(0, 4'000'000'000'000'000));
-  line.interface_name = "can1";
-  line.frame = make_frame(*rc::gen::inRange<std::uint32_t>(0, 0x800),
-                          *rc::gen::arbitrary<std::vector<std::uint8_t>>());
-  RC_ASSERT(parse_log_line(to_string(line)) == line);
-}
-
-RC_GTEST_PROP(LogLine, NeverMakesTheReaderFail, ()) {
-  parse_log_line(*rc::gen::container<std::string>(rc::gen::elementOf(std::string("(1.) can#R\n\xff"))));
 }
 
 }  // namespace

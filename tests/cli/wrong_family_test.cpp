@@ -1,26 +1,8 @@
 // The whole registry with a family that the drive is not: nothing is written to it, except for the ways out.
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <map>
-#include <memory>
-#include <set>
-
-#include "base/text.hpp"
-#include "can/trace.hpp"
-#include "cli/shell.hpp"
-#include "cli/words.hpp"
-#include "command/registry.hpp"
-#include "recording_console.hpp"
-#include "tests/source_dir.hpp"
+#include "tests/cli/wrong_family_fixture.hpp"
 
 namespace servoctl::cli {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr const char* kVendorFamilies[] = {"gsd600", "dm", "da200", "sv2", "ts"};
 
@@ -93,77 +75,6 @@ const std::set<std::string_view> kQuiet{
 const std::set<std::string_view> kAnswers{"backup", "diff",    "info",       "report",
                                           "scope",  "test io", "units show", "verify"};
 const std::set<std::string_view> kWaysOut{"disable", "quick-stop"};
-
-class WrongFamily : public testing::Test {
- protected:
-  WrongFamily() {
-    fs::create_directories(folder_);
-    std::ofstream(folder_ / "recording.log")
-        << "(1.000000) can0 601#2F60600003000000\n(1.010000) can0 601#2B40600006000000\n";
-  }
-  ~WrongFamily() override { fs::remove_all(folder_); }
-
-  /// A shell on two drives of one family, with the other one named.
-  void open(const std::string& drive, const std::string& named) {
-    shell_.reset();
-    Shell::Options options;
-    options.drive_folders = {fs::path(source_dir()) / "eds"};
-    options.clock = sim::SimBus::Clock::virtual_time;
-    options.defaults.bus = "sim:" + drive + "@1," + drive + "@2";
-    options.defaults.nodes = "1";
-    options.defaults.drive = named;
-    options.defaults.trace = folder_ / "trace";
-    shell_ = std::make_unique<Shell>(console_, std::move(options));
-  }
-  int run(std::string line, std::string_view more = "--yes") {
-    if (const auto place = line.find(" %"); place != std::string::npos)
-      line.replace(place + 1, 1, folder_.string() + "/");
-    console_.out_text.clear();
-    console_.err_text.clear();
-    const int code = shell_->run(split_words(line + " " + std::string(more)).value());
-    said = console_.out_text + console_.err_text;
-    return code;
-  }
-  /// Closes the bus and takes what was sent to the drives out of its trace.
-  void close() {
-    shell_.reset();
-    read_trace();
-  }
-  int run(const std::string& line, const std::string& drive, const std::string& named,
-          std::string_view more = "--yes") {
-    open(drive, named);
-    const int code = run(line, more);
-    close();
-    return code;
-  }
-
-  void read_trace() {
-    written.clear();
-    sent = 0;
-    std::ifstream file(folder_ / "trace");
-    std::string line;
-    while (std::getline(file, line)) {
-      const auto frame = can::parse_log_line(line);
-      if (!frame) continue;
-      const auto id = frame->frame.id;
-      const auto command = frame->frame.data[0] >> 5U;
-      const bool request = id > 0x600 && id < 0x680;
-      sent += request;
-      // Anything but the reads of SDO: initiate, segment, block, and aborts.
-      const bool read =
-          request && (command == 2 || command == 3 || command == 5 || frame->frame.data[0] == 0x80);
-      const bool rpdo = id >= 0x200 && id < 0x580 && (id & 0x80U) == 0;
-      if ((request && !read) || id == 0 || rpdo) written.push_back(line);
-    }
-  }
-
-  RecordingConsole console_;
-  std::unique_ptr<Shell> shell_;
-  const fs::path folder_ = fs::path(testing::TempDir()) / (std::to_string(::getpid()) + "-wrong-family");
-  std::string said;
-  std::vector<std::string> written;
-  int sent = 0;
-};
 
 TEST_F(WrongFamily, TheTableHasEveryCommand) {
   for (const auto* command : command::registry())
@@ -254,61 +165,6 @@ TEST_F(WrongFamily, CostsFourReadsOnce) {
   EXPECT_EQ(run("write 0x6060 3", ""), 0) << said;
   close();
   EXPECT_EQ(sent, 4 + 2);
-}
-
-class WrongFamilyPrompt : public testing::Test {
- protected:
-  WrongFamilyPrompt() : shell_(console, options()) {}
-  static Shell::Options options() {
-    Shell::Options o;
-    o.drive_folders = {fs::path(source_dir()) / "eds"};
-    o.clock = sim::SimBus::Clock::virtual_time;
-    o.defaults.bus = "sim:da200@1,gsd600@2,dm@3,ts@4";
-    return o;
-  }
-  int run(std::string_view line) {
-    console.out_text.clear();
-    console.err_text.clear();
-    return shell_.run(split_words(line).value());
-  }
-  bool told(std::string_view text) const { return console.err_text.find(text) != std::string::npos; }
-  RecordingConsole console;
-  Shell shell_;
-};
-
-TEST_F(WrongFamilyPrompt, TellsOnceASession) {
-  EXPECT_EQ(run("write 0x6060 1 -n 4 -d cia402"), 0);
-  EXPECT_TRUE(told("nothing proves that it is a cia402"));
-  EXPECT_EQ(run("write 0x6060 3 -n 4 -d cia402"), 0);
-  EXPECT_FALSE(told("proves")) << console.err_text;
-  EXPECT_EQ(run("nmt reset -n 4 --yes --wait"), 0);
-  EXPECT_EQ(run("write 0x6060 3 -n 4 -d cia402"), 0);
-  EXPECT_TRUE(told("nothing proves that it is a cia402")) << "another may stand there after a restart";
-}
-
-TEST_F(WrongFamilyPrompt, TellsAReadWhatIsKnown) {
-  EXPECT_EQ(run("read 0x6041 -n 1 -d gsd600"), 0);
-  EXPECT_FALSE(told("is no"));
-  EXPECT_EQ(run("write 0x6060 1 -n 1 -d gsd600"), 8);
-  EXPECT_EQ(run("read 0x6041 -n 1 -d gsd600"), 0);
-  EXPECT_TRUE(told("node 1 is no gsd600")) << console.err_text;
-  EXPECT_EQ(run("disable -n 1 -d gsd600"), 0) << console.err_text;
-}
-
-TEST_F(WrongFamilyPrompt, RefusesAllWhenOneOfSeveralIsAnother) {
-  EXPECT_EQ(run("write 0x6060 3 -n 2,3 -d gsd600"), 8);
-  EXPECT_TRUE(told("node 3 is no gsd600")) << console.err_text;
-  EXPECT_EQ(run("read 0x6060 -n 2 --json"), 0);
-  EXPECT_EQ(console.out_text.find("\"value\":3"), std::string::npos) << console.out_text;
-  EXPECT_EQ(run("clone --from 2 --to 3 -d gsd600 --yes"), 8);
-  EXPECT_EQ(run("diff node:2 node:3 -d gsd600"), 8);
-}
-
-TEST_F(WrongFamilyPrompt, TellsThatANodeWhichIsNotThereDoesNotAnswer) {
-  EXPECT_EQ(run("write 0x6060 1 -n 9 -d gsd600"), 4);
-  EXPECT_EQ(run("backup nothing.json -n 9 -d gsd600"), 4);
-  EXPECT_EQ(run("write 0x6060 1 -n 2,9 -d gsd600"), 4);
-  EXPECT_TRUE(told("node 9 did not answer")) << console.err_text;
 }
 
 }  // namespace

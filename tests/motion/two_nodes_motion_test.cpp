@@ -18,7 +18,7 @@ TEST_F(MotionTrouble, ASecondNodeOfItsNumberStopsTheMotion) {
       bench.bus->injected.push_back(can::to_string(frame));
   };
   const auto done = bench.jog(kJog);
-  expect_stopped(done, "two nodes answer as node 1");
+  expect_stopped(done, "two nodes answer with this node-ID");
   EXPECT_EQ(done.outcome.error().code, Errc::refused);
   EXPECT_LT(bench.session->now() - begin, std::chrono::seconds(3));
 }
