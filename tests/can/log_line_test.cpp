@@ -7,21 +7,24 @@ namespace servoctl::can {
 namespace {
 
 using std::chrono::microseconds;
+using std::chrono::milliseconds;
 using std::chrono::seconds;
+
+Frame frame_in(const char* text) { return parse_frame(text).value(); }
 
 TEST(LogLine, IsReadAsCandumpWritesIt) {
   const auto line = parse_log_line("(1736412345.123456) vcan0 601#4041600000000000\r\n");
   ASSERT_TRUE(line);
   EXPECT_EQ(line->time, microseconds(1'736'412'345'123'456));
   EXPECT_EQ(line->interface_name, "vcan0");
-  EXPECT_EQ(line->frame, parsed("601#4041600000000000"));
+  EXPECT_EQ(line->frame, frame_in("601#4041600000000000"));
 }
 
 TEST(LogLine, IsReadWithDirectionNanosecondsAndMoreSpaces) {
   const auto line = parse_log_line(" (0000000001.500000999)  can0   701#R  T");
   ASSERT_TRUE(line);
   EXPECT_EQ(line->time, microseconds(1'500'000));
-  EXPECT_EQ(line->frame, parsed("701#R"));
+  EXPECT_EQ(line->frame, frame_in("701#R"));
   EXPECT_TRUE(parse_log_line("(1.5) can0 080# R"));
   EXPECT_EQ(parse_log_line("(1.5) can0 080#")->time, milliseconds(1500));
 }

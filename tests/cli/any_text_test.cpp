@@ -7,8 +7,6 @@
 namespace servoctl::cli {
 namespace {
 
-using settings::BackupFormat;
-
 /// Text as it would hurt: each piece with a meaning to somebody who reads a line.
 std::string any_text(std::mt19937& random) {
   static const std::vector<std::string> kPieces = {"--from=/etc/passwd",

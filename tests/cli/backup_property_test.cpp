@@ -8,8 +8,6 @@ namespace servoctl::cli {
 namespace {
 
 using namespace std::chrono_literals;
-using settings::Backup;
-using settings::BackupFormat;
 
 /// A value of the type, with no thought of limits.
 Bytes any_value(od::DataType type, std::mt19937& random) {

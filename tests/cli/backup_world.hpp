@@ -31,6 +31,9 @@ namespace servoctl::cli {
 namespace fs = std::filesystem;
 using session::Trouble;
 using session::TroubledBus;
+using settings::Backup;
+using settings::BackupFormat;
+using namespace std::chrono_literals;
 
 inline const std::vector<fs::path>& folders() {
   static const std::vector<fs::path> all{fs::path(source_dir()) / "eds",
