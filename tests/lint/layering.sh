@@ -9,6 +9,7 @@ declare -A may=(
   [base]=""
   [can]="base"
   [canopen]="base can"
+  [ethercat]="base canopen"
   [od]="base"
   [drive]="base od"
   [report]="base"
@@ -43,6 +44,7 @@ done < <(grep -rnE '^#include "[a-z]+/' src commands --include='*.cpp' --include
 # canopen knows frames, not buses: no I/O and no clock.
 if grep -rnE '#include "can/(bus|socketcan|local|trace|descriptor)' src/canopen; then echo "canopen must know can/frame.hpp only"; bad=1; fi
 if grep -rnE 'steady_now|steady_clock::now|system_clock' src/canopen src/od src/drive; then echo "no clock in these layers"; bad=1; fi
+if grep -rnE 'steady_now|steady_clock::now|system_clock|#include <(sys|net|linux)/' src/ethercat; then echo "the machines of ethercat know no clock and no socket"; bad=1; fi
 
 # What is in commands/ is a command, or the list of them.
 for file in commands/*; do
