@@ -107,7 +107,7 @@ std::optional<ByteSpan> Ring::take_frame(TimePoint now) {
   FrameWriter writer(buffer_, options_.source);
   flights_[*flight] = {0, now};
   pack(writer, urgent_, *flight, now);
-  if (urgent_.empty()) pack(writer, waiting_, *flight, now);
+  pack(writer, waiting_, *flight, now);
   ++flying_;
   ++statistics_.sent;
   return writer.finish();
