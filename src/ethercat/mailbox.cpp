@@ -1,6 +1,5 @@
 #include "ethercat/mailbox.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <utility>
 
@@ -264,13 +263,8 @@ void Mailbox::count(const MailboxView& message) {
 }
 
 void Mailbox::give_up(std::string what, std::string hint) {
-  Error error;
-  error.code = Errc::timeout;
-  error.message = fmt::format("node {}: {}", node_, what);
-  error.hint = std::move(hint);
-  error.node = node_;
   out_.reset();
-  events_.push_back(std::move(error));
+  events_.push_back(Failure{Errc::timeout, std::move(what), std::move(hint)});
 }
 
 std::optional<Mailbox::Event> Mailbox::take_event() {

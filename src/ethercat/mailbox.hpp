@@ -50,7 +50,13 @@ class Mailbox {
   struct Refusal {
     std::uint16_t detail = 0;  ///< See mailbox_error_text().
   };
-  using Event = std::variant<Bytes, Refusal, Error>;  ///< A CoE message, a refusal, or it could not be sent.
+  /// It could not be sent.
+  struct Failure {
+    Errc code = Errc::timeout;
+    std::string what;  ///< A phrase that goes behind the name of the node.
+    std::string hint;
+  };
+  using Event = std::variant<Bytes, Refusal, Failure>;  ///< Bytes: a CoE message.
 
   /// `node` 1..127 is for messages.
   Mailbox(std::uint8_t node, SlaveAddress slave, const Options& options);
@@ -59,7 +65,7 @@ class Mailbox {
   void start(TimePoint now);
 
   /// Hands a CoE message over, at most max_message() bytes. One that waits to be written is replaced. When
-  /// SM0 is not free by `until` an Error comes out.
+  /// SM0 is not free by `until` a Failure comes out.
   void send(Bytes message, TimePoint until, TimePoint now);
   /// What waits to be written is not.
   void cancel() { out_.reset(); }

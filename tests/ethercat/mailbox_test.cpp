@@ -58,7 +58,7 @@ class MailboxTest : public testing::Test {
     if (const auto* bytes = std::get_if<Bytes>(&*event)) return to_hex(*bytes, "");
     if (const auto* refusal = std::get_if<Mailbox::Refusal>(&*event))
       return "refused: " + mailbox_error_text(refusal->detail);
-    return std::get<Error>(*event).message;
+    return std::get<Mailbox::Failure>(*event).what;
   }
   /// The nth frame of this kind is lost.
   void lose(Command command, std::uint16_t where, Loss how, int times = 1) {
@@ -142,7 +142,7 @@ TEST_F(MailboxTest, AMailboxThatStaysFullIsTold) {
   run_for(299ms);
   EXPECT_EQ(came(), "nothing");
   run_for(3ms);
-  EXPECT_EQ(came(), "node 4: its mailbox stays full");
+  EXPECT_EQ(came(), "its mailbox stays full");
   EXPECT_FALSE(mailbox.sending());
 }
 
@@ -328,7 +328,7 @@ TEST_F(MailboxTest, ASlaveThatIsGoneIsToldToWhoSends) {
   mailbox.start(now);
   send("0020AA", 100ms);
   run_for(105ms);
-  EXPECT_EQ(came(), "node 4: it does not answer at all");
+  EXPECT_EQ(came(), "it does not answer at all");
   mailbox.listen(false, now);
   frames = 0;
   run_for(1s);
