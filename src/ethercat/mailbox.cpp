@@ -52,6 +52,11 @@ void Mailbox::send(Bytes message, TimePoint until, TimePoint now) {
   if (!under_way_) proceed(now);
 }
 
+void Mailbox::cancel() {
+  out_.reset();
+  cancelled_ = writing_.has_value();
+}
+
 void Mailbox::listen(bool yes, TimePoint now) {
   if (std::exchange(listening_, yes) == yes) return;
   waiting_since_ = now;
@@ -103,6 +108,7 @@ std::optional<Request> Mailbox::take_request() {
     case State::write:
       free_ = false;
       writing_ = std::exchange(out_, std::nullopt);
+      cancelled_ = false;
       return write_once(slave_, place.out_start,
                         mailbox_bytes(MailboxType::coe, counter_, writing_->message, place.out_size));
   }
@@ -200,7 +206,7 @@ void Mailbox::on_written(const Answer& answer, TimePoint now) {
     return proceed(now);
   }
   // Full, or gone: nothing was written. Unless another message has taken its place it is tried again.
-  if (!out_) out_ = std::move(writing_);
+  if (!out_ && !cancelled_) out_ = std::move(writing_);
   writing_.reset();
   pause_and_look(now);
 }

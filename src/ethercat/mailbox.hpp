@@ -67,8 +67,8 @@ class Mailbox {
   /// Hands a CoE message over, at most max_message() bytes. One that waits to be written is replaced. When
   /// SM0 is not free by `until` a Failure comes out.
   void send(Bytes message, TimePoint until, TimePoint now);
-  /// What waits to be written is not.
-  void cancel() { out_.reset(); }
+  /// What waits to be written is not, and what the slave has not taken is not tried again.
+  void cancel();
   /// Whether somebody waits for an answer: SM1 is looked at again and again.
   void listen(bool yes, TimePoint now);
 
@@ -126,6 +126,7 @@ class Mailbox {
   std::optional<Outgoing> out_;      ///< Waits to be written.
   std::optional<Outgoing> writing_;  ///< Was given to the wire.
   bool in_doubt_ = false;            ///< The frame that wrote it is lost.
+  bool cancelled_ = false;           ///< Nobody wants it any more.
   TimePoint waiting_since_;
   TimePoint deadline_ = kNever;
   Bytes last_;             ///< The message read last, with its header.
