@@ -1,0 +1,61 @@
+#include "ethercat/coe_slave.hpp"
+
+#include <utility>
+#include <variant>
+
+namespace servoctl::ethercat {
+
+void CoeSlave::serve(Ring& ring, TimePoint now) {
+  do {
+    take_events(now);
+    hand_over(now);
+    mailbox_.listen(client_.busy() || info_.busy(), now);
+  } while (carrier_.serve(mailbox_, ring, now));
+}
+
+void CoeSlave::take_events(TimePoint now) {
+  while (const auto event = mailbox_.take_event()) {
+    if (const auto* message = std::get_if<Bytes>(&*event)) {
+      client_.on_message(*message, now);
+      info_.on_message(*message, now);
+    } else if (const auto* refusal = std::get_if<Mailbox::Refusal>(&*event)) {
+      client_.on_refusal(refusal->detail);
+      info_.on_refusal(refusal->detail);
+    } else if (const auto* failure = std::get_if<Mailbox::Failure>(&*event)) {
+      client_.on_failure(failure->code, failure->what, failure->hint);
+      info_.on_failure(failure->code, failure->what, failure->hint);
+    }
+    drop_what_is_over();
+  }
+}
+
+/// A request that nobody waits for any more must not be done later on.
+void CoeSlave::drop_what_is_over() {
+  const bool over = (owner_ == Owner::client && !client_.busy()) || (owner_ == Owner::info && !info_.busy());
+  if (!over) return;
+  owner_ = Owner::nobody;
+  mailbox_.cancel();
+}
+
+/// One message at a time. The mailbox gives up a little before who waits for the answer does, and knows
+/// better why.
+void CoeSlave::hand_over(TimePoint now) {
+  if (mailbox_.sending()) return;
+  if (auto message = client_.take_message()) {
+    owner_ = client_.busy() ? Owner::client : Owner::nobody;
+    return mailbox_.send(std::move(*message), now + client_.timeout() * 9 / 10, now);
+  }
+  if (auto message = info_.take_message()) {
+    owner_ = info_.busy() ? Owner::info : Owner::nobody;
+    mailbox_.send(std::move(*message), now + info_.timeout() * 9 / 10, now);
+  }
+}
+
+void CoeSlave::on_time(TimePoint now) {
+  mailbox_.on_time(now);
+  client_.on_time(now);
+  info_.on_time(now);
+  drop_what_is_over();
+}
+
+}  // namespace servoctl::ethercat
