@@ -35,6 +35,7 @@ void CoeClient::begin(ObjectAddress object, Transfer transfer) {
   offset_ = 0;
   announced_.reset();
   toggle_ = 0;
+  other_.reset();
   if (transfer == Transfer::block)
     finish(
         fail(error(Errc::usage, "there are no block transfers over EtherCAT", "leave --transfer block out")));
@@ -104,7 +105,7 @@ void CoeClient::on_upload_initiate(ByteSpan message, TimePoint now) {
   if (message.size() < kInitiate)
     return abort(sdo_abort::kCommand, Errc::protocol,
                  fmt::format("its answer has {} bytes instead of {}", message.size(), kInitiate));
-  if (sdo_object(message) != object_) return;
+  if (sdo_object(message) != object_ || is_late(message)) return;
   if (specifier(message) != 0x40)
     return abort(sdo_abort::kCommand, Errc::protocol,
                  fmt::format("it answered a read with command 0x{:02X}", command(message)));
@@ -161,7 +162,7 @@ void CoeClient::on_download_initiate(ByteSpan message, TimePoint now) {
   if (message.size() < kInitiate)
     return abort(sdo_abort::kCommand, Errc::protocol,
                  fmt::format("its answer has {} bytes instead of {}", message.size(), kInitiate));
-  if (sdo_object(message) != object_) return;
+  if (sdo_object(message) != object_ || is_late(message)) return;
   if (specifier(message) != 0x60)
     return abort(sdo_abort::kCommand, Errc::protocol,
                  fmt::format("it answered a write with command 0x{:02X}", command(message)));
@@ -180,6 +181,14 @@ void CoeClient::on_download_segment(ByteSpan message, TimePoint now) {
   if (offset_ == data_.size()) return finish(Bytes{});
   toggle_ ^= kToggleBit;
   send_segment(now);
+}
+
+/// A read answered as a write, or the other way round: the answer to an earlier request for the same object.
+bool CoeClient::is_late(ByteSpan message) {
+  const auto other = state_ == State::upload_initiate ? 0x60U : 0x40U;
+  if (specifier(message) != other) return false;
+  other_ = command(message);
+  return true;
 }
 
 void CoeClient::request_segment(TimePoint now) {
@@ -215,7 +224,9 @@ void CoeClient::on_failure(Errc code, std::string what, std::string hint) {
 void CoeClient::on_time(TimePoint now) {
   if (state_ == State::idle || now < deadline_) return;
   const auto waited = std::chrono::duration_cast<std::chrono::milliseconds>(timeout_).count();
-  abort(sdo_abort::kTimeout, Errc::timeout, fmt::format("no answer within {} ms", waited));
+  abort(sdo_abort::kTimeout, Errc::timeout,
+        fmt::format("no answer within {} ms{}", waited,
+                    other_ ? fmt::format(", only one of another kind (command 0x{:02X})", *other_) : ""));
 }
 
 void CoeClient::send(Bytes message, State next, TimePoint now) {

@@ -48,7 +48,8 @@ class CoeClient {
   void on_failure(Errc code, std::string what, std::string hint);
   void on_time(TimePoint now);
 
-  std::optional<Bytes> take_message();  ///< The next message to send, if any.
+  bool may_send() const { return tx_.has_value(); }  ///< Whether take_message() gives one.
+  std::optional<Bytes> take_message();               ///< The next message to send, if any.
   std::optional<Result<Bytes>>
   take_result();  ///< Set once, when the transfer has ended; empty bytes after a download.
   TimePoint deadline() const { return deadline_; }
@@ -79,6 +80,7 @@ class CoeClient {
   void send(Bytes message, State next, TimePoint now);
   void abort(std::uint32_t code, Errc errc, std::string why, std::string hint = {});
   void finish(Result<Bytes> result);
+  bool is_late(ByteSpan message);
   Error error(Errc code, std::string message, std::string hint = {}) const;
 
   std::uint8_t node_;
@@ -91,6 +93,7 @@ class CoeClient {
   std::size_t offset_ = 0;
   std::optional<std::size_t> announced_;
   std::uint8_t toggle_ = 0;
+  std::optional<std::uint8_t> other_;  ///< Command of an answer that was for another request.
   TimePoint deadline_ = kNever;
   std::optional<Bytes> tx_;
   std::optional<Result<Bytes>> result_;

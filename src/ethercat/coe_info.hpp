@@ -64,6 +64,7 @@ class CoeInfo {
   void on_failure(Errc code, std::string what, std::string hint);
   void on_time(TimePoint now);
 
+  bool may_send() const { return tx_.has_value(); }  ///< Whether take_message() gives one.
   std::optional<Bytes> take_message();
   /// Set once: what was asked for. Errc::sdo_abort with the code of the slave, timeout or protocol else.
   std::optional<Result<Description>> take_result();

@@ -15,9 +15,12 @@ void CoeSlave::serve(Ring& ring, TimePoint now) {
 
 void CoeSlave::take_events(TimePoint now) {
   while (const auto event = mailbox_.take_event()) {
-    if (const auto* message = std::get_if<Bytes>(&*event)) {
-      client_.on_message(*message, now);
-      info_.on_message(*message, now);
+    if (const auto* message = std::get_if<Mailbox::Message>(&*event)) {
+      // Whose request is not written yet has no answer.
+      const bool for_client = !client_.may_send() && !(message->early && owner_ == Owner::client);
+      const bool for_info = !info_.may_send() && !(message->early && owner_ == Owner::info);
+      if (for_client) client_.on_message(message->data, now);
+      if (for_info) info_.on_message(message->data, now);
     } else if (const auto* refusal = std::get_if<Mailbox::Refusal>(&*event)) {
       client_.on_refusal(refusal->detail);
       info_.on_refusal(refusal->detail);

@@ -32,6 +32,7 @@ Mailbox::Mailbox(std::uint8_t node, SlaveAddress slave, const Options& options)
 void Mailbox::start(TimePoint now) {
   draining_ = true;
   free_ = false;
+  answered_ = false;
   counts_ = false;
   repeated_ = false;
   skipped_ = false;
@@ -49,7 +50,7 @@ void Mailbox::start(TimePoint now) {
 void Mailbox::send(Bytes message, TimePoint until, TimePoint now) {
   out_ = {std::move(message), until};
   waiting_since_ = now;
-  if (!under_way_) proceed(now);
+  look_about(now);
 }
 
 void Mailbox::cancel() {
@@ -60,7 +61,13 @@ void Mailbox::cancel() {
 void Mailbox::listen(bool yes, TimePoint now) {
   if (std::exchange(listening_, yes) == yes) return;
   waiting_since_ = now;
-  if (!under_way_) proceed(now);
+  look_about(now);
+}
+
+/// Something has changed. What is in SM1 is read before anything else.
+void Mailbox::look_about(TimePoint now) {
+  const bool about_to_read = asking_ && state_ == State::read;
+  if (!under_way_ && !about_to_read) proceed(now);
 }
 
 void Mailbox::go(State state, TimePoint now, Duration pause) {
@@ -74,10 +81,11 @@ void Mailbox::on_time(TimePoint now) {
   go(State::look, now);
 }
 
-/// What is to be done next, when nothing is under way.
+/// What is to be done next, when nothing is under way. Unless the last message was answered SM1 is looked at
+/// before the next is written: what is in it then does not answer that.
 void Mailbox::proceed(TimePoint now) {
   const bool settled = !draining_ && !in_doubt_ && recovery_ == Recovery::none;
-  if (out_ && free_ && settled) return go(State::write, now);
+  if (out_ && free_ && settled && answered_) return go(State::write, now);
   if (out_ || listening_ || !settled) return go(State::look, now);
   asking_ = false;
   state_ = State::idle;
@@ -159,6 +167,7 @@ void Mailbox::settle_doubt(TimePoint now) {
 
 void Mailbox::count_sent(TimePoint now) {
   ++statistics_.sent;
+  answered_ = false;
   writing_.reset();
   counter_ = next_mailbox_counter(counter_);
   waiting_since_ = now;
@@ -245,10 +254,11 @@ void Mailbox::take_in(ByteSpan mailbox) {
     ++statistics_.left_behind;
     return;
   }
+  answered_ = true;
   if (message->type == MailboxType::error && message->data.size() >= 4)
     events_.push_back(Refusal{static_cast<std::uint16_t>(load_le(message->data.subspan(2, 2)))});
   else if (message->type == MailboxType::coe)
-    events_.push_back(Bytes(message->data.begin(), message->data.end()));
+    events_.push_back(Message{Bytes(message->data.begin(), message->data.end()), out_.has_value()});
   else
     ++statistics_.foreign;
   if (events_.size() > kKept) events_.pop_front();

@@ -56,7 +56,12 @@ class Mailbox {
     std::string what;  ///< A phrase that goes behind the name of the node.
     std::string hint;
   };
-  using Event = std::variant<Bytes, Refusal, Failure>;  ///< Bytes: a CoE message.
+  /// A CoE message came.
+  struct Message {
+    Bytes data;
+    bool early = false;  ///< Something waited to be written then: whatever this answers, it is not that.
+  };
+  using Event = std::variant<Message, Refusal, Failure>;
 
   /// `node` 1..127 is for messages.
   Mailbox(std::uint8_t node, SlaveAddress slave, const Options& options);
@@ -95,6 +100,7 @@ class Mailbox {
 
   void go(State state, TimePoint now, Duration pause = Duration{});
   void proceed(TimePoint now);
+  void look_about(TimePoint now);
   void pause_and_look(TimePoint now);
   void on_looked(ByteSpan status, TimePoint now);
   bool recover(ByteSpan status, TimePoint now);
@@ -118,7 +124,8 @@ class Mailbox {
   bool under_way_ = false;  ///< It was taken, and is not answered.
   bool draining_ = true;    ///< What comes was left by somebody else.
   bool listening_ = false;
-  bool free_ = false;  ///< SM0 was empty when it was looked at last, and nothing was written since.
+  bool free_ = false;      ///< SM0 was empty when it was looked at last, and nothing was written since.
+  bool answered_ = false;  ///< Something came since the last message was written.
   Recovery recovery_ = Recovery::none;
   TimePoint recovery_until_;
   std::uint8_t activate_ = 0;  ///< Of SM1, as it was read last.

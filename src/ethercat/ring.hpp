@@ -111,22 +111,21 @@ class Ring {
 class Carrier {
  public:
   /// To be called whenever the machine may have something to ask, and after each frame and each on_time() of
-  /// the ring. True when there was something to do.
+  /// the ring, again while it is true: there was something to do.
   template <class Machine>
   bool serve(Machine& machine, Ring& ring, TimePoint now) {
-    bool busy = false;
     if (ticket_) {
       const auto answer = ring.take_answer(*ticket_);
       if (!answer) return false;
       ticket_.reset();
       machine.on_answer(*answer, now);
-      busy = true;
+      return true;  // What came of it may change what the machine asks next.
     }
     if (!request_) request_ = machine.take_request();
-    if (!request_) return busy;
+    if (!request_) return false;
     ticket_ = ring.post(*request_);
     if (ticket_) request_.reset();
-    return true;
+    return ticket_.has_value();
   }
   /// The machine is about to go: what comes back is nobody's.
   void leave(Ring& ring) {

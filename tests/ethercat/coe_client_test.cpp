@@ -234,6 +234,17 @@ TEST_F(CoeClientTest, IgnoresAFirstAnswerThatComesTwice) {
   EXPECT_EQ(data(), "");
 }
 
+TEST_F(CoeClientTest, TheLateAnswerToARequestOfTheOtherKindIsNotThatOfThisOne) {
+  upload({0x6060, 0}, {"> 00204060600000000000", "< 00306060600000000000", "< 00304F60600003000000"});
+  EXPECT_EQ(data(), "03");
+  download({0x6060, 0}, {3}, {"> 00202F60600003000000", "< 00304F60600001000000", "< 00306060600000000000"});
+  EXPECT_EQ(data(), "");
+  upload({0x6060, 0},
+         {"> 00204060600000000000", "< 00306060600000000000", "+ 500ms", "> 00208060600000000405"});
+  expect_failure(Errc::timeout,
+                 "node 2, object 0x6060:0: no answer within 500 ms, only one of another kind (command 0x60)");
+}
+
 TEST_F(CoeClientTest, AbortsWhenTheToggleBitDoesNotAlternate) {
   upload({0x1008, 0}, {"> 00204008100000000000", "< 0030410810001A000000", "> 00206000000000000000",
                        "< 003010 01020304050607", "> 00208008100000000305"});
@@ -245,10 +256,10 @@ TEST_F(CoeClientTest, AbortsWhenTheToggleBitDoesNotAlternate) {
 }
 
 TEST_F(CoeClientTest, AbortsOnAnAnswerThatIsNone) {
-  upload({0x1018, 1}, {"> 00204018100100000000", "< 00306018100100000000", "> 00208018100101000405"});
-  expect_failure(Errc::protocol, "node 2, object 0x1018:1: it answered a read with command 0x60");
-  download({0x1018, 1}, {1}, {"> 00202F18100101000000", "< 00304318100100000000", "> 00208018100101000405"});
-  expect_failure(Errc::protocol, "node 2, object 0x1018:1: it answered a write with command 0x43");
+  upload({0x1018, 1}, {"> 00204018100100000000", "< 00302018100100000000", "> 00208018100101000405"});
+  expect_failure(Errc::protocol, "node 2, object 0x1018:1: it answered a read with command 0x20");
+  download({0x1018, 1}, {1}, {"> 00202F18100101000000", "< 0030A018100100000000", "> 00208018100101000405"});
+  expect_failure(Errc::protocol, "node 2, object 0x1018:1: it answered a write with command 0xA0");
   upload({0x1018, 1}, {"> 00204018100100000000", "< 0030431810", "> 00208018100101000405"});
   expect_failure(Errc::protocol, "node 2, object 0x1018:1: its answer has 5 bytes instead of 10");
   upload({0x1008, 0}, {"> 00204008100000000000", "< 00304108100008000000", "> 00206000000000000000",

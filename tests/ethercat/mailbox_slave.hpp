@@ -65,18 +65,24 @@ class MailboxSlave {
   }
   TimePoint next() const { return in_ && !stuck ? ready_ : kNever; }
 
+  /// One datagram passes; data() has what it brings back. The working counter that it comes back with.
+  std::uint16_t process(const Request& request, TimePoint now) {
+    return gone ? std::uint16_t{0} : pass(request, now);
+  }
+  ByteSpan data() const { return reply_; }
+
   /// One frame with one datagram, there and back.
   Answer answer(const Request& request, TimePoint now) {
     run(now);
     const auto how = loss ? loss(request) : Loss::none;
     if (how == Loss::on_the_way_out) return {{}, 0, true, now};
-    const auto counter = gone ? std::uint16_t{0} : process(request, now);
+    const auto counter = process(request, now);
     if (how == Loss::on_the_way_back) return {{}, 0, true, now};
     return {reply_, counter, false, now};
   }
 
  private:
-  std::uint16_t process(const Request& request, TimePoint now) {
+  std::uint16_t pass(const Request& request, TimePoint now) {
     const auto where = static_cast<std::uint16_t>(request.address >> 16U);
     const auto size = request.data.size();
     reply_ = request.data;

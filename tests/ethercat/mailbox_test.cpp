@@ -55,7 +55,8 @@ class MailboxTest : public testing::Test {
   std::string came() {
     const auto event = mailbox.take_event();
     if (!event) return "nothing";
-    if (const auto* bytes = std::get_if<Bytes>(&*event)) return to_hex(*bytes, "");
+    if (const auto* message = std::get_if<Mailbox::Message>(&*event))
+      return to_hex(message->data, "") + (message->early ? " early" : "");
     if (const auto* refusal = std::get_if<Mailbox::Refusal>(&*event))
       return "refused: " + mailbox_error_text(refusal->detail);
     return std::get<Mailbox::Failure>(*event).what;
@@ -130,7 +131,7 @@ TEST_F(MailboxTest, AFullMailboxIsWaitedFor) {
   run_for(50ms);
   EXPECT_EQ(slave.written.size(), 1U);
   run_for(300ms);
-  EXPECT_EQ(came(), "0020AA");
+  EXPECT_EQ(came(), "0020AA early") << "no answer to the second: that was not written yet";
   EXPECT_EQ(came(), "0020BB");
 }
 
@@ -154,10 +155,10 @@ TEST_F(MailboxTest, ASlaveThatWaitsForItsOwnMessageToBeReadGetsThat) {
   slave.reply(3, hex("0030CC"));
   send("0020BB");
   run_for(5ms);
-  EXPECT_EQ(came(), "0030CC");
+  EXPECT_EQ(came(), "0030CC early");
   slave.stuck = false;
   run_for(5ms);
-  EXPECT_EQ(came(), "0020AA");
+  EXPECT_EQ(came(), "0020AA early");
   EXPECT_EQ(came(), "0020BB");
 }
 

@@ -255,6 +255,7 @@ TEST_F(RingTest, ACarrierTakesRequestsOfAMachineOneByOne) {
     EXPECT_EQ(datagrams(*frame).size(), 1U);
     EXPECT_FALSE(carrier.serve(machine, ring, now)) << "while one is under way";
     ring.on_frame(answered(*frame, 7), now);
+    EXPECT_TRUE(carrier.serve(machine, ring, now)) << "the answer";
   }
   EXPECT_EQ(machine.counters, (std::vector<std::uint16_t>{7, 7, 7}));
   machine.left = 1;
