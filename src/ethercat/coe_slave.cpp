@@ -14,21 +14,24 @@ void CoeSlave::serve(Ring& ring, TimePoint now) {
 }
 
 void CoeSlave::take_events(TimePoint now) {
+  // Whose request is not written yet has no answer.
+  const auto for_client = [&](bool early) {
+    return !client_.may_send() && !(early && owner_ == Owner::client);
+  };
+  const auto for_info = [&](bool early) { return !info_.may_send() && !(early && owner_ == Owner::info); };
   while (const auto event = mailbox_.take_event()) {
     if (const auto* message = std::get_if<Mailbox::Message>(&*event)) {
-      // Whose request is not written yet has no answer.
-      const bool for_client = !client_.may_send() && !(message->early && owner_ == Owner::client);
-      const bool for_info = !info_.may_send() && !(message->early && owner_ == Owner::info);
-      if (for_client) client_.on_message(message->data, now);
-      if (for_info) info_.on_message(message->data, now);
+      if (for_client(message->early)) client_.on_message(message->data, now);
+      if (for_info(message->early)) info_.on_message(message->data, now);
     } else if (const auto* refusal = std::get_if<Mailbox::Refusal>(&*event)) {
-      client_.on_refusal(refusal->detail);
-      info_.on_refusal(refusal->detail);
+      // It does not say whose message it is about: that of the last one.
+      if (owner_ != Owner::info && for_client(refusal->early)) client_.on_refusal(refusal->detail);
+      if (owner_ != Owner::client && for_info(refusal->early)) info_.on_refusal(refusal->detail);
     } else if (const auto* failure = std::get_if<Mailbox::Failure>(&*event)) {
-      client_.on_failure(failure->code, failure->what, failure->hint);
-      info_.on_failure(failure->code, failure->what, failure->hint);
+      if (owner_ == Owner::client) client_.on_failure(failure->code, failure->what, failure->hint);
+      if (owner_ == Owner::info) info_.on_failure(failure->code, failure->what, failure->hint);
+      owner_ = Owner::nobody;
     }
-    drop_what_is_over();
   }
 }
 

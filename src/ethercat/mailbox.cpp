@@ -256,7 +256,8 @@ void Mailbox::take_in(ByteSpan mailbox) {
   }
   answered_ = true;
   if (message->type == MailboxType::error && message->data.size() >= 4)
-    events_.push_back(Refusal{static_cast<std::uint16_t>(load_le(message->data.subspan(2, 2)))});
+    events_.push_back(
+        Refusal{static_cast<std::uint16_t>(load_le(message->data.subspan(2, 2))), out_.has_value()});
   else if (message->type == MailboxType::coe)
     events_.push_back(Message{Bytes(message->data.begin(), message->data.end()), out_.has_value()});
   else

@@ -49,6 +49,7 @@ class Mailbox {
   /// The slave did not like a message.
   struct Refusal {
     std::uint16_t detail = 0;  ///< See mailbox_error_text().
+    bool early = false;        ///< As in Message.
   };
   /// It could not be sent.
   struct Failure {

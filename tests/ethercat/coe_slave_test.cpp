@@ -17,11 +17,11 @@ constexpr ObjectAddress kObject{0x2000, 1};
 
 /// One slave with a mailbox and a server at the end of a wire, and what drives it. Time is virtual.
 struct Wire {
-  Wire(std::uint16_t out_size, std::uint16_t in_size)
+  Wire(std::uint16_t out_size, std::uint16_t in_size, Duration timeout = 500ms)
       : place{0x1000, out_size, 0x1800, in_size},
         box(place),
         server(box, in_size),
-        slave(7, SlaveAddress::station(0x1007), Mailbox::Options{place, 3}, 500ms) {
+        slave(7, SlaveAddress::station(0x1007), Mailbox::Options{place, 3}, timeout) {
     slave.mailbox().start(now);
   }
 
@@ -160,6 +160,39 @@ TEST(CoeSlave, TheAnswerToAnEarlierWriteDoesNotSayThatThisOneIsDone) {
   ASSERT_FALSE(second) << "it was refused: the answer to the first lay in the mailbox";
   EXPECT_EQ(second.error().abort_code, 0x0800'0022U);
   EXPECT_EQ(wire.server.objects[std::pair(0x2000U, 1U)], Bytes{1});
+}
+
+TEST(CoeSlave, AnAnswerThatCameAfterItsTimeIsNotThatOfTheNextRequest) {
+  Wire wire(64, 64);
+  auto coe = wire.box.handler;
+  wire.box.handler = [](std::uint8_t, const Bytes&) {};
+  ASSERT_FALSE(wire.write({1}));
+  wire.settle();
+  wire.box.handler = coe;
+  wire.server.refuses = 0x0800'0022;
+  wire.box.reply(3, hex("0030 60 002001 00000000"));
+  const auto second = wire.write({2});
+  ASSERT_FALSE(second);
+  EXPECT_EQ(second.error().abort_code, 0x0800'0022U);
+}
+
+TEST(CoeSlave, ARequestThatTimedOutInFrontOfAFullMailboxIsNotWrittenWhenThatIsFree) {
+  Wire wire(64, 64, 100ms);
+  wire.box.stuck = true;
+  ASSERT_FALSE(wire.write({1}));
+  const auto begin = wire.now;
+  wire.slave.client().start_download(kObject, {2}, wire.now);
+  while (wire.now < begin + 85ms) wire.step();
+  // The look that would have ended the wait in time is lost; the next finds the mailbox free.
+  wire.lost_out.insert(wire.frames);
+  wire.lost_out.insert(wire.frames + 1);
+  while (wire.now < begin + 95ms) wire.step();
+  wire.box.stuck = false;
+  const auto second = wire.finish();
+  ASSERT_FALSE(second);
+  EXPECT_EQ(second.error().code, Errc::timeout);
+  wire.settle();
+  EXPECT_EQ(wire.server.written, (std::vector<Bytes>{{1}}));
 }
 
 TEST(CoeSlave, AnAbandonedTransferIsAbortedAtTheSlave) {
