@@ -1,5 +1,6 @@
 #include "ethercat/coe_slave.hpp"
 
+#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include <random>

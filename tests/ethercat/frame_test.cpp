@@ -1,5 +1,6 @@
 #include "ethercat/frame.hpp"
 
+#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include "ethercat/registers.hpp"

@@ -58,7 +58,7 @@ class MailboxSlave {
     const auto number = box[5] >> 4U & 7U;
     if (drops_doubles && number != 0 && number == last_number_) return;
     last_number_ = number;
-    const std::size_t size = box[0] | box[1] << 8U;
+    const auto size = static_cast<std::size_t>(box[0] | box[1] << 8U);
     ASSERT_LE(size + 6, box.size());
     if (handler)
       handler(box[5] & 0x0FU, Bytes(box.begin() + 6, box.begin() + 6 + static_cast<std::ptrdiff_t>(size)));

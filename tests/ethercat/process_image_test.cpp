@@ -1,5 +1,6 @@
 #include "ethercat/process_image.hpp"
 
+#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include <deque>
@@ -349,7 +350,7 @@ RC_GTEST_PROP(BitField, WhatIsWrittenIsReadAndNothingElseChanges, ()) {
     RC_ASSERT(bit(image, i) == (inside ? bit(value, i - at) : bit(before, i)));
     if (inside) RC_ASSERT(bit(read, i - at) == bit(value, i - at));
   }
-  if (bits % 8 != 0) RC_ASSERT(read.back() >> bits % 8 == 0);
+  if (bits % 8 != 0) RC_ASSERT((read.back() >> bits % 8) == 0);
 }
 
 }  // namespace

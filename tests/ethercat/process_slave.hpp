@@ -40,7 +40,7 @@ class ProcessSlave {
     std::copy_n(from, size, to);
     return 1;
   }
-  unsigned word(std::size_t at) const { return memory[at] | memory[at + 1] << 8; }
+  unsigned word(std::size_t at) const { return static_cast<unsigned>(memory[at] | memory[at + 1] << 8); }
   /// The part of a logical range that the FMMU of this type maps, if a sync manager stands behind it.
   Window window(unsigned type, std::uint32_t address, std::size_t size) const {
     for (std::size_t at = 0x0600; at < 0x0640; at += 16) {

@@ -1,5 +1,6 @@
 #include "ethercat/sii_image.hpp"
 
+#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include "sii_images.hpp"
