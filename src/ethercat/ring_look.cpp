@@ -1,0 +1,127 @@
+#include "ethercat/ring_look.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <utility>
+
+#include "ethercat/registers.hpp"
+
+namespace servoctl::ethercat {
+namespace {
+
+constexpr std::size_t kMost = 127;
+constexpr std::size_t kIdentitySize = 20;
+constexpr std::size_t kErrorsSize = 20;
+
+std::uint8_t byte(ByteSpan bytes, std::size_t at) { return at < bytes.size() ? bytes[at] : std::uint8_t{0}; }
+std::uint16_t word(ByteSpan bytes, std::size_t at) {
+  return static_cast<std::uint16_t>(byte(bytes, at) | byte(bytes, at + 1) << 8U);
+}
+
+}  // namespace
+
+SlaveLook parse_slave_look(ByteSpan identity, ByteSpan dl_status, ByteSpan al_status, ByteSpan errors) {
+  SlaveLook out;
+  out.type = byte(identity, reg::kType);
+  out.revision = byte(identity, reg::kType + 1);
+  out.fmmus = byte(identity, reg::kFmmuCount);
+  out.sync_managers = byte(identity, reg::kSyncManagers);
+  out.features = word(identity, reg::kFeatures);
+  out.station = word(identity, reg::kStationAddress);
+  out.alias = word(identity, reg::kStationAlias);
+  out.al = parse_al_status(al_status);
+  const auto dl = word(dl_status, 0);
+  const auto at = [](std::uint16_t where) { return static_cast<std::size_t>(where - reg::kErrorCounters); };
+  for (unsigned port = 0; port < 4; ++port) {
+    auto& look = out.ports[port];
+    look.link = (dl & reg::dl_link(port)) != 0;
+    look.open = (dl & reg::dl_loop(port)) == 0;
+    look.signal = (dl & reg::dl_signal(port)) != 0;
+    look.bad_frames = byte(errors, at(reg::kRxErrors) + 2 * port);
+    look.bad_symbols = byte(errors, at(reg::kRxErrors) + 2 * port + 1);
+    look.forwarded = byte(errors, at(reg::kForwardedErrors) + port);
+    look.lost_links = byte(errors, at(reg::kLostLinks) + port);
+  }
+  out.bad_commands = byte(errors, at(reg::kProcessingErrors));
+  out.pdi_errors = byte(errors, at(reg::kPdiErrors));
+  return out;
+}
+
+bool RingLook::View::is_in_use() const {
+  return std::any_of(slaves.begin(), slaves.end(), [](const SlaveLook& slave) {
+    return slave.al.state == AlState::safeop || slave.al.state == AlState::op;
+  });
+}
+
+void RingLook::start(TimePoint) {
+  view_ = {};
+  result_.reset();
+  go(State::count);
+}
+
+void RingLook::go(State state) {
+  state_ = state;
+  asking_ = true;
+}
+
+std::optional<Request> RingLook::take_request() {
+  if (!std::exchange(asking_, false)) return std::nullopt;
+  switch (state_) {
+    case State::idle: return std::nullopt;
+    case State::count: return Request{Command::brd, physical_address(0, reg::kType), Bytes(2), true};
+    case State::identity: return read_registers(present(), reg::kType, kIdentitySize);
+    case State::dl_status: return read_registers(present(), reg::kDlStatus, 2);
+    case State::al_status: return read_registers(present(), reg::kAlStatus, reg::kAlStatusSize);
+    case State::errors: return read_registers(present(), reg::kErrorCounters, kErrorsSize);
+  }
+  return std::nullopt;
+}
+
+void RingLook::on_answer(const Answer& answer, TimePoint) {
+  if (state_ == State::idle) return;
+  if (state_ == State::count) return on_counted(answer);
+  if (!answer.done()) {
+    const auto position = view_.slaves.size() + 1;
+    auto gone =
+        fail(Errc::timeout, fmt::format("the slave at position {} does not answer any more", position),
+             "was a cable pulled, or its supply switched off, just now? Look again");
+    gone.value().node = static_cast<std::uint8_t>(position);
+    return finish(std::move(gone));
+  }
+  switch (state_) {
+    case State::identity:
+      read_[0].assign(answer.data.begin(), answer.data.end());
+      return go(State::dl_status);
+    case State::dl_status:
+      read_[1].assign(answer.data.begin(), answer.data.end());
+      return go(State::al_status);
+    case State::al_status: read_[2].assign(answer.data.begin(), answer.data.end()); return go(State::errors);
+    default: break;
+  }
+  view_.slaves.push_back(parse_slave_look(read_[0], read_[1], read_[2], answer.data));
+  if (view_.slaves.size() == std::min(view_.count, kMost)) return finish(std::move(view_));
+  go(State::identity);
+}
+
+void RingLook::on_counted(const Answer& answer) {
+  if (answer.lost)
+    return finish(fail(
+        Errc::bus, "no frame comes back from the wire",
+        "is this the right interface, is a cable plugged in, and does it lead to the first drive's IN port "
+        "without a switch in between?"));
+  if (answer.working_counter == 0)
+    return finish(fail(Errc::bus, "frames come back, and no slave has touched them",
+                       "a cable that leads back, or a switch, is not an EtherCAT slave"));
+  view_.count = answer.working_counter;
+  go(State::identity);
+}
+
+void RingLook::finish(Result<View> result) {
+  state_ = State::idle;
+  asking_ = false;
+  result_ = std::move(result);
+}
+
+std::optional<Result<RingLook::View>> RingLook::take_result() { return std::exchange(result_, std::nullopt); }
+
+}  // namespace servoctl::ethercat
