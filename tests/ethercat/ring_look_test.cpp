@@ -100,6 +100,17 @@ TEST_F(RingLookTest, PortsAndTheirCountersAreTold) {
   EXPECT_EQ(view->slaves[0].pdi_errors, 14);
 }
 
+TEST_F(RingLookTest, TheEndOfALineIsWhereThePortsSayIt) {
+  // Two boards in a row in dumps/soem-dual-lan9252.pcapng of ethercrab (MIT or Apache-2.0), frames 144 and
+  // 338.
+  const auto first = parse_slave_look({}, hex("375A"), {}, {});
+  EXPECT_TRUE(first.ports[0].open && first.ports[1].open);
+  EXPECT_FALSE(first.ports[2].open || first.ports[3].open);
+  const auto last = parse_slave_look({}, hex("1756"), {}, {});
+  EXPECT_TRUE(last.ports[0].open && last.ports[0].link);
+  EXPECT_FALSE(last.ports[1].open || last.ports[1].link);
+}
+
 TEST_F(RingLookTest, ARingThatSomebodyCyclesIsKnown) {
   slaves = {registers(0x1001, 2), registers(0x1002, 0x14)};
   EXPECT_TRUE(run()->is_in_use());
