@@ -5,6 +5,7 @@
 #include <array>
 
 #include "ethercat/registers.hpp"
+#include "ethercat/words.hpp"
 
 namespace servoctl::ethercat {
 namespace {
@@ -132,10 +133,10 @@ std::string_view name(AlState state) {
 AlStatus parse_al_status(ByteSpan registers) {
   AlStatus out;
   if (registers.size() < reg::kAlStatusSize) return out;
-  const auto status = load_le(registers.first(2));
+  const auto status = word_at(registers, 0);
   out.state = static_cast<AlState>(status & reg::kAlStateMask);
   out.error = (status & reg::kAlError) != 0;
-  out.code = static_cast<std::uint16_t>(load_le(registers.subspan(reg::kAlStatusCode - reg::kAlStatus, 2)));
+  out.code = word_at(registers, reg::kAlStatusCode - reg::kAlStatus);
   return out;
 }
 

@@ -8,6 +8,7 @@
 #include "canopen/sdo_abort.hpp"
 #include "ethercat/coe_message.hpp"
 #include "ethercat/mailbox_message.hpp"
+#include "ethercat/words.hpp"
 
 namespace servoctl::ethercat {
 namespace {
@@ -20,7 +21,7 @@ constexpr std::uint8_t kIncomplete = 0x80;
 constexpr std::size_t kInfoHeader = 4;
 constexpr std::size_t kData = kCoeHeader + kInfoHeader;
 /// 65536 objects are all there can be; no name is longer.
-constexpr std::size_t kMost = 2 + 2 * 65536;
+constexpr std::size_t kMostBytes = 2 + 2 * 65536;
 /// Of an entry: access rights, category, and whether it can be mapped.
 constexpr std::uint8_t kValueInfo = 0x07;
 constexpr std::uint8_t kHasUnit = 0x08;
@@ -75,7 +76,7 @@ void CoeInfo::on_message(ByteSpan message, TimePoint now) {
     return on_error(message.subspan(kCoeHeader + 4));
   if (coe_service(message) != CoeService::sdo_info || message.size() < kData) return;
   const auto opcode = static_cast<std::uint8_t>(message[kCoeHeader] & ~kIncomplete);
-  const auto left = static_cast<std::uint16_t>(load_le(message.subspan(kCoeHeader + 2, 2)));
+  const auto left = word_at(message, kCoeHeader + 2);
   const auto data = message.subspan(kData);
   if (opcode == kError) return on_error(data);
   if (opcode != asked_ + 1) return;
@@ -102,13 +103,13 @@ bool CoeInfo::follows(std::uint16_t left) {
 
 void CoeInfo::take_in(ByteSpan data) {
   data_.insert(data_.end(), data.begin(), data.end());
-  if (data_.size() > kMost) finish(fail(error(Errc::protocol, "its answer does not end", "")));
+  if (data_.size() > kMostBytes) finish(fail(error(Errc::protocol, "its answer does not end", "")));
 }
 
 void CoeInfo::on_error(ByteSpan data) {
   if (data.size() < 4)
     return finish(fail(error(Errc::protocol, "it refuses without a code", std::string(kNoInfo))));
-  const auto code = static_cast<std::uint32_t>(load_le(data.first(4)));
+  const auto code = dword_at(data, 0);
   auto refused =
       error(Errc::sdo_abort, fmt::format("refused: {} (abort 0x{:08X})", canopen::sdo_abort_text(code), code),
             asked_ == kAskList ? std::string(kNoInfo) : canopen::sdo_abort_hint(code));
@@ -126,8 +127,7 @@ void CoeInfo::complete() {
 
 void CoeInfo::complete_list() {
   std::vector<std::uint16_t> out;
-  for (std::size_t at = 2; at + 2 <= data_.size(); at += 2)
-    out.push_back(static_cast<std::uint16_t>(load_le(ByteSpan(data_).subspan(at, 2))));
+  for (std::size_t at = 2; at + 2 <= data_.size(); at += 2) out.push_back(word_at(data_, at));
   finish(std::move(out));
 }
 
@@ -137,7 +137,7 @@ void CoeInfo::complete_object() {
     return finish(fail(error(Errc::protocol, "its description of the object is too short", "")));
   CoeObject out;
   out.index = object_.index;
-  out.data_type = static_cast<std::uint16_t>(load_le(data.subspan(2, 2)));
+  out.data_type = word_at(data, 2);
   out.max_sub = data[4];
   out.code = data[5];
   out.name = text(data.subspan(6));
@@ -150,9 +150,9 @@ void CoeInfo::complete_entry() {
     return finish(fail(error(Errc::protocol, "its description of the entry is too short", "")));
   CoeEntry out;
   out.object = object_;
-  out.data_type = static_cast<std::uint16_t>(load_le(data.subspan(4, 2)));
-  out.bits = static_cast<std::uint16_t>(load_le(data.subspan(6, 2)));
-  out.access = static_cast<std::uint16_t>(load_le(data.subspan(8, 2)));
+  out.data_type = word_at(data, 4);
+  out.bits = word_at(data, 6);
+  out.access = word_at(data, 8);
   std::size_t name = 10;
   if ((data[3] & kHasUnit) != 0) name += 2;
   for (unsigned bit = 0x10; (bit & kHasValues) != 0; bit <<= 1U)

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "ethercat/words.hpp"
+
 namespace servoctl::ethercat {
 
 CoeService coe_service(ByteSpan message) {
@@ -19,20 +21,16 @@ Bytes sdo_message(std::uint8_t command, ObjectAddress object, std::uint32_t data
   return out;
 }
 
-ObjectAddress sdo_object(ByteSpan message) {
-  return {static_cast<std::uint16_t>(load_le(message.subspan(3, 2))), message[5]};
-}
+ObjectAddress sdo_object(ByteSpan message) { return {word_at(message, 3), message[5]}; }
 
-std::uint32_t sdo_data(ByteSpan message) {
-  return static_cast<std::uint32_t>(load_le(message.subspan(6, 4)));
-}
+std::uint32_t sdo_data(ByteSpan message) { return dword_at(message, 6); }
 
 std::optional<canopen::Emergency> coe_emergency(ByteSpan message, std::uint8_t node) {
   if (message.size() < kCoeHeader + 2) return std::nullopt;
   const auto data = message.subspan(kCoeHeader, std::min<std::size_t>(message.size() - kCoeHeader, 8));
   canopen::Emergency out;
   out.node = node;
-  out.code = static_cast<std::uint16_t>(load_le(data.first(2)));
+  out.code = word_at(data, 0);
   if (data.size() > 2) out.error_register = data[2];
   if (data.size() > 3) std::copy(data.begin() + 3, data.end(), out.vendor.begin());
   out.size = static_cast<std::uint8_t>(data.size());

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "ethercat/words.hpp"
+
 namespace servoctl::ethercat {
 namespace {
 
@@ -17,10 +19,6 @@ constexpr std::uint16_t kDatagrams = 1;
 constexpr auto kNames =
     std::to_array<std::string_view>({"NOP", "APRD", "APWR", "APRW", "FPRD", "FPWR", "FPRW", "BRD", "BWR",
                                      "BRW", "LRD", "LWR", "LRW", "ARMW", "FRMW"});
-
-std::uint16_t word_at(ByteSpan bytes, std::size_t at) {
-  return static_cast<std::uint16_t>(bytes[at] | bytes[at + 1] << 8U);
-}
 
 void put_word(std::span<std::uint8_t> bytes, std::size_t at, std::uint16_t value) {
   store_le(value, bytes.subspan(at, 2));
@@ -110,7 +108,7 @@ std::optional<Datagram> FrameReader::next() {
   out.offset = at_;
   out.command = static_cast<Command>(frame_[at_]);
   out.index = frame_[at_ + 1];
-  out.address = static_cast<std::uint32_t>(load_le(frame_.subspan(at_ + 2, 4)));
+  out.address = dword_at(frame_, at_ + 2);
   const auto length = word_at(frame_, at_ + 6);
   out.circulating = (length & kCirculating) != 0;
   out.interrupts = word_at(frame_, at_ + 8);

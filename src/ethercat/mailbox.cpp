@@ -5,6 +5,7 @@
 
 #include "ethercat/coe_message.hpp"
 #include "ethercat/registers.hpp"
+#include "ethercat/words.hpp"
 
 namespace servoctl::ethercat {
 namespace {
@@ -256,8 +257,7 @@ void Mailbox::take_in(ByteSpan mailbox) {
   }
   answered_ = true;
   if (message->type == MailboxType::error && message->data.size() >= 4)
-    events_.push_back(
-        Refusal{static_cast<std::uint16_t>(load_le(message->data.subspan(2, 2))), out_.has_value()});
+    events_.push_back(Refusal{word_at(message->data, 2), out_.has_value()});
   else if (message->type == MailboxType::coe)
     events_.push_back(Message{Bytes(message->data.begin(), message->data.end()), out_.has_value()});
   else

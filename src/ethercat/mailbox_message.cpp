@@ -2,11 +2,13 @@
 
 #include <algorithm>
 
+#include "ethercat/words.hpp"
+
 namespace servoctl::ethercat {
 
 std::optional<MailboxView> parse_mailbox(ByteSpan mailbox) {
   if (mailbox.size() < kMailboxHeader) return std::nullopt;
-  const auto length = static_cast<std::size_t>(load_le(mailbox.first(2)));
+  const std::size_t length = word_at(mailbox, 0);
   if (length > mailbox.size() - kMailboxHeader) return std::nullopt;
   MailboxView out;
   out.type = static_cast<MailboxType>(mailbox[5] & 0x0FU);

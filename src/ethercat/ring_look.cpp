@@ -9,41 +9,43 @@
 namespace servoctl::ethercat {
 namespace {
 
-constexpr std::size_t kMost = 127;
+constexpr std::size_t kMostSlaves = 127;
 constexpr std::size_t kIdentitySize = 20;
 constexpr std::size_t kErrorsSize = 20;
 
-std::uint8_t byte(ByteSpan bytes, std::size_t at) { return at < bytes.size() ? bytes[at] : std::uint8_t{0}; }
-std::uint16_t word(ByteSpan bytes, std::size_t at) {
-  return static_cast<std::uint16_t>(byte(bytes, at) | byte(bytes, at + 1) << 8U);
+std::uint8_t byte_or_zero(ByteSpan bytes, std::size_t at) {
+  return at < bytes.size() ? bytes[at] : std::uint8_t{0};
+}
+std::uint16_t word_or_zero(ByteSpan bytes, std::size_t at) {
+  return static_cast<std::uint16_t>(byte_or_zero(bytes, at) | byte_or_zero(bytes, at + 1) << 8U);
 }
 
 }  // namespace
 
 SlaveLook parse_slave_look(ByteSpan identity, ByteSpan dl_status, ByteSpan al_status, ByteSpan errors) {
   SlaveLook out;
-  out.type = byte(identity, reg::kType);
-  out.revision = byte(identity, reg::kType + 1);
-  out.fmmus = byte(identity, reg::kFmmuCount);
-  out.sync_managers = byte(identity, reg::kSyncManagers);
-  out.features = word(identity, reg::kFeatures);
-  out.station = word(identity, reg::kStationAddress);
-  out.alias = word(identity, reg::kStationAlias);
+  out.type = byte_or_zero(identity, reg::kType);
+  out.revision = byte_or_zero(identity, reg::kType + 1);
+  out.fmmus = byte_or_zero(identity, reg::kFmmuCount);
+  out.sync_managers = byte_or_zero(identity, reg::kSyncManagers);
+  out.features = word_or_zero(identity, reg::kFeatures);
+  out.station = word_or_zero(identity, reg::kStationAddress);
+  out.alias = word_or_zero(identity, reg::kStationAlias);
   out.al = parse_al_status(al_status);
-  const auto dl = word(dl_status, 0);
+  const auto dl = word_or_zero(dl_status, 0);
   const auto at = [](std::uint16_t where) { return static_cast<std::size_t>(where - reg::kErrorCounters); };
   for (unsigned port = 0; port < 4; ++port) {
     auto& look = out.ports[port];
     look.link = (dl & reg::dl_link(port)) != 0;
     look.open = (dl & reg::dl_loop(port)) == 0;
     look.signal = (dl & reg::dl_signal(port)) != 0;
-    look.bad_frames = byte(errors, at(reg::kRxErrors) + 2 * port);
-    look.bad_symbols = byte(errors, at(reg::kRxErrors) + 2 * port + 1);
-    look.forwarded = byte(errors, at(reg::kForwardedErrors) + port);
-    look.lost_links = byte(errors, at(reg::kLostLinks) + port);
+    look.bad_frames = byte_or_zero(errors, at(reg::kRxErrors) + 2 * port);
+    look.bad_symbols = byte_or_zero(errors, at(reg::kRxErrors) + 2 * port + 1);
+    look.forwarded = byte_or_zero(errors, at(reg::kForwardedErrors) + port);
+    look.lost_links = byte_or_zero(errors, at(reg::kLostLinks) + port);
   }
-  out.bad_commands = byte(errors, at(reg::kProcessingErrors));
-  out.pdi_errors = byte(errors, at(reg::kPdiErrors));
+  out.bad_commands = byte_or_zero(errors, at(reg::kProcessingErrors));
+  out.pdi_errors = byte_or_zero(errors, at(reg::kPdiErrors));
   return out;
 }
 
@@ -99,7 +101,7 @@ void RingLook::on_answer(const Answer& answer, TimePoint) {
     default: break;
   }
   view_.slaves.push_back(parse_slave_look(read_[0], read_[1], read_[2], answer.data));
-  if (view_.slaves.size() == std::min(view_.count, kMost)) return finish(std::move(view_));
+  if (view_.slaves.size() == std::min(view_.count, kMostSlaves)) return finish(std::move(view_));
   go(State::identity);
 }
 

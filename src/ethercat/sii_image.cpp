@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "ethercat/words.hpp"
+
 namespace servoctl::ethercat {
 namespace {
 
@@ -15,22 +17,15 @@ enum Category : std::uint16_t {
   kSyncManagers = 41,
   kTxPdo = 50,
   kRxPdo = 51,
-  kDc = 60,
+  kDcModes = 60,
 };
-
-std::uint16_t word(ByteSpan bytes, std::size_t at) {
-  return static_cast<std::uint16_t>(load_le(bytes.subspan(at, 2)));
-}
-std::uint32_t dword(ByteSpan bytes, std::size_t at) {
-  return static_cast<std::uint32_t>(load_le(bytes.subspan(at, 4)));
-}
 
 std::string string_at(const SiiImage& image, std::uint8_t number) {
   return number == 0 || number > image.strings.size() ? std::string() : image.strings[number - 1U];
 }
 
 SiiMailbox mailbox(ByteSpan image, std::size_t at) {
-  return {word(image, at), word(image, at + 2), word(image, at + 4), word(image, at + 6)};
+  return {word_at(image, at), word_at(image, at + 2), word_at(image, at + 4), word_at(image, at + 6)};
 }
 
 /// Memory that was never written, or erased: all zeros or all ones.
@@ -73,25 +68,25 @@ class Parser {
     if (image_[kConfiguration] != expected)
       doubt(fmt::format("the checksum of its first words is {:02X}h and should be {:02X}h",
                         image_[kConfiguration], expected));
-    out_.alias = word(image_, 0x08);
-    out_.vendor = dword(image_, 0x10);
-    out_.product = dword(image_, 0x14);
-    out_.revision = dword(image_, 0x18);
-    out_.serial = dword(image_, 0x1C);
+    out_.alias = word_at(image_, 0x08);
+    out_.vendor = dword_at(image_, 0x10);
+    out_.product = dword_at(image_, 0x14);
+    out_.revision = dword_at(image_, 0x18);
+    out_.serial = dword_at(image_, 0x1C);
     out_.bootstrap = mailbox(image_, 0x28);
     out_.mailbox = mailbox(image_, 0x30);
-    out_.protocols = word(image_, 0x38);
-    const auto kbits = word(image_, 0x7C);
+    out_.protocols = word_at(image_, 0x38);
+    const auto kbits = word_at(image_, 0x7C);
     out_.size = kbits == 0 || kbits == 0xFFFF ? 0 : (kbits + std::size_t{1}) * 128;
   }
 
   void walk(Visit visit) {
     for (std::size_t at = 2 * kSiiHeader;;) {
       if (at + 2 > image_.size()) return doubt("it ends without the end of its categories");
-      const auto type = word(image_, at);
+      const auto type = word_at(image_, at);
       if (type == kSiiEnd) return;
       if (at + 4 > image_.size()) return doubt("it ends in the head of a category");
-      const std::size_t size = 2U * word(image_, at + 2);
+      const std::size_t size = 2U * word_at(image_, at + 2);
       if (type == 0 && size == 0) return doubt("its categories have no end");
       if (at + 4 + size > image_.size())
         return doubt(
@@ -111,7 +106,7 @@ class Parser {
       case kSyncManagers: return sync_managers(data);
       case kTxPdo: return pdos(data, out_.tx_pdos);
       case kRxPdo: return pdos(data, out_.rx_pdos);
-      case kDc: return dc_modes(data);
+      case kDcModes: return dc_modes(data);
       default: return;
     }
   }
@@ -141,8 +136,8 @@ class Parser {
   void sync_managers(ByteSpan data) {
     for (; data.size() >= 8; data = data.subspan(8)) {
       SiiSyncManager row;
-      row.start = word(data, 0);
-      row.length = word(data, 2);
+      row.start = word_at(data, 0);
+      row.length = word_at(data, 2);
       row.control = data[4];
       row.enable = data[6];
       row.use = data[7] <= 4 ? static_cast<SiiSyncManager::Use>(data[7]) : SiiSyncManager::Use::unused;
@@ -154,17 +149,17 @@ class Parser {
   void pdos(ByteSpan data, std::vector<SiiPdo>& list) {
     while (data.size() >= 8) {
       SiiPdo pdo;
-      pdo.index = word(data, 0);
+      pdo.index = word_at(data, 0);
       const std::size_t count = data[2];
       pdo.sync_manager = data[3];
       pdo.name = string_at(out_, data[5]);
-      pdo.flags = word(data, 6);
+      pdo.flags = word_at(data, 6);
       if (data.size() < 8 + 8 * count)
         return doubt(
             fmt::format("its PDO {:04X}h says {} entries and has {}", pdo.index, count, data.size() / 8 - 1));
       for (std::size_t i = 1; i <= count; ++i) {
         const auto row = data.subspan(8 * i, 8);
-        pdo.entries.push_back({{word(row, 0), row[2]}, string_at(out_, row[3]), row[4], row[5]});
+        pdo.entries.push_back({{word_at(row, 0), row[2]}, string_at(out_, row[3]), row[4], row[5]});
       }
       data = data.subspan(8 + 8 * count);
       list.push_back(std::move(pdo));
@@ -175,7 +170,8 @@ class Parser {
   void dc_modes(ByteSpan data) {
     constexpr std::size_t kRow = 24;
     for (; data.size() >= kRow; data = data.subspan(kRow))
-      out_.dc_modes.push_back({string_at(out_, data[18]), dword(data, 0), dword(data, 4), word(data, 14)});
+      out_.dc_modes.push_back(
+          {string_at(out_, data[18]), dword_at(data, 0), dword_at(data, 4), word_at(data, 14)});
     if (!data.empty()) doubt("its list of DC modes ends in a row");
   }
 

@@ -6,6 +6,7 @@
 
 #include "ethercat/registers.hpp"
 #include "ethercat/sii_image.hpp"
+#include "ethercat/words.hpp"
 
 namespace servoctl::ethercat {
 namespace {
@@ -14,10 +15,6 @@ constexpr Duration kPause = std::chrono::microseconds(500);  ///< Until a memory
 constexpr unsigned kTries = 3;
 constexpr std::size_t kSizeWord = 0x3E;
 constexpr std::size_t kFetch = 14;  ///< Status, address and data in one read.
-
-std::uint16_t word_at(ByteSpan bytes, std::size_t word) {
-  return static_cast<std::uint16_t>(load_le(bytes.subspan(2 * word, 2)));
-}
 
 }  // namespace
 
@@ -108,7 +105,7 @@ void SiiReader::on_owner(ByteSpan data, TimePoint now) {
 }
 
 void SiiReader::on_ready(ByteSpan data, TimePoint now) {
-  const auto status = static_cast<std::uint16_t>(load_le(data));
+  const auto status = word_at(data, 0);
   if ((status & reg::kSiiBusy) != 0) {
     if (now < until_) return go(State::ready, now, kPause);
     return end(fail(error(Errc::timeout, "the memory stays busy", "switch the slave off and on again")), now);
@@ -121,12 +118,12 @@ void SiiReader::on_ready(ByteSpan data, TimePoint now) {
 }
 
 void SiiReader::on_fetched(ByteSpan data, TimePoint now) {
-  const auto status = static_cast<std::uint16_t>(load_le(data.first(2)));
+  const auto status = word_at(data, 0);
   if ((status & reg::kSiiBusy) != 0) {
     if (now < until_) return go(State::fetch, now, kPause);
     return end(fail(error(Errc::timeout, "the memory stays busy", "switch the slave off and on again")), now);
   }
-  const auto address = load_le(data.subspan(reg::kSiiAddress - reg::kSiiControl, 4));
+  const auto address = dword_at(data, reg::kSiiAddress - reg::kSiiControl);
   const bool failed = (status & reg::kSiiCommandError) != 0 || address != image_.size() / 2;
   if (failed && ++errors_ > kTries) return on_error(now);
   if (failed) return go((status & reg::kSiiCommandError) != 0 ? State::acknowledge : State::ready, now);
@@ -156,13 +153,13 @@ std::size_t SiiReader::needed() const {
   const auto have = image_.size() / 2;
   if (!whole_) return words_;
   if (have < kSiiHeader) return kSiiHeader;
-  const auto kbits = word_at(image_, kSizeWord);
+  const auto kbits = word_at(image_, 2 * kSizeWord);
   const std::size_t limit =
       kbits == 0 || kbits == 0xFFFF ? kMaxSiiWords : std::min((kbits + std::size_t{1}) * 64, kMaxSiiWords);
   std::size_t at = kSiiHeader;
   while (at + 2 <= std::min(have, limit)) {
-    const auto type = word_at(image_, at);
-    const std::size_t words = word_at(image_, at + 1);
+    const auto type = word_at(image_, 2 * at);
+    const std::size_t words = word_at(image_, 2 * at + 2);
     if (type == kSiiEnd || (type == 0 && words == 0)) return at + 2;
     at += 2 + words;
   }

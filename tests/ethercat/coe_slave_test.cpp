@@ -104,7 +104,7 @@ struct Wire {
   std::vector<std::uint16_t> emergencies;
 };
 
-Bytes counted(std::size_t size) {
+Bytes pattern(std::size_t size) {
   Bytes out(size);
   for (std::size_t i = 0; i < size; ++i) out[i] = static_cast<std::uint8_t>(i * 7 + i / 256);
   return out;
@@ -118,8 +118,8 @@ Bytes emergency(std::uint16_t code) {
 TEST(CoeSlave, ReadsAndWritesOverTheWire) {
   Wire wire(128, 128);
   for (const std::size_t size : {0U, 1U, 4U, 5U, 112U, 113U, 1000U}) {
-    ASSERT_TRUE(wire.write(counted(size))) << size;
-    EXPECT_EQ(wire.read().value(), counted(size)) << size;
+    ASSERT_TRUE(wire.write(pattern(size))) << size;
+    EXPECT_EQ(wire.read().value(), pattern(size)) << size;
   }
   EXPECT_EQ(wire.server.written.size(), 7U);
 }
@@ -198,7 +198,7 @@ TEST(CoeSlave, ARequestThatTimedOutInFrontOfAFullMailboxIsNotWrittenWhenThatIsFr
 
 TEST(CoeSlave, AnAbandonedTransferIsAbortedAtTheSlave) {
   Wire wire(64, 64);
-  wire.server.objects[{0x2000, 1}] = counted(200);
+  wire.server.objects[{0x2000, 1}] = pattern(200);
   wire.slave.client().start_upload(kObject, wire.now);
   while (wire.slave.client().transferred() == 0) wire.step();
   wire.box.latency = 600ms;
@@ -212,7 +212,7 @@ TEST(CoeSlave, AnAbandonedTransferIsAbortedAtTheSlave) {
 
 TEST(CoeSlave, AQuestionForTheDictionaryRidesBesideATransfer) {
   Wire wire(64, 64);
-  wire.server.objects[{0x2000, 1}] = counted(300);
+  wire.server.objects[{0x2000, 1}] = pattern(300);
   wire.slave.client().start_upload(kObject, wire.now);
   auto coe = wire.box.handler;
   wire.box.handler = [&](std::uint8_t type, Bytes data) {
@@ -220,7 +220,7 @@ TEST(CoeSlave, AQuestionForTheDictionaryRidesBesideATransfer) {
     coe(type, std::move(data));
   };
   wire.slave.info().start_list(ObjectList::all, wire.now);
-  EXPECT_EQ(wire.finish().value(), counted(300));
+  EXPECT_EQ(wire.finish().value(), pattern(300));
   while (wire.slave.info().busy()) wire.step();
   const auto list = wire.slave.info().take_result();
   ASSERT_TRUE(list && *list);
@@ -261,7 +261,7 @@ RC_GTEST_PROP(CoeSlave, EverySizeGoesThroughEveryMailbox, ()) {
   conditions.put(wire);
   std::vector<std::uint16_t> told;
   for (int round = 0; round < 3; ++round) {
-    const auto data = counted(*rc::gen::inRange<std::size_t>(0, 700));
+    const auto data = pattern(*rc::gen::inRange<std::size_t>(0, 700));
     for (int i = *rc::gen::inRange(0, 3); i > 0; --i) {
       told.push_back(static_cast<std::uint16_t>(0x8100 + told.size()));
       wire.server.before.push_back(emergency(told.back()));
@@ -299,9 +299,9 @@ RC_GTEST_PROP(CoeSlave, LostFramesLoseNoTruth, ()) {
     for (; number <= last; ++number) (fate == 0 ? wire.lost_out : wire.lost_back).insert(number);
   }
   std::vector<std::uint16_t> told;
-  wire.server.objects[{0x2000, 1}] = counted(3);
+  wire.server.objects[{0x2000, 1}] = pattern(3);
   for (int round = 0; round < 4; ++round) {
-    const auto data = counted(*rc::gen::inRange<std::size_t>(0, 300));
+    const auto data = pattern(*rc::gen::inRange<std::size_t>(0, 300));
     if (*rc::gen::arbitrary<bool>()) {
       told.push_back(static_cast<std::uint16_t>(0x8100 + told.size()));
       wire.server.before.push_back(emergency(told.back()));

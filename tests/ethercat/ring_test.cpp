@@ -23,7 +23,7 @@ Bytes answered(ByteSpan frame, std::uint16_t counter = 1) {
   return out;
 }
 
-std::vector<Datagram> datagrams(ByteSpan frame) {
+std::vector<Datagram> parts_of(ByteSpan frame) {
   std::vector<Datagram> out;
   auto reader = FrameReader::open(frame);
   while (const auto datagram = reader->next()) out.push_back(*datagram);
@@ -67,8 +67,8 @@ TEST_F(RingTest, WhatIsPostedTogetherGoesInOneFrame) {
   const auto first = read(reg::kAlStatus);
   const auto second = read(reg::kStationAlias);
   const auto frame = sent();
-  ASSERT_EQ(datagrams(frame).size(), 2U);
-  EXPECT_NE(datagrams(frame)[0].index, datagrams(frame)[1].index);
+  ASSERT_EQ(parts_of(frame).size(), 2U);
+  EXPECT_NE(parts_of(frame)[0].index, parts_of(frame)[1].index);
   EXPECT_FALSE(ring.take_frame(now));
   ring.on_frame(answered(frame), now);
   EXPECT_TRUE(ring.take_answer(second));
@@ -99,7 +99,7 @@ TEST_F(RingTest, SoManyFramesAreUnderWayAtOnceAndNoMore) {
   urgent.urgent = true;
   const auto cycle = ring.post(Command::lrw, 0, Bytes(10), urgent).value();
   const auto urgent_frame = sent();
-  EXPECT_EQ(datagrams(urgent_frame).front().command, Command::lrw) << "what is urgent does not wait";
+  EXPECT_EQ(parts_of(urgent_frame).front().command, Command::lrw) << "what is urgent does not wait";
   ring.on_frame(answered(urgent_frame), now);
   EXPECT_TRUE(ring.take_answer(cycle));
   ring.on_frame(answered(frames[2]), now);
@@ -112,7 +112,7 @@ TEST_F(RingTest, WhatIsUrgentGoesFirstAndOthersRideAlong) {
   Ring::Post urgent;
   urgent.urgent = true;
   ring.post(Command::lrw, 0, Bytes(10), urgent);
-  const auto asked = datagrams(sent());
+  const auto asked = parts_of(sent());
   ASSERT_EQ(asked.size(), 2U);
   EXPECT_EQ(asked[0].command, Command::lrw);
   EXPECT_EQ(asked[1].command, Command::fprd);
@@ -121,7 +121,7 @@ TEST_F(RingTest, WhatIsUrgentGoesFirstAndOthersRideAlong) {
 TEST_F(RingTest, WhatMayBeRepeatedIsAndThenLost) {
   const auto ticket = read(reg::kAlStatus);
   for (int tries = 0; tries < 3; ++tries) {
-    EXPECT_EQ(datagrams(sent()).size(), 1U);
+    EXPECT_EQ(parts_of(sent()).size(), 1U);
     ring.on_time(now + 19ms);
     EXPECT_FALSE(ring.take_frame(now));
     now += 20ms;
@@ -186,8 +186,8 @@ TEST_F(RingTest, AnAnswerToSomethingElseIsNobodys) {
 TEST_F(RingTest, APositionIsCountedUpByTheSlavesAndKnownAllTheSame) {
   const auto ticket = post(read_registers(SlaveAddress::at_position(2), reg::kType, 1));
   auto frame = sent();
-  EXPECT_EQ(datagrams(frame)[0].adp(), 0xFFFE);
-  set_address(frame, datagrams(frame)[0], physical_address(3, reg::kType));
+  EXPECT_EQ(parts_of(frame)[0].adp(), 0xFFFE);
+  set_address(frame, parts_of(frame)[0], physical_address(3, reg::kType));
   EXPECT_TRUE(ring.on_frame(answered(frame), now));
   EXPECT_TRUE(ring.take_answer(ticket)->done());
 }
@@ -252,7 +252,7 @@ TEST_F(RingTest, ACarrierTakesRequestsOfAMachineOneByOne) {
   while (carrier.serve(machine, ring, now)) {
     const auto frame = ring.take_frame(now);
     if (!frame) break;
-    EXPECT_EQ(datagrams(*frame).size(), 1U);
+    EXPECT_EQ(parts_of(*frame).size(), 1U);
     EXPECT_FALSE(carrier.serve(machine, ring, now)) << "while one is under way";
     ring.on_frame(answered(*frame, 7), now);
     EXPECT_TRUE(carrier.serve(machine, ring, now)) << "the answer";
