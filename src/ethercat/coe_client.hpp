@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -25,7 +26,7 @@ class CoeClient {
   /// `node` 1..127; `timeout` is the longest silence between two messages; `max_message` is what one message
   /// to the slave can have, its mailbox without the header: 10 at least.
   CoeClient(std::uint8_t node, Duration timeout, std::size_t max_message)
-      : node_(node), timeout_(timeout), max_message_(max_message) {}
+      : node_(node), timeout_(timeout), max_message_(std::max<std::size_t>(max_message, 10)) {}
 
   /// Reads an object, with `complete` all its entries at once from sub-index 0 or 1 on (one byte of sub-index
   /// 0 and one of padding, then the entries). Must not be called while a transfer is under way.

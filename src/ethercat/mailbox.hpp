@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -64,7 +65,7 @@ class Mailbox {
   };
   using Event = std::variant<Message, Refusal, Failure>;
 
-  /// `node` 1..127 is for messages.
+  /// `node` 1..127 is for messages; a place with a doubt() is not used.
   Mailbox(std::uint8_t node, SlaveAddress slave, const Options& options);
 
   /// Begins, or begins anew after the slave was in INIT: empties SM1, counts from the first counter on.
@@ -86,7 +87,9 @@ class Mailbox {
   std::optional<Event> take_event();
   std::optional<canopen::Emergency> take_emergency();
   /// Bytes that one message can have, in either direction.
-  std::size_t max_message() const { return options_.place.out_size - kMailboxHeader; }
+  std::size_t max_message() const {
+    return std::max<std::size_t>(options_.place.out_size, kMailboxHeader) - kMailboxHeader;
+  }
   /// A message waits to be written, or whether it was is being found out.
   bool sending() const { return out_ || writing_; }
   const Statistics& statistics() const { return statistics_; }

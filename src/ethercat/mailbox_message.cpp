@@ -18,7 +18,7 @@ std::optional<MailboxView> parse_mailbox(ByteSpan mailbox) {
 }
 
 Bytes mailbox_bytes(MailboxType type, std::uint8_t counter, ByteSpan data, std::size_t size) {
-  Bytes out(size);
+  Bytes out(std::max(size, kMailboxHeader + data.size()));
   store_le(data.size(), std::span(out).first(2));
   out[5] = static_cast<std::uint8_t>(static_cast<unsigned>(type) | static_cast<unsigned>(counter) << 4U);
   std::copy(data.begin(), data.end(), out.begin() + kMailboxHeader);

@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "ethercat/frame.hpp"
+#include "ethercat/registers.hpp"
 #include "ethercat/words.hpp"
 
 namespace servoctl::ethercat {
 namespace {
 
 constexpr std::size_t kConfiguration = 14;  ///< Bytes under the checksum behind them.
+constexpr std::size_t kLeastMailbox = 16;   ///< Its header, that of CoE, and 8 bytes.
 
 enum Category : std::uint16_t {
   kStrings = 10,
@@ -75,6 +78,7 @@ class Parser {
     out_.serial = dword_at(image_, 0x1C);
     out_.bootstrap = mailbox(image_, 0x28);
     out_.mailbox = mailbox(image_, 0x30);
+    if (const auto odd = out_.mailbox.doubt(); !odd.empty()) doubt(odd);
     out_.protocols = word_at(image_, 0x38);
     const auto kbits = word_at(image_, 0x7C);
     out_.size = kbits == 0 || kbits == 0xFFFF ? 0 : (kbits + std::size_t{1}) * 128;
@@ -180,6 +184,19 @@ class Parser {
 };
 
 }  // namespace
+
+std::string SiiMailbox::doubt() const {
+  if (!exists()) return {};
+  const auto least = std::min(out_size, in_size);
+  const auto most = std::max(out_size, in_size);
+  if (least < kLeastMailbox)
+    return fmt::format("a mailbox has {} bytes, and an SDO takes {}", least, kLeastMailbox);
+  if (most > kMaxDatagramData)
+    return fmt::format("a mailbox has {} bytes, and a frame takes {}", most, kMaxDatagramData);
+  if (std::min(out_start, in_start) < reg::kProcessMemory) return "a mailbox lies among the registers";
+  const bool apart = out_start + out_size <= in_start || in_start + in_size <= out_start;
+  return apart ? std::string() : "its mailboxes lie upon each other";
+}
 
 std::size_t SiiPdo::bits() const {
   std::size_t out = 0;

@@ -22,6 +22,8 @@ struct SiiMailbox {
   std::uint16_t in_size = 0;
 
   bool exists() const { return out_size != 0 && in_size != 0; }
+  /// Why it cannot be used as it is; empty when it can, or does not exist.
+  std::string doubt() const;
   bool operator==(const SiiMailbox&) const = default;
 };
 

@@ -343,6 +343,10 @@ TEST_F(MailboxTest, WhatIsCancelledIsNotWritten) {
   EXPECT_EQ(slave.written.size(), 0U);
 }
 
+TEST(MailboxMessage, AMailboxThatIsTooSmallHoldsItsMessageAllTheSame) {
+  EXPECT_EQ(mailbox_bytes(MailboxType::coe, 1, Bytes(10), 3).size(), 16U);
+}
+
 TEST(MailboxMessage, EachTextOfARefusalIsItsOwn) {
   EXPECT_EQ(mailbox_error_text(5), "the header of the protocol is wrong");
   EXPECT_EQ(mailbox_error_text(99), "a reason that ETG.1000.4 does not list");

@@ -67,6 +67,20 @@ TEST(SiiImage, ItsChecksumIsThatOfRealSlaves) {
   EXPECT_EQ(sii_checksum(hex("0900000800000000000000000000")), 0x10);
 }
 
+TEST(SiiImage, MailboxesThatCannotBeUsedAreADoubt) {
+  EXPECT_EQ((SiiMailbox{0x1000, 128, 0x1080, 128}).doubt(), "");
+  EXPECT_EQ(SiiMailbox{}.doubt(), "");
+  EXPECT_EQ((SiiMailbox{0x1000, 15, 0x1080, 128}).doubt(), "a mailbox has 15 bytes, and an SDO takes 16");
+  EXPECT_EQ((SiiMailbox{0x1000, 128, 0x2000, 1487}).doubt(),
+            "a mailbox has 1487 bytes, and a frame takes 1486");
+  EXPECT_EQ((SiiMailbox{0x1000, 128, 0x0800, 128}).doubt(), "a mailbox lies among the registers");
+  EXPECT_EQ((SiiMailbox{0x1000, 129, 0x1080, 128}).doubt(), "its mailboxes lie upon each other");
+  EXPECT_EQ((SiiMailbox{0x1080, 128, 0x1000, 129}).doubt(), "its mailboxes lie upon each other");
+  auto bytes = full_sii();
+  bytes[0x33] = 0xFF;  // The size of the first.
+  EXPECT_EQ(parse_sii(bytes).doubts, (Strings{"a mailbox has 65280 bytes, and a frame takes 1486"}));
+}
+
 TEST(SiiImage, ABadChecksumIsADoubtAndTheRestIsReadAllTheSame) {
   auto bytes = full_sii();
   bytes[14] = 0x77;
