@@ -119,12 +119,7 @@ void AlRequest::finish(Result<AlStatus> result) {
 }
 
 Error AlRequest::error(Errc code, std::string what, std::string hint) const {
-  Error out;
-  out.code = code;
-  out.message = fmt::format("node {}: {}", node_, what);
-  out.hint = std::move(hint);
-  out.node = node_;
-  return out;
+  return drive_error(code, node_, what, std::move(hint));
 }
 
 std::optional<Result<AlStatus>> AlRequest::take_result() { return std::exchange(result_, std::nullopt); }

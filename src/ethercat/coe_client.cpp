@@ -248,13 +248,7 @@ void CoeClient::finish(Result<Bytes> result) {
 }
 
 Error CoeClient::error(Errc code, std::string message, std::string hint) const {
-  Error out;
-  out.code = code;
-  out.message = fmt::format("node {}, object {}: {}", node_, to_string(object_), message);
-  out.hint = std::move(hint);
-  out.node = node_;
-  out.object = object_;
-  return out;
+  return drive_error(code, node_, object_, message, std::move(hint));
 }
 
 std::size_t CoeClient::transferred() const {

@@ -133,8 +133,7 @@ void CoeInfo::complete_list() {
 
 void CoeInfo::complete_object() {
   const ByteSpan data = data_;
-  if (data.size() < 6)
-    return finish(fail(error(Errc::protocol, "its description of the object is too short", "")));
+  if (data.size() < 6) return finish(fail(error(Errc::protocol, "it is too short", "")));
   CoeObject out;
   out.index = object_.index;
   out.data_type = word_at(data, 2);
@@ -146,8 +145,7 @@ void CoeInfo::complete_object() {
 
 void CoeInfo::complete_entry() {
   const ByteSpan data = data_;
-  if (data.size() < 10)
-    return finish(fail(error(Errc::protocol, "its description of the entry is too short", "")));
+  if (data.size() < 10) return finish(fail(error(Errc::protocol, "it is too short", "")));
   CoeEntry out;
   out.object = object_;
   out.data_type = word_at(data, 4);
@@ -191,17 +189,9 @@ void CoeInfo::finish(Result<Description> result) {
 }
 
 Error CoeInfo::error(Errc code, std::string what, std::string hint) const {
-  Error out;
-  out.code = code;
-  out.node = node_;
-  out.hint = std::move(hint);
-  if (asked_ == kAskList) {
-    out.message = fmt::format("node {}, list of its objects: {}", node_, what);
-    return out;
-  }
-  out.object = object_;
-  out.message = fmt::format("node {}, description of object {}: {}", node_, to_string(object_), what);
-  return out;
+  if (asked_ == kAskList)
+    return drive_error(code, node_, "the list of its objects: " + what, std::move(hint));
+  return drive_error(code, node_, object_, "its description: " + what, std::move(hint));
 }
 
 std::optional<Bytes> CoeInfo::take_message() { return std::exchange(tx_, std::nullopt); }

@@ -24,16 +24,6 @@ std::uint16_t expected_counter(Command command, bool outputs, bool inputs) {
   return static_cast<std::uint16_t>((outputs ? 2U : 0U) + (inputs ? 1U : 0U));
 }
 
-Error wrong(std::uint8_t node, ObjectAddress object, Errc code, std::string what, std::string hint) {
-  Error out;
-  out.code = code;
-  out.message = fmt::format("node {}, object {}: {}", node, to_string(object), what);
-  out.hint = std::move(hint);
-  out.node = node;
-  out.object = object;
-  return out;
-}
-
 }  // namespace
 
 ProcessImage::ProcessImage(const Options& options) : options_(options) {
@@ -90,12 +80,12 @@ std::optional<std::size_t> ProcessImage::input_bits(std::uint8_t node, ObjectAdd
 Result<ProcessImage::Cycle> ProcessImage::set(std::uint8_t node, ObjectAddress object, ByteSpan value) {
   const auto bits = output_bits(node, object);
   if (!bits)
-    return fail(wrong(node, object, Errc::usage, "it is not among the outputs of the process image",
-                      "`pdo show` shows what is mapped"));
+    return fail(drive_error(Errc::usage, node, object, "it is not among the outputs of the process image",
+                            "`pdo show` shows what is mapped"));
   if (value.size() != bytes_for(*bits))
-    return fail(wrong(node, object, Errc::usage,
-                      fmt::format("{} bytes for an output of {} bits", value.size(), *bits),
-                      "the mapping says how long it is: `pdo show`"));
+    return fail(drive_error(Errc::usage, node, object,
+                            fmt::format("{} bytes for an output of {} bits", value.size(), *bits),
+                            "the mapping says how long it is: `pdo show`"));
   auto* slave = find(node);
   for (auto& field : slave->out_fields) {
     if (field.object != object) continue;
@@ -148,8 +138,8 @@ Result<void> ProcessImage::start(TimePoint now) {
   for (const auto& slave : slaves_) {
     const auto missing = unset(slave.node);
     if (!missing.empty())
-      return fail(wrong(
-          slave.node, missing.front(), Errc::refused,
+      return fail(drive_error(
+          Errc::refused, slave.node, missing.front(),
           "this output has no value yet, and zero is one that the drive would obey",
           "outputs are read from the drive before they flow; one that cannot be read must not be mapped"));
   }

@@ -85,10 +85,10 @@ void RingLook::on_answer(const Answer& answer, TimePoint) {
   if (!answer.done()) {
     const auto position = view_.slaves.size() + 1;
     auto gone =
-        fail(Errc::timeout, fmt::format("the slave at position {} does not answer any more", position),
-             "was a cable pulled, or its supply switched off, just now? Look again");
-    gone.value().node = static_cast<std::uint8_t>(position);
-    return finish(std::move(gone));
+        make_error(Errc::timeout, fmt::format("the slave at position {} does not answer any more", position),
+                   "was a cable pulled, or its supply switched off, just now? Look again");
+    gone.node = static_cast<std::uint8_t>(position);
+    return finish(fail(std::move(gone)));
   }
   switch (state_) {
     case State::identity:

@@ -178,12 +178,7 @@ void SiiReader::end(Result<Bytes> result, TimePoint now) {
 }
 
 Error SiiReader::error(Errc code, std::string what, std::string hint) const {
-  Error out;
-  out.code = code;
-  out.message = fmt::format("node {}: its SII cannot be read: {}", node_, what);
-  out.hint = std::move(hint);
-  out.node = node_;
-  return out;
+  return drive_error(code, node_, "its SII cannot be read: " + what, std::move(hint));
 }
 
 std::optional<Result<Bytes>> SiiReader::take_result() { return std::exchange(result_, std::nullopt); }

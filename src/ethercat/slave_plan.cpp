@@ -10,15 +10,6 @@ namespace {
 
 constexpr std::size_t kBuffers = 3;
 
-Error misfit(std::uint8_t node, std::string what, std::string hint) {
-  Error out;
-  out.code = Errc::usage;
-  out.message = fmt::format("node {}: {}", node, what);
-  out.hint = std::move(hint);
-  out.node = node;
-  return out;
-}
-
 }  // namespace
 
 std::size_t bits_of(std::span<const canopen::PdoEntry> entries) {
@@ -93,21 +84,23 @@ Result<SlavePlan> plan_slave(std::uint8_t node, const ProcessArea& area, const P
   const auto out = bytes_of(mapping.outputs);
   const auto in = bytes_of(mapping.inputs);
   if (!area.exists())
-    return fail(misfit(node, "where its process data are is not known",
-                       "its SII says nothing of sync managers: name its family with -d, or its ESI file"));
+    return fail(
+        drive_error(Errc::usage, node, "where its process data are is not known",
+                    "its SII says nothing of sync managers: name its family with -d, or its ESI file"));
   if (out + in > kMaxDatagramData)
-    return fail(misfit(
-        node, fmt::format("its process data have {} bytes, {} fit into a frame", out + in, kMaxDatagramData),
+    return fail(drive_error(
+        Errc::usage, node,
+        fmt::format("its process data have {} bytes, {} fit into a frame", out + in, kMaxDatagramData),
         "map fewer objects: `pdo map`"));
   const bool out_first = area.out_start < area.in_start;
   const auto room =
       static_cast<std::size_t>(out_first ? area.in_start - area.out_start : area.out_start - area.in_start);
   const auto needed = (out_first ? out : in) * kBuffers;
   if (needed > room)
-    return fail(misfit(node,
-                       fmt::format("its {} need {} bytes of its memory, three buffers, and there are {}",
-                                   out_first ? "outputs" : "inputs", needed, room),
-                       "map fewer objects: `pdo map`"));
+    return fail(drive_error(Errc::usage, node,
+                            fmt::format("its {} need {} bytes of its memory, three buffers, and there are {}",
+                                        out_first ? "outputs" : "inputs", needed, room),
+                            "map fewer objects: `pdo map`"));
   return SlavePlan{area, logical, static_cast<std::uint16_t>(out), static_cast<std::uint16_t>(in)};
 }
 

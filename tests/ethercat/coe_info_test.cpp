@@ -53,9 +53,10 @@ TEST_F(CoeInfoTest, ListsTheObjectsOfSeveralParts) {
 
 TEST_F(CoeInfoTest, APartThatIsMissingIsTold) {
   list({"> 0080 01000000 0100", "< 0080 82000300 0100 0010", "< 0080 82000100 0110"});
-  expect_failure(Errc::protocol, "node 2, list of its objects: part 2 from the end of its answer is missing");
+  expect_failure(Errc::protocol,
+                 "node 2: the list of its objects: part 2 from the end of its answer is missing");
   list({"> 0080 01000000 0100", "< 0080 82000300 0100 0010", "+ 500ms"});
-  expect_failure(Errc::timeout, "node 2, list of its objects: its answer stopped with 3 parts to come");
+  expect_failure(Errc::timeout, "node 2: the list of its objects: its answer stopped with 3 parts to come");
 }
 
 TEST_F(CoeInfoTest, DescribesAnObject) {
@@ -88,22 +89,23 @@ TEST_F(CoeInfoTest, DescribesAnEntry) {
 
 TEST_F(CoeInfoTest, ADriveWithoutADictionaryRefusesInOneWayOrAnother) {
   list({"> 0080 01000000 0100", "< 0080 07000000 00000106"});
-  expect_failure(Errc::sdo_abort,
-                 "node 2, list of its objects: refused: unsupported access to an object (abort 0x06010000)");
+  expect_failure(
+      Errc::sdo_abort,
+      "node 2: the list of its objects: refused: unsupported access to an object (abort 0x06010000)");
   list({"> 0080 01000000 0100", "< 0030 80 000000 01000405"});
   expect_failure(Errc::sdo_abort,
-                 "node 2, list of its objects: refused: command specifier not valid or "
+                 "node 2: the list of its objects: refused: command specifier not valid or "
                  "unknown (abort 0x05040001)");
   list({"> 0080 01000000 0100"});
   info.on_refusal(4);
   expect_failure(Errc::protocol,
-                 "node 2, list of its objects: its mailbox refuses the question: the service is "
+                 "node 2: the list of its objects: its mailbox refuses the question: the service is "
                  "not supported (mailbox error 0004h)");
   list({"> 0080 01000000 0100", "+ 500ms"});
-  expect_failure(Errc::timeout, "node 2, list of its objects: no answer within 500 ms");
+  expect_failure(Errc::timeout, "node 2: the list of its objects: no answer within 500 ms");
   info.start_object(0x1000, now);
   play(info, now, {"> 0080 03000000 0010", "< 0080 07000000 0000"});
-  expect_failure(Errc::protocol, "node 2, description of object 0x1000:0: it refuses without a code");
+  expect_failure(Errc::protocol, "node 2, object 0x1000:0: its description: it refuses without a code");
 }
 
 TEST_F(CoeInfoTest, WhatBelongsToAnotherQuestionIsNoAnswer) {
@@ -119,12 +121,10 @@ TEST_F(CoeInfoTest, WhatBelongsToAnotherQuestionIsNoAnswer) {
 TEST_F(CoeInfoTest, ADescriptionThatIsTooShortIsTold) {
   info.start_entry({0x1018, 1}, now);
   play(info, now, {"> 0080 05000000 1810 01 07", "< 0080 06000000 1810 01 07 0700"});
-  expect_failure(Errc::protocol,
-                 "node 2, description of object 0x1018:1: its description of the entry is too short");
+  expect_failure(Errc::protocol, "node 2, object 0x1018:1: its description: it is too short");
   info.start_object(0x1018, now);
   play(info, now, {"> 0080 03000000 1810", "< 0080 04000000 1810 23"});
-  expect_failure(Errc::protocol,
-                 "node 2, description of object 0x1018:0: its description of the object is too short");
+  expect_failure(Errc::protocol, "node 2, object 0x1018:0: its description: it is too short");
 }
 
 }  // namespace
