@@ -64,13 +64,13 @@ constexpr std::array kRows{
 
 /// What CANopen over EtherCAT has beside them (ETG.1000.6, table 41).
 constexpr std::array kEtherCatRows{
-    Row{0x0601'0003, "sub-index cannot be written, sub-index 0 must be 0 for that",
+    Row{0x0601'0003, "sub-index cannot be written unless sub-index 0 is 0",
         "write 0 to sub-index 0 first, then the entries, then their count"},
     Row{0x0601'0004, "complete access is not supported for an object of variable length",
-        "its entries can be accessed one by one"},
+        "access its entries one by one"},
     Row{0x0601'0005, "object is longer than the mailbox", ""},
-    Row{0x0601'0006, "object is mapped to an RxPDO, its download is blocked",
-        "its value comes with the process data while they flow: write it in PRE-OP, or take it out of the PDO"},
+    Row{0x0601'0006, "object is mapped to an RxPDO, download blocked",
+        "it is written by the process data: write it in PRE-OP, or remove it from the PDO"},
     Row{0x0609'0033, "configured list of modules does not match the detected one", ""},
 };
 

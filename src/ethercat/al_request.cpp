@@ -73,9 +73,10 @@ void AlRequest::on_answer(const Answer& answer, TimePoint now) {
 /// Each request may be made twice: a burst of lost frames is no reason to give up.
 void AlRequest::on_missing(bool lost, TimePoint now) {
   if (now < until_) return go(state_, now, kPoll);
-  const auto* what = lost ? "the frames do not come back" : "it does not answer";
-  finish(fail(error(Errc::timeout, what,
-                    "is it powered, and is the cable in front of it plugged in? `scan` shows who answers")));
+  const auto* what = lost ? "frames do not come back" : "it does not answer";
+  finish(fail(
+      error(Errc::timeout, what,
+            "is it powered, and is the cable leading to it plugged in? `scan` shows which slaves answer")));
 }
 
 void AlRequest::on_status(AlStatus status, TimePoint now) {
@@ -96,14 +97,14 @@ void AlRequest::wait_on(AlStatus status, TimePoint now) {
   if (status.error)
     return finish(
         fail(error(Errc::negative,
-                   fmt::format("it refuses {} and is in {}: {} (AL status code {:04X}h)", name(target_),
+                   fmt::format("{} refused, state is {}: {} (AL status code {:04X}h)", name(target_),
                                name(status.state), al_status_text(status.code), status.code),
                    al_status_hint(status.code))));
   if (status.state == target_) return finish(status);
   if (now < until_) return go(State::wait, now, kPoll);
   finish(fail(error(
-      Errc::timeout, fmt::format("it was asked for {} and is still in {}", name(target_), name(status.state)),
-      "it may need longer, or something from the master: process data for OP, settings for SAFE-OP")));
+      Errc::timeout, fmt::format("{} was requested, state is still {}", name(target_), name(status.state)),
+      "it may need more time, or something from the master: process data for OP, settings for SAFE-OP")));
 }
 
 void AlRequest::on_time(TimePoint now) {

@@ -17,97 +17,88 @@ struct Row {
 };
 
 constexpr std::string_view kMailbox =
-    "the sync managers 0 and 1 are not what the slave expects: does its SII say where its mailboxes are? "
-    "`scan` "
-    "shows it";
+    "sync managers 0 and 1 do not match what the slave expects: does its SII list its mailboxes? `scan` shows it";
 constexpr std::string_view kLengths =
-    "the length of the sync manager is not that of the assigned PDOs: `pdo show` shows what 1C12h, 1C13h and "
-    "the "
-    "mappings say";
+    "the sync manager length does not match the assigned PDOs: `pdo show` shows 1C12h, 1C13h and the mappings";
 constexpr std::string_view kMapping =
-    "1C12h, 1C13h or a mapping names something that the drive does not take: `pdo show` shows them, a preset "
-    "puts "
-    "them right";
+    "1C12h, 1C13h or a mapping names something the drive does not accept: `pdo show` shows them, `pdo preset` corrects them";
 constexpr std::string_view kDc =
-    "the drive works with distributed clocks (SYNC0) only, or with a cycle it does not like: look for its "
-    "synchronisation (1C32h, 1C33h) in its manual";
+    "the drive needs distributed clocks (SYNC0), or does not accept this cycle: check its synchronisation (1C32h, 1C33h) in its manual";
 constexpr std::string_view kCycle =
-    "the drive does not take this cycle with distributed clocks: its manual lists the cycles";
+    "the drive does not accept this cycle with distributed clocks: its manual lists the cycles";
 constexpr std::string_view kFrames =
-    "process data did not reach the drive in time: who cycles? Look for lost frames, a machine under load, a "
-    "cable";
-constexpr std::string_view kPower = "switch the drive off and on again";
+    "process data did not reach the drive in time: check for lost frames, a loaded computer and the cables";
+constexpr std::string_view kPower = "power cycle the drive";
 
 constexpr std::array kRows{
     Row{0x0000, "no error", ""},
-    Row{0x0001, "unspecified error", "look at the drive's own fault: `fault`"},
+    Row{0x0001, "unspecified error", "check the drive's own fault with `fault`"},
     Row{0x0002, "out of memory", kPower},
-    Row{0x0003, "invalid device setup", "the modules or options of the drive do not fit its settings"},
-    Row{0x0004, "invalid revision", "its firmware and its hardware do not belong together"},
-    Row{0x0006, "its SII does not fit its firmware", "the SII has to be written anew with the vendor's file"},
-    Row{0x0007, "its firmware update failed", "load the firmware again"},
+    Row{0x0003, "invalid device setup", "the modules or options of the drive do not match its settings"},
+    Row{0x0004, "invalid revision", "its firmware does not match its hardware"},
+    Row{0x0006, "its SII does not match its firmware", "rewrite the SII from the vendor's file"},
+    Row{0x0007, "firmware update failed", "load the firmware again"},
     Row{0x000E, "licence error", ""},
-    Row{0x0011, "invalid change of state requested",
-        "states go up one at a time, INIT, PRE-OP, SAFE-OP, OP: was it already lower than thought?"},
+    Row{0x0011, "invalid state change requested",
+        "states are entered one at a time: INIT, PRE-OP, SAFE-OP, OP; the slave may have fallen back in the meantime"},
     Row{0x0012, "unknown state requested", ""},
-    Row{0x0013, "it has no bootstrap state", "it takes firmware another way"},
-    Row{0x0014, "no valid firmware", "load a firmware, or load it again"},
+    Row{0x0013, "bootstrap state not supported", "its firmware is updated another way"},
+    Row{0x0014, "no valid firmware", "load the firmware again"},
     Row{0x0015, "invalid mailbox settings for the bootstrap state", kMailbox},
     Row{0x0016, "invalid mailbox settings for PRE-OP", kMailbox},
-    Row{0x0017, "invalid settings of a sync manager", kLengths},
-    Row{0x0018, "no valid inputs", "the drive cannot give its own values: look at its own fault: `fault`"},
+    Row{0x0017, "invalid sync manager settings", kLengths},
+    Row{0x0018, "no valid inputs", "the drive cannot provide its values: check its own fault with `fault`"},
     Row{0x0019, "no valid outputs", kFrames},
     Row{0x001A, "synchronisation error", kDc},
-    Row{0x001B, "sync manager watchdog: no outputs came in time", kFrames},
-    Row{0x001C, "invalid types of sync managers",
-        "the sync managers are not used as the slave expects: mailbox out, mailbox in, outputs, inputs"},
-    Row{0x001D, "invalid settings of the outputs", kLengths},
-    Row{0x001E, "invalid settings of the inputs", kLengths},
-    Row{0x001F, "invalid settings of the watchdog",
-        "the watchdog of the outputs is on and has no time, or one the drive does not take"},
-    Row{0x0020, "it must be switched off and on", kPower},
-    Row{0x0021, "it asks for INIT", "`state init` and up again"},
-    Row{0x0022, "it asks for PRE-OP", "`state preop` and up again"},
-    Row{0x0023, "it asks for SAFE-OP", "`state safeop` and up again"},
-    Row{0x0024, "invalid mapping of the inputs", kMapping},
-    Row{0x0025, "invalid mapping of the outputs", kMapping},
-    Row{0x0026, "settings that contradict each other", kMapping},
+    Row{0x001B, "sync manager watchdog: no outputs received in time", kFrames},
+    Row{0x001C, "invalid sync manager types",
+        "the slave expects the sync managers in the order mailbox out, mailbox in, outputs, inputs"},
+    Row{0x001D, "invalid output settings", kLengths},
+    Row{0x001E, "invalid input settings", kLengths},
+    Row{0x001F, "invalid watchdog settings",
+        "the output watchdog is on without a time, or with one the drive does not accept"},
+    Row{0x0020, "power cycle required", kPower},
+    Row{0x0021, "slave requests INIT", "go to INIT with `state init`, then up again"},
+    Row{0x0022, "slave requests PRE-OP", "go to PRE-OP with `state preop`, then up again"},
+    Row{0x0023, "slave requests SAFE-OP", "go to SAFE-OP with `state safeop`, then up again"},
+    Row{0x0024, "invalid input mapping", kMapping},
+    Row{0x0025, "invalid output mapping", kMapping},
+    Row{0x0026, "inconsistent settings", kMapping},
     Row{0x0027, "free run is not supported", kDc},
     Row{0x0028, "this kind of synchronisation is not supported", kDc},
     Row{0x0029, "free run needs sync managers with three buffers", kMapping},
     Row{0x002A, "background watchdog", kPower},
     Row{0x002B, "no valid inputs and outputs", kFrames},
-    Row{0x002C, "fatal synchronisation error: its SYNC signal failed", kDc},
-    Row{0x002D, "no synchronisation: its SYNC signal never came", kDc},
+    Row{0x002C, "fatal synchronisation error: SYNC signal lost", kDc},
+    Row{0x002D, "no synchronisation: no SYNC signal received", kDc},
     Row{0x002E, "the cycle is too short", kCycle},
-    Row{0x0030, "invalid settings of SYNC0 or SYNC1", kDc},
-    Row{0x0031, "invalid settings of a DC latch", kDc},
-    Row{0x0032, "it cannot follow the clock of the network (PLL)", kDc},
-    Row{0x0033, "inputs or outputs do not fit the SYNC signal", kDc},
+    Row{0x0030, "invalid SYNC0 or SYNC1 settings", kDc},
+    Row{0x0031, "invalid DC latch settings", kDc},
+    Row{0x0032, "it cannot lock to the network clock (PLL)", kDc},
+    Row{0x0033, "inputs or outputs do not match the SYNC signal", kDc},
     Row{0x0034, "too many SYNC events without outputs", kFrames},
     Row{0x0035, "invalid SYNC cycle", kCycle},
-    Row{0x0036, "the SYNC0 cycle does not fit the drive", kCycle},
-    Row{0x0037, "the SYNC1 cycle does not fit the drive", kCycle},
+    Row{0x0036, "SYNC0 cycle not accepted", kCycle},
+    Row{0x0037, "SYNC1 cycle not accepted", kCycle},
     Row{0x0041, "mailbox error: ADS over EtherCAT", ""},
     Row{0x0042, "mailbox error: Ethernet over EtherCAT", ""},
-    Row{0x0043, "mailbox error: CANopen over EtherCAT",
-        "a setting that is written at each start was refused"},
+    Row{0x0043, "mailbox error: CANopen over EtherCAT", "a setting written at each start was refused"},
     Row{0x0044, "mailbox error: file access over EtherCAT", ""},
     Row{0x0045, "mailbox error: servo drive profile over EtherCAT", ""},
     Row{0x004F, "mailbox error: the vendor's own protocol", ""},
-    Row{0x0050, "it cannot get at its SII", "`state init` and up again gives it back"},
-    Row{0x0051, "its SII has an error", "the SII has to be written anew with the vendor's file"},
-    Row{0x0052, "hardware beside it is not ready", "has the drive its main supply?"},
-    Row{0x0060, "it has restarted by itself",
-        "did it lose its supply, or did somebody reset it? `state preop` begins anew"},
-    Row{0x0061, "its identification value was changed", ""},
-    Row{0x0070, "the modules it found are not those it was set to",
-        "its list of modules (F030h) has to be what is there"},
-    Row{0x0080, "supply voltage too low", "look at the supply"},
-    Row{0x0081, "supply voltage too high", "look at the supply"},
+    Row{0x0050, "no access to its SII", "going to INIT with `state init` and up again returns access"},
+    Row{0x0051, "SII error", "rewrite the SII from the vendor's file"},
+    Row{0x0052, "external hardware not ready", "is the drive's main supply on?"},
+    Row{0x0060, "slave restarted locally",
+        "did it lose its supply, or was it reset? start again with `state preop`"},
+    Row{0x0061, "device identification value changed", ""},
+    Row{0x0070, "detected modules do not match the configured ones",
+        "its module list (F030h) must match what is installed"},
+    Row{0x0080, "supply voltage too low", "check the supply"},
+    Row{0x0081, "supply voltage too high", "check the supply"},
     Row{0x0082, "temperature too low", ""},
-    Row{0x0083, "temperature too high", "let it cool down, look at its fan"},
-    Row{0x00F0, "its application controller is there", ""},
+    Row{0x0083, "temperature too high", "let it cool down and check its fan"},
+    Row{0x00F0, "application controller available", ""},
 };
 constexpr std::uint16_t kFirstOfVendor = 0x8000;
 
@@ -143,7 +134,7 @@ AlStatus parse_al_status(ByteSpan registers) {
 std::string al_status_text(std::uint16_t code) {
   const auto* row = find(code);
   if (row != nullptr) return std::string(row->text);
-  return code >= kFirstOfVendor ? "a code of the vendor's own" : "a code that ETG.1000.6 does not list";
+  return code >= kFirstOfVendor ? "vendor-specific code" : "code not listed in ETG.1000.6";
 }
 
 std::string al_status_hint(std::uint16_t code) {

@@ -19,13 +19,13 @@ std::string coe_abort_hint(std::uint32_t code, ObjectAddress object, bool writes
   const bool by_state =
       code == abort::kUnsupportedAccess || code == abort::kGeneral || code == abort::kDeviceState;
   if (writes && by_state && is_about_pdos(object.index))
-    return "it changes in PRE-OP only (`state preop`), and in steps: count 0, entries, count";
+    return "it can be changed in PRE-OP only (`state preop`), and in steps: count 0, entries, count";
   if (code == abort::kDeviceState || code == abort::kCannotStore)
-    return "the drive takes this in another state only: disable it or go to PRE-OP, then try again";
+    return "the drive accepts this in another state only: disable it or go to PRE-OP, then try again";
   if (code == abort::kPdoLength) return "the drive has no room for so many objects in one PDO";
-  if (code == abort::kToggle) return "try again; if it stays, look for a second master on the network";
+  if (code == abort::kToggle) return "try again; if it persists, look for a second master on the network";
   if (code == abort::kTimeout)
-    return "try again; the drive's own limit for a step of the transfer has passed";
+    return "try again; the drive's own time limit for a step of the transfer expired";
   return canopen::sdo_abort_hint(code);
 }
 

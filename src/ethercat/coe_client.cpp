@@ -57,7 +57,7 @@ void CoeClient::start_download(ObjectAddress object, Bytes data, TimePoint now, 
   const bool fits = !data_.empty() && data_.size() <= 4;
   if (transfer == Transfer::expedited && !fits)
     return finish(
-        fail(error(Errc::usage, fmt::format("{} bytes do not go into one expedited message", data_.size()),
+        fail(error(Errc::usage, fmt::format("{} bytes do not fit into one expedited message", data_.size()),
                    "leave --transfer expedited out")));
   const auto access = complete ? kCompleteAccess : 0U;
   if (fits && !complete && transfer != Transfer::segmented) {
@@ -213,7 +213,7 @@ void CoeClient::on_refusal(std::uint16_t detail) {
       Errc::protocol,
       fmt::format("its mailbox refuses the request: {} (mailbox error {:04X}h)", mailbox_error_text(detail),
                   detail),
-      "a transfer that was left open keeps some slaves from the next: `state init` and up again ends it")));
+      "some slaves accept no further transfer after one that was left open: `state init` and up again clears it")));
 }
 
 void CoeClient::on_failure(Errc code, std::string what, std::string hint) {
@@ -226,7 +226,7 @@ void CoeClient::on_time(TimePoint now) {
   const auto waited = std::chrono::duration_cast<std::chrono::milliseconds>(timeout_).count();
   abort(sdo_abort::kTimeout, Errc::timeout,
         fmt::format("no answer within {} ms{}", waited,
-                    other_ ? fmt::format(", only one of another kind (command 0x{:02X})", *other_) : ""));
+                    other_ ? fmt::format(", only one to another request (command 0x{:02X})", *other_) : ""));
 }
 
 void CoeClient::send(Bytes message, State next, TimePoint now) {

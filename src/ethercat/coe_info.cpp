@@ -27,7 +27,7 @@ constexpr std::uint8_t kValueInfo = 0x07;
 constexpr std::uint8_t kHasUnit = 0x08;
 constexpr std::uint8_t kHasValues = 0x70;  ///< Default, lowest and highest value, each as long as the entry.
 
-constexpr std::string_view kNoInfo = "many drives have no dictionary to ask for: name one with -d";
+constexpr std::string_view kNoInfo = "many drives do not provide their dictionary: name a family with -d";
 
 std::string text(ByteSpan bytes) {
   // Some put zeros behind the name.
@@ -97,7 +97,7 @@ void CoeInfo::on_message(ByteSpan message, TimePoint now) {
 bool CoeInfo::follows(std::uint16_t left) {
   if (left + 1 == *left_) return true;
   finish(fail(error(Errc::protocol, fmt::format("part {} from the end of its answer is missing", *left_ - 1),
-                    "try again; if it stays, frames are lost or its mailbox is too slow")));
+                    "try again; if it persists, frames are being lost")));
   return false;
 }
 
@@ -108,7 +108,7 @@ void CoeInfo::take_in(ByteSpan data) {
 
 void CoeInfo::on_error(ByteSpan data) {
   if (data.size() < 4)
-    return finish(fail(error(Errc::protocol, "it refuses without a code", std::string(kNoInfo))));
+    return finish(fail(error(Errc::protocol, "refused without a code", std::string(kNoInfo))));
   const auto code = dword_at(data, 0);
   auto refused =
       error(Errc::sdo_abort, fmt::format("refused: {} (abort 0x{:08X})", canopen::sdo_abort_text(code), code),
@@ -162,7 +162,7 @@ void CoeInfo::complete_entry() {
 void CoeInfo::on_refusal(std::uint16_t detail) {
   if (asked_ == 0) return;
   finish(fail(error(Errc::protocol,
-                    fmt::format("its mailbox refuses the question: {} (mailbox error {:04X}h)",
+                    fmt::format("its mailbox refuses the request: {} (mailbox error {:04X}h)",
                                 mailbox_error_text(detail), detail),
                     std::string(kNoInfo))));
 }
@@ -176,7 +176,7 @@ void CoeInfo::on_time(TimePoint now) {
   if (asked_ == 0 || now < deadline_) return;
   const auto waited = std::chrono::duration_cast<std::chrono::milliseconds>(timeout_).count();
   finish(fail(error(Errc::timeout,
-                    left_ ? fmt::format("its answer stopped with {} parts to come", *left_)
+                    left_ ? fmt::format("its answer stopped {} parts before its end", *left_)
                           : fmt::format("no answer within {} ms", waited),
                     std::string(kNoInfo))));
 }

@@ -29,8 +29,8 @@ std::size_t data_size(ByteSpan frame, std::size_t datagram) {
 }
 
 tl::unexpected<Error> malformed(std::string what) {
-  return fail(Errc::protocol, "a frame of EtherCAT is damaged: " + std::move(what),
-              "frames that are cut short or changed on the way: look at the interface and the cable");
+  return fail(Errc::protocol, "damaged EtherCAT frame: " + std::move(what),
+              "frames are truncated or altered on the way: check the interface and the cable");
 }
 
 }  // namespace
@@ -78,7 +78,7 @@ bool is_ethercat(ByteSpan frame) {
 }
 
 Result<FrameReader> FrameReader::open(ByteSpan frame) {
-  if (!is_ethercat(frame)) return fail(Errc::protocol, "this is no frame of EtherCAT");
+  if (!is_ethercat(frame)) return fail(Errc::protocol, "not an EtherCAT frame");
   FrameReader reader(frame);
   if (auto checked = reader.check(); !checked) return fail(checked.error());
   return reader;
@@ -90,13 +90,13 @@ Result<void> FrameReader::check() {
   const std::size_t length = header & kLengthMask;
   if (header >> 12U != kDatagrams) return malformed(fmt::format("it is of type {}, not 1", header >> 12U));
   if (kFrameHeader + length > frame_.size())
-    return malformed(fmt::format("it says {} bytes and has {}", length, frame_.size() - kFrameHeader));
+    return malformed(fmt::format("it announces {} bytes and has {}", length, frame_.size() - kFrameHeader));
   frame_ = frame_.first(kFrameHeader + length);
   for (std::size_t at = kFrameHeader;;) {
-    if (at + kDatagramOverhead > frame_.size()) return malformed("a datagram begins behind its end");
+    if (at + kDatagramOverhead > frame_.size()) return malformed("a datagram begins beyond its end");
     const auto end = at + kDatagramOverhead + data_size(frame_, at);
     if (end > frame_.size())
-      return malformed(fmt::format("a datagram of {} bytes leads out of it", data_size(frame_, at)));
+      return malformed(fmt::format("a datagram of {} bytes extends beyond its end", data_size(frame_, at)));
     if ((word_at(frame_, at + 6) & kMoreFollow) == 0) return {};
     at = end;
   }

@@ -141,7 +141,7 @@ void Mailbox::on_answer(const Answer& answer, TimePoint now) {
 void Mailbox::on_missing(TimePoint now) {
   if (out_ && now >= out_->until)
     give_up("it does not answer at all",
-            "is it powered, and is the cable in front of it plugged in? `scan` shows who answers");
+            "is it powered, and is the cable leading to it plugged in? `scan` shows which slaves answer");
   pause_and_look(now);
 }
 
@@ -154,7 +154,7 @@ void Mailbox::on_looked(ByteSpan status, TimePoint now) {
   if (out_ && free_) return go(State::write, now);
   if (out_ && now >= out_->until)
     give_up("its mailbox stays full",
-            "it does not take messages any more: `state init` and up again, or switch it off and on");
+            "it no longer accepts messages: `state init` and up again, or power cycle it");
   pause_and_look(now);
 }
 

@@ -31,15 +31,15 @@ std::uint8_t next_mailbox_counter(std::uint8_t counter) {
 
 std::string mailbox_error_text(std::uint16_t detail) {
   switch (detail) {
-    case 1: return "the header of the message is not understood";
+    case 1: return "syntax error in the message header";
     case 2: return "the protocol is not supported";
-    case 3: return "the channel is not known";
+    case 3: return "invalid channel";
     case 4: return "the service is not supported";
-    case 5: return "the header of the protocol is wrong";
+    case 5: return "invalid protocol header";
     case 6: return "the message is too short";
-    case 7: return "there is no memory for it";
-    case 8: return "its length is not consistent";
-    default: return "a reason that ETG.1000.4 does not list";
+    case 7: return "no memory available";
+    case 8: return "inconsistent length";
+    default: return "reason not listed in ETG.1000.4";
   }
 }
 

@@ -140,8 +140,8 @@ Result<void> ProcessImage::start(TimePoint now) {
     if (!missing.empty())
       return fail(drive_error(
           Errc::refused, slave.node, missing.front(),
-          "this output has no value yet, and zero is one that the drive would obey",
-          "outputs are read from the drive before they flow; one that cannot be read must not be mapped"));
+          "this output was never set, and the drive would obey a zero",
+          "outputs are preset from the drive before they are sent; do not map one that cannot be read"));
   }
   next_ = now;
   return {};

@@ -84,9 +84,8 @@ void RingLook::on_answer(const Answer& answer, TimePoint) {
   if (state_ == State::count) return on_counted(answer);
   if (!answer.done()) {
     const auto position = view_.slaves.size() + 1;
-    auto gone =
-        make_error(Errc::timeout, fmt::format("the slave at position {} does not answer any more", position),
-                   "was a cable pulled, or its supply switched off, just now? Look again");
+    auto gone = make_error(Errc::timeout, fmt::format("the slave at position {} no longer answers", position),
+                           "was a cable pulled or its supply switched off? Try again");
     gone.node = static_cast<std::uint8_t>(position);
     return finish(fail(std::move(gone)));
   }
@@ -108,12 +107,11 @@ void RingLook::on_answer(const Answer& answer, TimePoint) {
 void RingLook::on_counted(const Answer& answer) {
   if (answer.lost)
     return finish(fail(
-        Errc::bus, "no frame comes back from the wire",
-        "is this the right interface, is a cable plugged in, and does it lead to the first drive's IN port "
-        "without a switch in between?"));
+        Errc::bus, "no frame comes back",
+        "is this the right interface, and is its cable plugged into the IN port of the first drive, without a switch in between?"));
   if (answer.working_counter == 0)
-    return finish(fail(Errc::bus, "frames come back, and no slave has touched them",
-                       "a cable that leads back, or a switch, is not an EtherCAT slave"));
+    return finish(fail(Errc::bus, "frames come back, but no slave processed them",
+                       "the cable leads to a switch or back to this computer, not to an EtherCAT slave"));
   view_.count = answer.working_counter;
   go(State::identity);
 }

@@ -86,15 +86,15 @@ class Parser {
 
   void walk(Visit visit) {
     for (std::size_t at = 2 * kSiiHeader;;) {
-      if (at + 2 > image_.size()) return doubt("it ends without the end of its categories");
+      if (at + 2 > image_.size()) return doubt("its categories have no end mark");
       const auto type = word_at(image_, at);
       if (type == kSiiEnd) return;
-      if (at + 4 > image_.size()) return doubt("it ends in the head of a category");
+      if (at + 4 > image_.size()) return doubt("it ends within the header of a category");
       const std::size_t size = 2U * word_at(image_, at + 2);
-      if (type == 0 && size == 0) return doubt("its categories have no end");
+      if (type == 0 && size == 0) return doubt("its categories are not terminated");
       if (at + 4 + size > image_.size())
         return doubt(
-            fmt::format("its category {} says {} bytes and has {}", type, size, image_.size() - at - 4));
+            fmt::format("its category {} announces {} bytes and has {}", type, size, image_.size() - at - 4));
       (this->*visit)(type, image_.subspan(at + 4, size));
       at += 4 + size;
     }
@@ -121,7 +121,7 @@ class Parser {
     std::size_t at = 1;
     for (std::size_t i = 0; i < count; ++i) {
       if (at >= data.size() || at + 1 + data[at] > data.size())
-        return doubt(fmt::format("it has {} strings and says {}", i, count));
+        return doubt(fmt::format("it announces {} strings and has {}", count, i));
       const auto text = data.subspan(at + 1, data[at]);
       out_.strings.emplace_back(text.begin(), text.end());
       at += 1 + text.size();
@@ -147,7 +147,7 @@ class Parser {
       row.use = data[7] <= 4 ? static_cast<SiiSyncManager::Use>(data[7]) : SiiSyncManager::Use::unused;
       out_.sync_managers.push_back(row);
     }
-    if (!data.empty()) doubt("its list of sync managers ends in a row");
+    if (!data.empty()) doubt("its list of sync managers is truncated");
   }
 
   void pdos(ByteSpan data, std::vector<SiiPdo>& list) {
@@ -159,8 +159,8 @@ class Parser {
       pdo.name = string_at(out_, data[5]);
       pdo.flags = word_at(data, 6);
       if (data.size() < 8 + 8 * count)
-        return doubt(
-            fmt::format("its PDO {:04X}h says {} entries and has {}", pdo.index, count, data.size() / 8 - 1));
+        return doubt(fmt::format("its PDO {:04X}h announces {} entries and has {}", pdo.index, count,
+                                 data.size() / 8 - 1));
       for (std::size_t i = 1; i <= count; ++i) {
         const auto row = data.subspan(8 * i, 8);
         pdo.entries.push_back({{word_at(row, 0), row[2]}, string_at(out_, row[3]), row[4], row[5]});
@@ -168,7 +168,7 @@ class Parser {
       data = data.subspan(8 + 8 * count);
       list.push_back(std::move(pdo));
     }
-    if (!data.empty()) doubt("its list of PDOs ends in the head of one");
+    if (!data.empty()) doubt("its list of PDOs is truncated");
   }
 
   void dc_modes(ByteSpan data) {
@@ -176,7 +176,7 @@ class Parser {
     for (; data.size() >= kRow; data = data.subspan(kRow))
       out_.dc_modes.push_back(
           {string_at(out_, data[18]), dword_at(data, 0), dword_at(data, 4), word_at(data, 14)});
-    if (!data.empty()) doubt("its list of DC modes ends in a row");
+    if (!data.empty()) doubt("its list of DC modes is truncated");
   }
 
   ByteSpan image_;
@@ -190,12 +190,12 @@ std::string SiiMailbox::doubt() const {
   const auto least = std::min(out_size, in_size);
   const auto most = std::max(out_size, in_size);
   if (least < kLeastMailbox)
-    return fmt::format("a mailbox has {} bytes, and an SDO takes {}", least, kLeastMailbox);
+    return fmt::format("a mailbox has {} bytes, an SDO needs {}", least, kLeastMailbox);
   if (most > kMaxDatagramData)
-    return fmt::format("a mailbox has {} bytes, and a frame takes {}", most, kMaxDatagramData);
-  if (std::min(out_start, in_start) < reg::kProcessMemory) return "a mailbox lies among the registers";
+    return fmt::format("a mailbox has {} bytes, a frame holds {}", most, kMaxDatagramData);
+  if (std::min(out_start, in_start) < reg::kProcessMemory) return "a mailbox overlaps the registers";
   const bool apart = out_start + out_size <= in_start || in_start + in_size <= out_start;
-  return apart ? std::string() : "its mailboxes lie upon each other";
+  return apart ? std::string() : "its mailboxes overlap";
 }
 
 std::size_t SiiPdo::bits() const {

@@ -76,8 +76,9 @@ void SiiReader::on_answer(const Answer& answer, TimePoint now) {
   }
   if (!answer.done())
     return end(
-        fail(error(Errc::timeout, answer.lost ? "the frames do not come back" : "it does not answer",
-                   "is it powered, and is the cable in front of it plugged in? `scan` shows who answers")),
+        fail(error(
+            Errc::timeout, answer.lost ? "frames do not come back" : "it does not answer",
+            "is it powered, and is the cable leading to it plugged in? `scan` shows which slaves answer")),
         now);
   switch (state_) {
     case State::ask_owner: return on_owner(answer.data, now);
@@ -96,9 +97,10 @@ void SiiReader::on_owner(ByteSpan data, TimePoint now) {
   const bool busy = (data[1] & reg::kSiiProcessorBusy) != 0;
   if (!theirs && !busy) return go(State::ready, now);
   if (now >= until_)
-    return end(fail(error(Errc::timeout, "its own processor does not let go of the SII",
-                          "try again in another state: `state init` gives the SII to the master")),
-               now);
+    return end(
+        fail(error(Errc::timeout, "its own processor does not release the SII",
+                   "try again in another state: in INIT (`state init`) the SII belongs to the master")),
+        now);
   if (!theirs || busy) return go(State::ask_owner, now, kPause);
   lent_ = true;
   go(State::take_over, now);
@@ -108,7 +110,7 @@ void SiiReader::on_ready(ByteSpan data, TimePoint now) {
   const auto status = word_at(data, 0);
   if ((status & reg::kSiiBusy) != 0) {
     if (now < until_) return go(State::ready, now, kPause);
-    return end(fail(error(Errc::timeout, "the memory stays busy", "switch the slave off and on again")), now);
+    return end(fail(error(Errc::timeout, "the memory stays busy", "power cycle the slave")), now);
   }
   if ((status & (reg::kSiiCommandError | reg::kSiiWriteError)) != 0) {
     if (++errors_ > kTries) return on_error(now);
@@ -121,7 +123,7 @@ void SiiReader::on_fetched(ByteSpan data, TimePoint now) {
   const auto status = word_at(data, 0);
   if ((status & reg::kSiiBusy) != 0) {
     if (now < until_) return go(State::fetch, now, kPause);
-    return end(fail(error(Errc::timeout, "the memory stays busy", "switch the slave off and on again")), now);
+    return end(fail(error(Errc::timeout, "the memory stays busy", "power cycle the slave")), now);
   }
   const auto address = dword_at(data, reg::kSiiAddress - reg::kSiiControl);
   const bool failed = (status & reg::kSiiCommandError) != 0 || address != image_.size() / 2;
@@ -135,7 +137,7 @@ void SiiReader::on_fetched(ByteSpan data, TimePoint now) {
 void SiiReader::on_error(TimePoint now) {
   end(fail(error(Errc::protocol,
                  fmt::format("the memory reports an error at word {:02X}h", image_.size() / 2),
-                 "is there a memory with content? Does another master read it at the same time?")),
+                 "is its memory fitted and programmed, and is no other master reading it?")),
       now);
 }
 

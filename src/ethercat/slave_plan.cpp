@@ -84,23 +84,23 @@ Result<SlavePlan> plan_slave(std::uint8_t node, const ProcessArea& area, const P
   const auto out = bytes_of(mapping.outputs);
   const auto in = bytes_of(mapping.inputs);
   if (!area.exists())
-    return fail(
-        drive_error(Errc::usage, node, "where its process data are is not known",
-                    "its SII says nothing of sync managers: name its family with -d, or its ESI file"));
+    return fail(drive_error(Errc::usage, node, "the location of its process data is unknown",
+                            "its SII lists no sync managers: name its family or its ESI file with -d"));
   if (out + in > kMaxDatagramData)
     return fail(drive_error(
         Errc::usage, node,
-        fmt::format("its process data have {} bytes, {} fit into a frame", out + in, kMaxDatagramData),
+        fmt::format("its process data have {} bytes, a frame holds {}", out + in, kMaxDatagramData),
         "map fewer objects: `pdo map`"));
   const bool out_first = area.out_start < area.in_start;
   const auto room =
       static_cast<std::size_t>(out_first ? area.in_start - area.out_start : area.out_start - area.in_start);
   const auto needed = (out_first ? out : in) * kBuffers;
   if (needed > room)
-    return fail(drive_error(Errc::usage, node,
-                            fmt::format("its {} need {} bytes of its memory, three buffers, and there are {}",
-                                        out_first ? "outputs" : "inputs", needed, room),
-                            "map fewer objects: `pdo map`"));
+    return fail(
+        drive_error(Errc::usage, node,
+                    fmt::format("its {} need {} bytes of its memory (three buffers), and {} are available",
+                                out_first ? "outputs" : "inputs", needed, room),
+                    "map fewer objects: `pdo map`"));
   return SlavePlan{area, logical, static_cast<std::uint16_t>(out), static_cast<std::uint16_t>(in)};
 }
 

@@ -27,7 +27,7 @@ Result<SmWatchdog> sm_watchdog(Duration time) {
     return fail(Errc::usage,
                 fmt::format("a watchdog of {} ms cannot be set",
                             std::chrono::duration<double, std::milli>(time).count()),
-                "it takes 0.1 ms to 6553.5 ms");
+                "allowed: 0.1 ms to 6553.5 ms");
   return SmWatchdog{reg::kDefaultWatchdogDivider, static_cast<std::uint16_t>(steps)};
 }
 

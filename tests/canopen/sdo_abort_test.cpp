@@ -57,7 +57,7 @@ TEST(SdoAbort, HasTheCodesThatEtherCatAdds) {
     EXPECT_EQ(sdo_abort_text(code).find("not listed"), std::string::npos);
     EXPECT_NE(sdo_abort_hint(code), "look the code up in the drive's manual");
   }
-  EXPECT_EQ(sdo_abort_text(0x0601'0006), "object is mapped to an RxPDO, its download is blocked");
+  EXPECT_EQ(sdo_abort_text(0x0601'0006), "object is mapped to an RxPDO, download blocked");
 }
 
 TEST(SdoAbort, OfAVendorIsNamedByItsClass) {

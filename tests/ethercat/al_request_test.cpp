@@ -122,9 +122,8 @@ TEST_F(AlRequestTest, ARefusalIsToldInWordsWithWhatToDo) {
   const auto status = ask(AlState::safeop);
   ASSERT_FALSE(status);
   EXPECT_EQ(status.error().code, Errc::negative);
-  EXPECT_EQ(
-      status.error().message,
-      "node 2: it refuses SAFE-OP and is in PRE-OP: invalid settings of the outputs (AL status code 001Dh)");
+  EXPECT_EQ(status.error().message,
+            "node 2: SAFE-OP refused, state is PRE-OP: invalid output settings (AL status code 001Dh)");
   EXPECT_NE(status.error().hint.find("`pdo show`"), std::string::npos);
   EXPECT_EQ(status.error().node, 2);
 }
@@ -135,7 +134,7 @@ TEST_F(AlRequestTest, AnErrorThatStaysAfterItsAcknowledgeIsARefusal) {
   const auto status = ask(AlState::preop);
   ASSERT_FALSE(status);
   EXPECT_EQ(status.error().message,
-            "node 2: it refuses PRE-OP and is in INIT: no valid firmware (AL status code 0014h)");
+            "node 2: PRE-OP refused, state is INIT: no valid firmware (AL status code 0014h)");
   EXPECT_GE(now, TimePoint{1s} + 500ms);
   EXPECT_EQ(slave.written, Written{0x11});
 }
@@ -146,7 +145,7 @@ TEST_F(AlRequestTest, ASlaveThatStaysWhereItIsEndsTheWait) {
   const auto status = ask(AlState::op, 300ms);
   ASSERT_FALSE(status);
   EXPECT_EQ(status.error().code, Errc::timeout);
-  EXPECT_EQ(status.error().message, "node 2: it was asked for OP and is still in SAFE-OP");
+  EXPECT_EQ(status.error().message, "node 2: OP was requested, state is still SAFE-OP");
   EXPECT_GE(now, TimePoint{1s} + 300ms);
   EXPECT_LT(now, TimePoint{1s} + 310ms);
 }
@@ -157,7 +156,7 @@ TEST_F(AlRequestTest, LostFramesAreAskedAgain) {
   slave.lost = 1'000'000;
   const auto status = ask(AlState::op);
   ASSERT_FALSE(status);
-  EXPECT_EQ(status.error().message, "node 2: the frames do not come back");
+  EXPECT_EQ(status.error().message, "node 2: frames do not come back");
   EXPECT_EQ(status.error().code, Errc::timeout);
 }
 
@@ -205,8 +204,8 @@ TEST(AlStatus, EachCodeThatAnEngineerMeetsSaysWhatToDo) {
     EXPECT_EQ(al_status_text(number).find("not list"), std::string::npos) << code;
     EXPECT_NE(al_status_hint(number), "") << code;
   }
-  EXPECT_EQ(al_status_text(0x8001), "a code of the vendor's own");
-  EXPECT_EQ(al_status_text(0x7FFF), "a code that ETG.1000.6 does not list");
+  EXPECT_EQ(al_status_text(0x8001), "vendor-specific code");
+  EXPECT_EQ(al_status_text(0x7FFF), "code not listed in ETG.1000.6");
   EXPECT_NE(al_status_hint(0x8001), "");
   EXPECT_EQ(al_status_text(0x0027), "free run is not supported");
   EXPECT_EQ(name(AlState::safeop), "SAFE-OP");

@@ -166,7 +166,7 @@ TEST_F(CoeClientTest, AKindOfTransferThatWasNamedIsTheOne) {
   expect_failure(Errc::protocol,
                  "node 2, object 0x1008:0: it does not answer this read in one expedited message");
   download({0x2000, 0}, counted(5), {}, Transfer::expedited);
-  expect_failure(Errc::usage, "node 2, object 0x2000:0: 5 bytes do not go into one expedited message");
+  expect_failure(Errc::usage, "node 2, object 0x2000:0: 5 bytes do not fit into one expedited message");
   download({0x2000, 0}, counted(5), {}, Transfer::block);
   expect_failure(Errc::usage, "node 2, object 0x2000:0: there are no block transfers over EtherCAT");
 }
@@ -186,9 +186,9 @@ TEST_F(CoeClientTest, AnAbortThatOnlyEtherCatHasIsToldInWords) {
   download({0x6040, 0}, {6, 0}, {"> 00202B40600006000000", "< 00308040600006000106"});
   const auto r = result();
   ASSERT_FALSE(r);
-  EXPECT_EQ(r.error().message,
-            "node 2, object 0x6040:0: refused: object is mapped to an RxPDO, its download is blocked (abort "
-            "0x06010006)");
+  EXPECT_EQ(
+      r.error().message,
+      "node 2, object 0x6040:0: refused: object is mapped to an RxPDO, download blocked (abort 0x06010006)");
   EXPECT_NE(r.error().hint, "");
 }
 
@@ -241,8 +241,9 @@ TEST_F(CoeClientTest, TheLateAnswerToARequestOfTheOtherKindIsNotThatOfThisOne) {
   EXPECT_EQ(data(), "");
   upload({0x6060, 0},
          {"> 00204060600000000000", "< 00306060600000000000", "+ 500ms", "> 00208060600000000405"});
-  expect_failure(Errc::timeout,
-                 "node 2, object 0x6060:0: no answer within 500 ms, only one of another kind (command 0x60)");
+  expect_failure(
+      Errc::timeout,
+      "node 2, object 0x6060:0: no answer within 500 ms, only one to another request (command 0x60)");
 }
 
 TEST_F(CoeClientTest, AbortsWhenTheToggleBitDoesNotAlternate) {
@@ -308,9 +309,9 @@ TEST_F(CoeClientTest, ARefusalOfTheMailboxAndAFailureEndTheTransfer) {
   client.start_upload({0x1018, 1}, now);
   (void)client.take_message();
   client.on_refusal(7);
-  expect_failure(Errc::protocol,
-                 "node 2, object 0x1018:1: its mailbox refuses the request: there is no memory for it "
-                 "(mailbox error 0007h)");
+  expect_failure(
+      Errc::protocol,
+      "node 2, object 0x1018:1: its mailbox refuses the request: no memory available (mailbox error 0007h)");
   client.start_upload({0x1018, 1}, now);
   (void)client.take_message();
   client.on_failure(Errc::timeout, "its mailbox stays full", "wait");

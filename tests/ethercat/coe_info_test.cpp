@@ -56,7 +56,7 @@ TEST_F(CoeInfoTest, APartThatIsMissingIsTold) {
   expect_failure(Errc::protocol,
                  "node 2: the list of its objects: part 2 from the end of its answer is missing");
   list({"> 0080 01000000 0100", "< 0080 82000300 0100 0010", "+ 500ms"});
-  expect_failure(Errc::timeout, "node 2: the list of its objects: its answer stopped with 3 parts to come");
+  expect_failure(Errc::timeout, "node 2: the list of its objects: its answer stopped 3 parts before its end");
 }
 
 TEST_F(CoeInfoTest, DescribesAnObject) {
@@ -93,19 +93,19 @@ TEST_F(CoeInfoTest, ADriveWithoutADictionaryRefusesInOneWayOrAnother) {
       Errc::sdo_abort,
       "node 2: the list of its objects: refused: unsupported access to an object (abort 0x06010000)");
   list({"> 0080 01000000 0100", "< 0030 80 000000 01000405"});
-  expect_failure(Errc::sdo_abort,
-                 "node 2: the list of its objects: refused: command specifier not valid or "
-                 "unknown (abort 0x05040001)");
+  expect_failure(
+      Errc::sdo_abort,
+      "node 2: the list of its objects: refused: command specifier not valid or unknown (abort 0x05040001)");
   list({"> 0080 01000000 0100"});
   info.on_refusal(4);
-  expect_failure(Errc::protocol,
-                 "node 2: the list of its objects: its mailbox refuses the question: the service is "
-                 "not supported (mailbox error 0004h)");
+  expect_failure(
+      Errc::protocol,
+      "node 2: the list of its objects: its mailbox refuses the request: the service is not supported (mailbox error 0004h)");
   list({"> 0080 01000000 0100", "+ 500ms"});
   expect_failure(Errc::timeout, "node 2: the list of its objects: no answer within 500 ms");
   info.start_object(0x1000, now);
   play(info, now, {"> 0080 03000000 0010", "< 0080 07000000 0000"});
-  expect_failure(Errc::protocol, "node 2, object 0x1000:0: its description: it refuses without a code");
+  expect_failure(Errc::protocol, "node 2, object 0x1000:0: its description: refused without a code");
 }
 
 TEST_F(CoeInfoTest, WhatBelongsToAnotherQuestionIsNoAnswer) {

@@ -43,10 +43,8 @@ TEST(Frame, OneDatagramIsWrittenAsAPublicMasterWritesIt) {
 
 TEST(Frame, SeveralDatagramsAreReadAsAnotherMastersSlavesAnsweredThem) {
   // Frame 515 of dumps/twincat-scan-boxes.pcapng of ethercrab: two slaves answer a read of their SII.
-  const auto frame =
-      hex("01010501000002000000000088a4341001ff020002050e80040040000800000002000000522c4c04010001ff010002050e"
-          "00040050000800"
-          "0000020000005230ec030100");
+  const auto frame = hex(
+      "01010501000002000000000088a4341001ff020002050e80040040000800000002000000522c4c04010001ff010002050e000400500008000000020000005230ec030100");
   const auto read = datagrams(frame);
   ASSERT_EQ(read.size(), 2U);
   EXPECT_EQ(read[0].command, Command::aprd);
@@ -108,28 +106,28 @@ TEST(Frame, WhatIsNoEtherCatIsSomebodyElses) {
   arp[12] = 0x08;
   arp[13] = 0x06;
   EXPECT_FALSE(is_ethercat(arp));
-  EXPECT_EQ(refusal(arp), "this is no frame of EtherCAT");
-  EXPECT_EQ(refusal(Bytes(13)), "this is no frame of EtherCAT");
-  EXPECT_EQ(refusal({}), "this is no frame of EtherCAT");
+  EXPECT_EQ(refusal(arp), "not an EtherCAT frame");
+  EXPECT_EQ(refusal(Bytes(13)), "not an EtherCAT frame");
+  EXPECT_EQ(refusal({}), "not an EtherCAT frame");
 }
 
 TEST(Frame, EachLengthThatLeadsOutIsRefused) {
   const auto good = hex("FFFFFFFFFFFF 101010101010 88A4 0D10 07 00 0000 0000 0100 0000 00 0000");
   EXPECT_EQ(refusal(good), "accepted");
-  EXPECT_EQ(refusal(ByteSpan(good).first(15)), "a frame of EtherCAT is damaged: it ends before its header");
-  EXPECT_EQ(refusal(ByteSpan(good).first(28)), "a frame of EtherCAT is damaged: it says 13 bytes and has 12");
+  EXPECT_EQ(refusal(ByteSpan(good).first(15)), "damaged EtherCAT frame: it ends before its header");
+  EXPECT_EQ(refusal(ByteSpan(good).first(28)), "damaged EtherCAT frame: it announces 13 bytes and has 12");
   auto bad = good;
   bad[15] = 0x40;
-  EXPECT_EQ(refusal(bad), "a frame of EtherCAT is damaged: it is of type 4, not 1");
+  EXPECT_EQ(refusal(bad), "damaged EtherCAT frame: it is of type 4, not 1");
   bad = good;
   bad[14] = 0x0B;
-  EXPECT_EQ(refusal(bad), "a frame of EtherCAT is damaged: a datagram begins behind its end");
+  EXPECT_EQ(refusal(bad), "damaged EtherCAT frame: a datagram begins beyond its end");
   bad = good;
   bad[22] = 2;
-  EXPECT_EQ(refusal(bad), "a frame of EtherCAT is damaged: a datagram of 2 bytes leads out of it");
+  EXPECT_EQ(refusal(bad), "damaged EtherCAT frame: a datagram of 2 bytes extends beyond its end");
   bad = good;
   bad[23] = 0x80;
-  EXPECT_EQ(refusal(bad), "a frame of EtherCAT is damaged: a datagram begins behind its end");
+  EXPECT_EQ(refusal(bad), "damaged EtherCAT frame: a datagram begins beyond its end");
 }
 
 TEST(Frame, CommandsHaveNamesAndDirections) {

@@ -297,7 +297,7 @@ TEST_F(MailboxTest, ARefusalOfTheSlaveIsTold) {
   slave.handler = [this](std::uint8_t, const Bytes&) { slave.reply(0, hex("0100 0700")); };
   send("0020AA");
   run_for(5ms);
-  EXPECT_EQ(came(), "refused: there is no memory for it");
+  EXPECT_EQ(came(), "refused: no memory available");
 }
 
 TEST_F(MailboxTest, OtherProtocolsAndDamagedMessagesAreCountedAndLeft) {
@@ -348,8 +348,8 @@ TEST(MailboxMessage, AMailboxThatIsTooSmallHoldsItsMessageAllTheSame) {
 }
 
 TEST(MailboxMessage, EachTextOfARefusalIsItsOwn) {
-  EXPECT_EQ(mailbox_error_text(5), "the header of the protocol is wrong");
-  EXPECT_EQ(mailbox_error_text(99), "a reason that ETG.1000.4 does not list");
+  EXPECT_EQ(mailbox_error_text(5), "invalid protocol header");
+  EXPECT_EQ(mailbox_error_text(99), "reason not listed in ETG.1000.4");
   EXPECT_FALSE(parse_mailbox(hex("0000000000")));
   EXPECT_FALSE(parse_mailbox(hex("010000000003")));
   EXPECT_TRUE(parse_mailbox(hex("000000000003")));

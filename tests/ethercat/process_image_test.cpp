@@ -123,9 +123,8 @@ TEST_F(ProcessImageTest, NothingFlowsUntilEveryOutputWasSet) {
   const auto started = image.start(now);
   ASSERT_FALSE(started);
   EXPECT_EQ(started.error().code, Errc::refused);
-  EXPECT_EQ(
-      started.error().message,
-      "node 1, object 0x607A:0: this output has no value yet, and zero is one that the drive would obey");
+  EXPECT_EQ(started.error().message,
+            "node 1, object 0x607A:0: this output was never set, and the drive would obey a zero");
   EXPECT_EQ(image.unset(1), (std::vector<ObjectAddress>{kTarget, kFlag, kMode}));
   EXPECT_EQ(image.deadline(), kNever);
   cycle();

@@ -122,12 +122,12 @@ TEST_F(RingLookTest, NothingOnTheWireAndNoWireAtAllAreTwoThings) {
   const auto empty = run();
   ASSERT_FALSE(empty);
   EXPECT_EQ(empty.error().code, Errc::bus);
-  EXPECT_EQ(empty.error().message, "frames come back, and no slave has touched them");
+  EXPECT_EQ(empty.error().message, "frames come back, but no slave processed them");
   lost = true;
   const auto none = run();
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().code, Errc::bus);
-  EXPECT_EQ(none.error().message, "no frame comes back from the wire");
+  EXPECT_EQ(none.error().message, "no frame comes back");
   EXPECT_NE(none.error().hint, "");
 }
 
@@ -136,7 +136,7 @@ TEST_F(RingLookTest, ASlaveThatGoesMeanwhileIsNamed) {
   gone = 1;
   const auto view = run();
   ASSERT_FALSE(view);
-  EXPECT_EQ(view.error().message, "the slave at position 2 does not answer any more");
+  EXPECT_EQ(view.error().message, "the slave at position 2 no longer answers");
   EXPECT_EQ(view.error().node, 2);
 }
 

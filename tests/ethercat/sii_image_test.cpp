@@ -70,15 +70,14 @@ TEST(SiiImage, ItsChecksumIsThatOfRealSlaves) {
 TEST(SiiImage, MailboxesThatCannotBeUsedAreADoubt) {
   EXPECT_EQ((SiiMailbox{0x1000, 128, 0x1080, 128}).doubt(), "");
   EXPECT_EQ(SiiMailbox{}.doubt(), "");
-  EXPECT_EQ((SiiMailbox{0x1000, 15, 0x1080, 128}).doubt(), "a mailbox has 15 bytes, and an SDO takes 16");
-  EXPECT_EQ((SiiMailbox{0x1000, 128, 0x2000, 1487}).doubt(),
-            "a mailbox has 1487 bytes, and a frame takes 1486");
-  EXPECT_EQ((SiiMailbox{0x1000, 128, 0x0800, 128}).doubt(), "a mailbox lies among the registers");
-  EXPECT_EQ((SiiMailbox{0x1000, 129, 0x1080, 128}).doubt(), "its mailboxes lie upon each other");
-  EXPECT_EQ((SiiMailbox{0x1080, 128, 0x1000, 129}).doubt(), "its mailboxes lie upon each other");
+  EXPECT_EQ((SiiMailbox{0x1000, 15, 0x1080, 128}).doubt(), "a mailbox has 15 bytes, an SDO needs 16");
+  EXPECT_EQ((SiiMailbox{0x1000, 128, 0x2000, 1487}).doubt(), "a mailbox has 1487 bytes, a frame holds 1486");
+  EXPECT_EQ((SiiMailbox{0x1000, 128, 0x0800, 128}).doubt(), "a mailbox overlaps the registers");
+  EXPECT_EQ((SiiMailbox{0x1000, 129, 0x1080, 128}).doubt(), "its mailboxes overlap");
+  EXPECT_EQ((SiiMailbox{0x1080, 128, 0x1000, 129}).doubt(), "its mailboxes overlap");
   auto bytes = full_sii();
   bytes[0x33] = 0xFF;  // The size of the first.
-  EXPECT_EQ(parse_sii(bytes).doubts, (Strings{"a mailbox has 65280 bytes, and a frame takes 1486"}));
+  EXPECT_EQ(parse_sii(bytes).doubts, (Strings{"a mailbox has 65280 bytes, a frame holds 1486"}));
 }
 
 TEST(SiiImage, ABadChecksumIsADoubtAndTheRestIsReadAllTheSame) {
@@ -107,12 +106,12 @@ TEST(SiiImage, EachWayOfEndingTooEarlyIsTold) {
   const auto doubts = [&](std::size_t size) { return parse_sii(ByteSpan(full).first(size)).doubts; };
   EXPECT_EQ(doubts(0), (Strings{"it ends after 0 bytes, before its first category"}));
   EXPECT_EQ(doubts(127), (Strings{"it ends after 127 bytes, before its first category"}));
-  EXPECT_EQ(doubts(128), (Strings{"it ends without the end of its categories"}));
-  EXPECT_EQ(doubts(130), (Strings{"it ends in the head of a category"}));
-  EXPECT_EQ(doubts(140), (Strings{"its category 10 says 20 bytes and has 8"}));
+  EXPECT_EQ(doubts(128), (Strings{"its categories have no end mark"}));
+  EXPECT_EQ(doubts(130), (Strings{"it ends within the header of a category"}));
+  EXPECT_EQ(doubts(140), (Strings{"its category 10 announces 20 bytes and has 8"}));
   auto zero = full;
   std::fill(zero.begin() + 128, zero.end(), std::uint8_t{0});
-  EXPECT_EQ(parse_sii(zero).doubts, (Strings{"its categories have no end"}));
+  EXPECT_EQ(parse_sii(zero).doubts, (Strings{"its categories are not terminated"}));
 }
 
 TEST(SiiImage, CategoriesThatSayTooMuchAreTold) {
@@ -123,13 +122,13 @@ TEST(SiiImage, CategoriesThatSayTooMuchAreTold) {
     bytes.insert(bytes.end(), more.begin(), more.end());
     return parse_sii(bytes);
   };
-  EXPECT_EQ(with("0A00 0200 03 01 41 05 FFFF").doubts, (Strings{"it has 1 strings and says 3"}));
+  EXPECT_EQ(with("0A00 0200 03 01 41 05 FFFF").doubts, (Strings{"it announces 3 strings and has 1"}));
   EXPECT_EQ(with("1E00 0100 0000 FFFF").doubts, (Strings{"its general category is too short"}));
-  EXPECT_EQ(with("2900 0100 0000 FFFF").doubts, (Strings{"its list of sync managers ends in a row"}));
+  EXPECT_EQ(with("2900 0100 0000 FFFF").doubts, (Strings{"its list of sync managers is truncated"}));
   EXPECT_EQ(with("3200 0400 011A 02 FF 00 00 0000 FFFF").doubts,
-            (Strings{"its PDO 1A01h says 2 entries and has 0"}));
-  EXPECT_EQ(with("3300 0100 011A FFFF").doubts, (Strings{"its list of PDOs ends in the head of one"}));
-  EXPECT_EQ(with("3C00 0100 0000 FFFF").doubts, (Strings{"its list of DC modes ends in a row"}));
+            (Strings{"its PDO 1A01h announces 2 entries and has 0"}));
+  EXPECT_EQ(with("3300 0100 011A FFFF").doubts, (Strings{"its list of PDOs is truncated"}));
+  EXPECT_EQ(with("3C00 0100 0000 FFFF").doubts, (Strings{"its list of DC modes is truncated"}));
   EXPECT_EQ(with("1E00 0300 09 00 09 09 00 00 FFFF").name, "") << "a string that is not there";
 }
 

@@ -180,8 +180,7 @@ TEST_F(SiiReaderTest, TheMemoryIsGivenBackAfterAFailureToo) {
 TEST_F(SiiReaderTest, AProcessorThatDoesNotLetGoIsNotForced) {
   memory.theirs = true;
   memory.held = 1'000'000;
-  expect_failure(Errc::timeout,
-                 "node 3: its SII cannot be read: its own processor does not let go of the SII");
+  expect_failure(Errc::timeout, "node 3: its SII cannot be read: its own processor does not release the SII");
   for (const auto& request : memory.seen) EXPECT_EQ(request.command, Command::fprd) << "nothing was written";
 }
 
@@ -189,7 +188,7 @@ TEST_F(SiiReaderTest, ASlaveThatIsGoneIsTold) {
   memory.counter = 0;
   expect_failure(Errc::timeout, "node 3: its SII cannot be read: it does not answer");
   memory.lost = true;
-  expect_failure(Errc::timeout, "node 3: its SII cannot be read: the frames do not come back");
+  expect_failure(Errc::timeout, "node 3: its SII cannot be read: frames do not come back");
 }
 
 TEST_F(SiiReaderTest, AnEmptyMemoryEndsTheReadAtOnce) {

@@ -84,17 +84,17 @@ TEST(SlavePlan, AMappingThatLeadsIntoTheOtherBufferIsRefused) {
   const auto plan = plan_slave(3, {2, 0x1100, 0x24, 3, 0x1140, 0x20}, mapping, 0);
   ASSERT_FALSE(plan);
   EXPECT_EQ(plan.error().message,
-            "node 3: its outputs need 72 bytes of its memory, three buffers, and there are 64");
+            "node 3: its outputs need 72 bytes of its memory (three buffers), and 64 are available");
   EXPECT_EQ(plan.error().code, Errc::usage);
   const auto other = plan_slave(3, {2, 0x1140, 0x24, 3, 0x1100, 0x20}, {{}, mapping.outputs}, 0);
   ASSERT_FALSE(other);
   EXPECT_EQ(other.error().message,
-            "node 3: its inputs need 72 bytes of its memory, three buffers, and there are 64");
+            "node 3: its inputs need 72 bytes of its memory (three buffers), and 64 are available");
   const auto unknown = plan_slave(3, {}, mapping, 0);
-  EXPECT_EQ(unknown.error().message, "node 3: where its process data are is not known");
+  EXPECT_EQ(unknown.error().message, "node 3: the location of its process data is unknown");
   mapping.outputs.assign(400, {{0x6040, 0}, 32});
   EXPECT_EQ(plan_slave(3, {2, 0x1000, 0x24, 3, 0x8000, 0x20}, mapping, 0).error().message,
-            "node 3: its process data have 1600 bytes, 1486 fit into a frame");
+            "node 3: its process data have 1600 bytes, a frame holds 1486");
 }
 
 TEST(SlavePlan, TheSiiSaysWhereTheDataAre) {
