@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "ethercat/coe_message.hpp"
 #include "ethercat/registers.hpp"
-#include "ethercat/words.hpp"
 
 namespace servoctl::ethercat {
 namespace {
@@ -15,8 +13,6 @@ using namespace std::chrono_literals;
 constexpr Duration kLongestPause = 1ms;
 /// Between looks at a slave that is not there while nobody waits for it.
 constexpr Duration kUnanswered = 100ms;
-/// Emergencies and events that nobody takes are not kept for ever.
-constexpr std::size_t kKept = 64;
 
 /// From the status of SM0 to that of SM1's processor side: one read shows all.
 constexpr std::uint16_t kStatus = reg::sm_status(0);
@@ -233,69 +229,9 @@ void Mailbox::on_read(const Answer& answer, TimePoint now) {
   proceed(now);
 }
 
-void Mailbox::take_in(ByteSpan mailbox) {
-  const auto message = parse_mailbox(mailbox);
-  if (!message) {
-    ++statistics_.damaged;
-    return;
-  }
-  const auto whole = mailbox.first(kMailboxHeader + message->data.size());
-  ++statistics_.received;
-  if (is_old(whole)) return;
-  count(*message);
-  last_.assign(whole.begin(), whole.end());
-  const bool emergency =
-      message->type == MailboxType::coe && coe_service(message->data) == CoeService::emergency;
-  if (emergency) {
-    const auto told = coe_emergency(message->data, node_);
-    if (told && emergencies_.size() < kKept) emergencies_.push_back(*told);
-    return;
-  }
-  if (draining_) {
-    ++statistics_.left_behind;
-    return;
-  }
-  answered_ = true;
-  if (message->type == MailboxType::error && message->data.size() >= 4)
-    events_.push_back(Refusal{word_at(message->data, 2), out_.has_value()});
-  else if (message->type == MailboxType::coe)
-    events_.push_back(Message{Bytes(message->data.begin(), message->data.end()), out_.has_value()});
-  else
-    ++statistics_.foreign;
-  if (events_.size() > kKept) events_.pop_front();
-}
-
-/// Asked for again, a slave may give what had come already.
-bool Mailbox::is_old(ByteSpan message) const {
-  return repeated_ && counts_ && std::equal(message.begin(), message.end(), last_.begin(), last_.end());
-}
-
-void Mailbox::count(const MailboxView& message) {
-  if (last_.empty()) return;
-  const auto before = static_cast<std::uint8_t>(last_[5] >> 4U & 0x07U);
-  if (before == 0 || message.counter == 0) return;
-  if (skipped_ && counts_ && message.counter == next_mailbox_counter(next_mailbox_counter(before)))
-    ++statistics_.missed;
-  counts_ = counts_ || message.counter != before;
-}
-
 void Mailbox::give_up(std::string what, std::string hint) {
   out_.reset();
   events_.push_back(Failure{Errc::timeout, std::move(what), std::move(hint)});
-}
-
-std::optional<Mailbox::Event> Mailbox::take_event() {
-  if (events_.empty()) return std::nullopt;
-  auto out = std::move(events_.front());
-  events_.pop_front();
-  return out;
-}
-
-std::optional<canopen::Emergency> Mailbox::take_emergency() {
-  if (emergencies_.empty()) return std::nullopt;
-  const auto out = emergencies_.front();
-  emergencies_.pop_front();
-  return out;
 }
 
 }  // namespace servoctl::ethercat
