@@ -55,10 +55,12 @@ class EscTest : public testing::Test {
   static constexpr std::uint16_t kStation = 0x1001;
 
   void load() {
-    const std::filesystem::path folders[] = {std::filesystem::path(source_dir()) / "eds"};
-    auto loaded = drive::load_profile("sv2", folders);
-    ASSERT_TRUE(loaded) << loaded.error().message;
-    profile_ = std::make_unique<drive::Profile>(std::move(*loaded));
+    static const auto kLoaded = [] {
+      const std::filesystem::path folders[] = {std::filesystem::path(source_dir()) / "eds"};
+      return drive::load_profile("sv2", folders);
+    }();
+    ASSERT_TRUE(kLoaded) << kLoaded.error().message;
+    profile_ = std::make_unique<drive::Profile>(*kLoaded);
     options_ = EscSlave::Options::of(*profile_);
   }
   /// So many slaves, with the station addresses 1001h, 1002h ….
