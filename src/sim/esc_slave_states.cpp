@@ -99,10 +99,10 @@ void EscSlave::on_state(EscState from, EscState to) {
   apply_outputs();
 }
 
-/// A drive that has power when its process data end has lost who moves it.
+/// A drive that still has power when its process data end has lost who moves it.
 void EscSlave::leave_op(bool by_watchdog) {
-  const bool has_power = drive::is_energised(model_.power_state());
   model_.set_operational(false);
+  const bool has_power = drive::is_energised(model_.power_state());
   if (by_watchdog || has_power) model_.on_master_lost(lost_code(), model_.now());
 }
 
@@ -132,7 +132,6 @@ std::uint32_t EscSlave::check_assignment(ObjectAddress object, ByteSpan data) co
   const auto& values = model_.values();
   const auto value = load_le(data);
   if (object.sub == 0) {
-    if (value > values.last_sub(object.index)) return abort::kPdoLength;
     for (std::uint8_t sub = 1; sub <= value; ++sub)
       if (values.number({object.index, sub}) == 0) return abort::kPdoLength;
     return 0;

@@ -107,6 +107,18 @@ TEST_F(EscFrames, WhatCannotBeWrittenIsNotCounted) {
   EXPECT_EQ(show(0x2FFF, 1), "55");
 }
 
+TEST_F(EscFrames, BesideAMailboxThereIsPlainMemory) {
+  build(1);
+  EXPECT_EQ(write(0x1F00, "0102030405060708"), 1);
+  EXPECT_EQ(write(0x0808, "021F 0400 22 00 01 00"), 1);  // Nothing lies in it.
+  const auto got = datagram(kFprd, physical(kStation, 0x1F00), Bytes(8, 0xEE));
+  EXPECT_EQ(got.counter, 1);
+  EXPECT_EQ(to_hex(got.data), "01 02 EE EE EE EE 07 08");
+  EXPECT_EQ(write(0x1F00, "A1A2A3A4A5A6A7A8"), 1);
+  EXPECT_EQ(write(0x080E, "00"), 1);
+  EXPECT_EQ(show(0x1F00, 8), "A1 A2 03 04 05 06 A7 A8");
+}
+
 TEST_F(EscFrames, AFrameWhoseLengthsDoNotFitGoesNoFurtherAndIsCounted) {
   build(1);
   auto frame = frame_of({datagram_of(kBrd, 0, Bytes(2, 0))});

@@ -53,8 +53,10 @@ TEST_F(EscMailboxTest, OnlyTheWholeMailboxCounts) {
 }
 
 TEST_F(EscMailboxTest, EachSideHasOneDirection) {
-  EXPECT_EQ(read(0x1000, 256).counter, 0);
   EXPECT_EQ(write(0x1400, Bytes(256, 0)), 0);
+  slave().faults().mailbox_stays_full = true;
+  EXPECT_EQ(post(sdo_message(kReadType)), 1);
+  EXPECT_EQ(read(0x1000, 256).counter, 0);
 }
 
 TEST_F(EscMailboxTest, AMailboxThatStaysFullTakesNoMore) {
@@ -101,6 +103,8 @@ TEST_F(EscMailboxTest, ARequestThatComesTwiceIsDoneOnce) {
     EXPECT_EQ(post_raw(0x03, sdo_message(kReadType)), 1);
     EXPECT_EQ(fetch_data(), kType);
   }
+  EXPECT_EQ(post_raw(0x63, sdo_message(kReadType)), 1);  // One stood between.
+  EXPECT_EQ(fetch_data(), kType);
 }
 
 TEST_F(EscMailboxTest, AnAnswerThatWasLostComesAgain) {

@@ -70,6 +70,18 @@ TEST_F(EscProcessDataTest, AMappingOfOnesOwnIsTaken) {
   EXPECT_EQ(sdo("40 4160 00 00000000").substr(18, 2), "31");
 }
 
+TEST_F(EscProcessDataTest, ASubIndexIsReachedByItsMapping) {
+  build(1);
+  go_to_pre_op();
+  for (const auto* request : {"2B 121C 01 0117 0000", "2F 121C 00 01000000"})
+    EXPECT_EQ(sdo(request).substr(6, 2), "60") << request;
+  EXPECT_EQ(write(0x0810, "0018 0C00 64 00 01 00"), 1);
+  ASSERT_EQ(request(4), "04 00 00 00 00 00");
+  EXPECT_EQ(write(0x1800, "0000 00000000 0000 00000300"), 1);
+  ASSERT_EQ(request(8), "08 00 00 00 00 00");
+  EXPECT_EQ(slave().model().values().number({0x60FE, 1}), 0x0003'0000U);
+}
+
 TEST_F(EscProcessDataTest, InSafeOpInputsAreValidAndOutputsDoNothing) {
   start();
   out.controlword = 6;

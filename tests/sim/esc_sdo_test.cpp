@@ -52,6 +52,7 @@ class EscSdo : public EscTest {
     for (unsigned toggle = 0; out.size() < total; toggle ^= 0x10U, ++segments_) {
       answer = ask({static_cast<std::uint8_t>(0x60U | toggle), 0, 0, 0, 0, 0, 0, 0});
       EXPECT_EQ(answer[0] & 0xF0U, toggle);
+      EXPECT_GE(answer.size(), 8U);
       const auto unused = answer.size() == 8 ? answer[0] >> 1U & 7U : 0U;
       out.insert(out.end(), answer.begin() + 1, answer.end() - unused);
       EXPECT_EQ((answer[0] & 1U) != 0, out.size() >= total);
@@ -155,10 +156,11 @@ TEST_F(EscSdo, EachRefusalHasItsCode) {
       {"40 1810 09 00000000", "11 00 09 06"},  // No such sub-index.
       {"2B 4160 00 00000000", "02 00 01 06"},  // Read-only.
       {"21 4160 00 02000000 0000", "02 00 01 06"},
-      {"2B 6060 00 03000000", "10 00 07 06"},  // Two bytes for one.
-      {"2F 6060 00 63000000", "31 00 09 06"},  // No such mode: above the last,
-      {"2F 6060 00 05000000", "30 00 09 06"},  // and between two.
-      {"50 0016 00 00000000", "00 00 01 06"},  // Complete access.
+      {"21 4160 00 64000000 0000", "02 00 01 06"},  // Before all of it has come.
+      {"2B 6060 00 03000000", "10 00 07 06"},       // Two bytes for one.
+      {"2F 6060 00 63000000", "31 00 09 06"},       // No such mode: above the last,
+      {"2F 6060 00 05000000", "30 00 09 06"},       // and between two.
+      {"50 0016 00 00000000", "00 00 01 06"},       // Complete access.
       {"31 0016 00 02000000 0000", "00 00 01 06"},
       {"60 0000 00 00000000", "01 00 04 05"},  // A segment of nothing.
       {"00 0000 00 00000000", "01 00 04 05"},
@@ -209,6 +211,8 @@ TEST_F(EscSdo, CompleteAccessTakesAllSubIndicesWhereItIsThere) {
   EXPECT_EQ(sdo("50 0010 00 00000000").substr(18), "00 00 01 06");
   EXPECT_EQ(download({0x6099, 1}, hex("10270000 E8030000"), 0x31), 0U);
   EXPECT_EQ(slave().model().values().number({0x6099, 2}), 1000U);
+  EXPECT_EQ(download({0x1600, 0}, hex("0000 10004060"), 0x31), 0U);
+  EXPECT_EQ(slave().model().values().number({0x1600, 1}), 0x6040'0010U);
   EXPECT_EQ(download({0x6099, 1}, hex("10270000 E80300"), 0x31), 0x0607'0013U);
   EXPECT_EQ(download({0x6099, 1}, Bytes(9, 0), 0x31), 0x0607'0012U);
 }
@@ -219,10 +223,10 @@ TEST_F(EscSdo, AnObjectOfTheOutputsCanBeBarredInOp) {
     EXPECT_EQ(sdo(request).substr(6, 2), "60");
   EXPECT_EQ(write(0x0810, "0018 1300 64 00 01 00"), 1);
   EXPECT_EQ(request(4), "04 00 00 00 00 00");
+  slave().faults().refuses_mapped_writes = true;
+  EXPECT_EQ(sdo("23 FF60 00 10270000").substr(6, 2), "60");
   EXPECT_EQ(write(0x1800, Bytes(19, 0)), 1);
   EXPECT_EQ(request(8), "08 00 00 00 00 00");
-  EXPECT_EQ(sdo("23 FF60 00 10270000").substr(6, 2), "60");
-  slave().faults().refuses_mapped_writes = true;
   EXPECT_EQ(sdo("23 FF60 00 10270000"), "00 20 80 FF 60 00 06 00 01 06");
   EXPECT_EQ(sdo("23 8160 00 10270000").substr(6, 2), "60");
 }

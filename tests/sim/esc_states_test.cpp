@@ -201,6 +201,22 @@ TEST_F(EscStatesTest, FallsOutOfOpByItself) {
   EXPECT_EQ(request(0x18), kOp);
 }
 
+TEST_F(EscStatesTest, DoesNotFallUpwards) {
+  go_to_pre_op();
+  slave().plan_fall({now_ + milliseconds(10), EscState::safe_op, 0x001A});
+  run(milliseconds(20));
+  EXPECT_EQ(al(), kPreOp);
+}
+
+TEST_F(EscStatesTest, OutputsOfAnEarlierTimeDoNotCount) {
+  go_to_op();
+  EXPECT_EQ(request(2), kPreOp);
+  EXPECT_EQ(request(4), kSafeOp);
+  EXPECT_EQ(request(8), kSafeOp);
+  EXPECT_EQ(write(0x1800, Bytes(19, 0)), 1);
+  EXPECT_EQ(al(), kOp);
+}
+
 TEST_F(EscStatesTest, OneThatRefusesFreeRunWantsSync0) {
   slave().faults().refuses_free_run = true;
   go_to_safe_op();

@@ -106,6 +106,31 @@ TEST_F(EscWatchdogTest, ADriveWithPowerTakesTheEndOfOpForTheLossOfItsMaster) {
   EXPECT_EQ(slave().model().power_state(), drive::DriveState::fault);
 }
 
+TEST_F(EscWatchdogTest, SilenceIsTheLossOfTheMasterWithoutPowerToo) {
+  start_op();
+  run(milliseconds(200));
+  EXPECT_EQ(slave().model().power_state(), drive::DriveState::fault);
+  EXPECT_EQ(fetch_data().substr(0, 11), "00 10 00 75");
+}
+
+TEST_F(EscWatchdogTest, AFamilyThatHasPowerInOpAloneLosesItAtOnce) {
+  load();
+  profile_->rules.nmt.disables_outside_operational = true;
+  profile_->faults.clear();
+  start();
+  preset();
+  EXPECT_EQ(exchange(), 3);
+  ASSERT_EQ(request(8), "08 00 00 00 00 00");
+  enable();
+  EXPECT_EQ(request(4), "04 00 00 00 00 00");
+  EXPECT_EQ(slave().model().power_state(), drive::DriveState::switch_on_disabled);
+  EXPECT_EQ(fetch(), "");
+  EXPECT_EQ(exchange(), 3);
+  ASSERT_EQ(request(8), "08 00 00 00 00 00");
+  run(milliseconds(200));
+  EXPECT_EQ(fetch_data().substr(0, 11), "00 10 30 81");  // No alarm of the family stands for it.
+}
+
 TEST_F(EscWatchdogTest, OneWithoutPowerLeavesOpInPeace) {
   start_op();
   EXPECT_EQ(request(4), "04 00 00 00 00 00");
