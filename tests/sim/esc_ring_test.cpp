@@ -94,6 +94,7 @@ TEST_F(EscRingTest, BehindASlaveWithoutPowerNobodyIsHeard) {
   ring_.power_off(1);
   EXPECT_EQ(count(), 1);
   EXPECT_EQ(show(0x0110, 2), "13 56");
+  EXPECT_EQ(slave(2).registers().memory().word(0x0110), 0x5503);  // No link at all.
   ring_.power_on(1, now_);
   EXPECT_EQ(count(), 3);
   EXPECT_EQ(read(0x0010, 2, 0x1002).counter, 0);
