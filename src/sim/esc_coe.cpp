@@ -6,7 +6,7 @@
 namespace servoctl::sim {
 namespace {
 
-constexpr std::size_t kHead = 2;  ///< Number and service.
+constexpr std::size_t kCoeHead = 2;  ///< Number and service.
 constexpr std::size_t kSdoSize = 8;
 constexpr std::size_t kInfoSize = 6;
 
@@ -17,7 +17,7 @@ constexpr std::uint16_t kServiceError = 4;
 constexpr std::uint16_t kTooShort = 6;
 
 Bytes message(unsigned service, ByteSpan data) {
-  Bytes out = store_le(service << 12U, kHead);
+  Bytes out = store_le(service << 12U, kCoeHead);
   out.insert(out.end(), data.begin(), data.end());
   return out;
 }
@@ -32,9 +32,9 @@ Bytes EscCoe::emergency(const Emergency& emergency) {
 }
 
 EscCoe::Answer EscCoe::on_request(ByteSpan request, std::size_t most) {
-  if (request.size() < kHead + kInfoSize) return {{}, kTooShort};
-  const auto service = load_le(request.first(kHead)) >> 12U;
-  const auto data = request.subspan(kHead);
+  if (request.size() < kCoeHead + kInfoSize) return {{}, kTooShort};
+  const auto service = load_le(request.first(kCoeHead)) >> 12U;
+  const auto data = request.subspan(kCoeHead);
   Answer out;
   if (faults_->emergencies > 0) {
     --faults_->emergencies;
@@ -42,13 +42,13 @@ EscCoe::Answer EscCoe::on_request(ByteSpan request, std::size_t most) {
   }
   if (service == kSdoRequest) {
     if (data.size() < kSdoSize) return {{}, kTooShort};
-    auto answer = server_.on_request(data, most - kHead);
+    auto answer = server_.on_request(data, most - kCoeHead);
     const auto as = answer && answer->abort ? options_.abort_service : std::uint8_t{kSdoResponse};
     if (answer) out.messages.push_back(message(as, answer->message));
     return out;
   }
   if (service != kSdoInfo || !options_.sdo_info) return {{}, kServiceError};
-  for (const auto& piece : info_.on_request(data, most - kHead))
+  for (const auto& piece : info_.on_request(data, most - kCoeHead))
     out.messages.push_back(message(kSdoInfo, piece));
   return out;
 }

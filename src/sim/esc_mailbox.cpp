@@ -6,7 +6,7 @@
 namespace servoctl::sim {
 namespace {
 
-constexpr std::size_t kHeader = 6;
+constexpr std::size_t kMailboxHeader = 6;
 constexpr std::uint8_t kErrorType = 0;
 constexpr std::uint8_t kCoeType = 3;
 constexpr std::uint8_t kLastCounter = 7;
@@ -62,7 +62,7 @@ void EscMailbox::on_repeat() {
 }
 
 void EscMailbox::on_message(ByteSpan message, TimePoint now) {
-  if (message.size() < kHeader) return;
+  if (message.size() < kMailboxHeader) return;
   const auto length = load_le(message.first(2));
   const unsigned channel = message[4] & 0x3FU;
   const unsigned type = message[5] & 0x0FU;
@@ -70,10 +70,10 @@ void EscMailbox::on_message(ByteSpan message, TimePoint now) {
   if (counter != 0 && counter == std::exchange(last_request_, counter)) return;
   if (counter == 0) last_request_ = 0;
   if (type == kErrorType) return;
-  if (length > message.size() - kHeader) return answer_error(kSizeError, now);
+  if (length > message.size() - kMailboxHeader) return answer_error(kSizeError, now);
   if (channel != 0) return answer_error(kChannelError, now);
   if (type != kCoeType) return answer_error(kProtocolError, now);
-  auto done = coe_->on_request(message.subspan(kHeader, length), in_->length() - kHeader);
+  auto done = coe_->on_request(message.subspan(kMailboxHeader, length), in_->length() - kMailboxHeader);
   if (faults_->unanswered > 0) {
     --faults_->unanswered;
     return;
@@ -111,7 +111,7 @@ void EscMailbox::fill(TimePoint now) {
   counter_ = static_cast<std::uint8_t>(counter_ % kLastCounter + 1);
   const unsigned counter = faults_->uncounted_answers ? 0U : counter_;
   Bytes out = store_le(message.data.size(), 2);
-  out.resize(kHeader);
+  out.resize(kMailboxHeader);
   out[5] = static_cast<std::uint8_t>(message.type | counter << 4U);
   out.insert(out.end(), message.data.begin(), message.data.end());
   present_ = out;

@@ -19,7 +19,7 @@ enum Operation : std::uint8_t {
   kError,
 };
 constexpr std::uint8_t kIncomplete = 0x80;
-constexpr std::size_t kHead = 4;
+constexpr std::size_t kInfoHead = 4;
 /// Lists: 0 the length of each, then all, for RxPDOs, for TxPDOs, kept, set at the start.
 enum Kind : std::uint16_t { kLengths, kAll, kReceive, kTransmit, kBackup, kSettings };
 /// What an entry description has beside its type.
@@ -78,7 +78,7 @@ std::vector<Bytes> EscSdoInfo::on_request(ByteSpan request, std::size_t most) co
     done.operation = kError;
     done.data = store_le(done.abort, 4);
   }
-  const auto room = most - kHead;
+  const auto room = most - kInfoHead;
   const auto pieces = std::max<std::size_t>((done.data.size() + room - 1) / room, 1);
   std::vector<Bytes> out;
   for (std::size_t i = 0; i < pieces; ++i) {
@@ -94,11 +94,11 @@ std::vector<Bytes> EscSdoInfo::on_request(ByteSpan request, std::size_t most) co
 }
 
 EscSdoInfo::Answer EscSdoInfo::answer(ByteSpan request) const {
-  const auto word = static_cast<std::uint16_t>(load_le(request.subspan(kHead, 2)));
+  const auto word = static_cast<std::uint16_t>(load_le(request.subspan(kInfoHead, 2)));
   switch (request[0] & 0x7FU) {
     case kListRequest: return list(word);
     case kObjectRequest: return describe_object(word);
-    case kEntryRequest: return describe_entry(request.subspan(kHead));
+    case kEntryRequest: return describe_entry(request.subspan(kInfoHead));
     default: return {kError, {}, abort_code::kCommand};
   }
 }

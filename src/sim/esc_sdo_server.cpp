@@ -9,7 +9,7 @@ namespace abort_code = canopen::sdo_abort;
 
 namespace {
 
-constexpr std::size_t kHead = 8;  ///< Of a request and of the first answer.
+constexpr std::size_t kSdoHead = 8;  ///< Of a request and of the first answer.
 constexpr std::size_t kSegmentHead = 1;
 constexpr std::size_t kLeastSegment = 7;
 constexpr unsigned kCompleteAccess = 0x10;
@@ -50,7 +50,7 @@ std::optional<EscSdoServer::Answer> EscSdoServer::on_request(ByteSpan request, s
 }
 
 Bytes EscSdoServer::head(unsigned command) const {
-  Bytes out(kHead, 0);
+  Bytes out(kSdoHead, 0);
   out[0] = static_cast<std::uint8_t>(command | (complete_ ? kCompleteAccess : 0U));
   store_le(object_.index, std::span(out).subspan(1, 2));
   out[3] = object_.sub;
@@ -85,7 +85,7 @@ EscSdoServer::Answer EscSdoServer::start_upload(std::size_t most) {
   }
   auto out = head(kUploaded | kSized);
   store_le(data.size(), std::span(out).subspan(4, 4));
-  const auto here = std::min(data.size(), most - kHead);
+  const auto here = std::min(data.size(), most - kSdoHead);
   const auto rest = data.begin() + static_cast<std::ptrdiff_t>(here);
   out.insert(out.end(), data.begin(), rest);
   data_.assign(rest, data.end());
@@ -124,7 +124,7 @@ EscSdoServer::Answer EscSdoServer::start_download(ByteSpan request) {
   }
   if ((command & kSized) == 0) return abort(abort_code::kCommand);
   total_ = load_le(request.subspan(4, 4));
-  const auto data = request.subspan(kHead);
+  const auto data = request.subspan(kSdoHead);
   if (data.size() > total_) return abort(abort_code::kTooLong);
   data_.assign(data.begin(), data.end());
   toggle_ = 0;
@@ -146,7 +146,7 @@ EscSdoServer::Answer EscSdoServer::take_segment(ByteSpan request) {
   if (data.size() == kLeastSegment) data = data.first(kLeastSegment - (request[0] >> 1U & 7U));
   data_.insert(data_.end(), data.begin(), data.end());
   if (data_.size() > total_) return abort(abort_code::kTooLong);
-  Bytes out(kHead, 0);
+  Bytes out(kSdoHead, 0);
   out[0] = static_cast<std::uint8_t>(kDownloadedSegment | toggle_);
   toggle_ ^= kToggle;
   if ((request[0] & kLast) == 0) return {std::move(out)};

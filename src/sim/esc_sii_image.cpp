@@ -93,7 +93,7 @@ class SiiBuilder {
     constexpr unsigned kInfo = 2;
     constexpr unsigned kAssign = 4;
     constexpr unsigned kConfigure = 8;
-    constexpr unsigned kCompleteAccess = 0x20;
+    constexpr unsigned kWholeObjects = 0x20;
     const auto& rules = profile_->rules;
     const auto& name = values_->get(objects::kDeviceName);
     const std::string text(name.begin(), std::find(name.begin(), name.end(), 0));
@@ -103,7 +103,7 @@ class SiiBuilder {
     out[3] = out[2];
     unsigned coe = kSdo | (rules.coe.sdo_info ? kInfo : 0U);
     if (!rules.pdo.assign_rpdo.empty()) coe |= kAssign | kConfigure;
-    if (rules.coe.complete_access) coe |= kCompleteAccess;
+    if (rules.coe.complete_access) coe |= kWholeObjects;
     out[5] = static_cast<std::uint8_t>(coe);
     out[16] = 0x11;  // Two ports with a plug.
     return out;

@@ -23,12 +23,12 @@ constexpr std::uint32_t kMappedToOutputs = 0x0601'0006;
 /// Of a life guarding error (CiA 301, table 26), where the family names none.
 constexpr std::uint16_t kMasterLost = 0x8130;
 
-struct Place {
+struct MemoryPlace {
   std::uint32_t first = 0;
   std::uint32_t behind = 0;
 };
 
-Place place_of(const EscSyncManager& manager) {
+MemoryPlace place_of(const EscSyncManager& manager) {
   const auto length = manager.length() * (manager.is_buffered() ? kBuffers : 1U);
   return {manager.start(), manager.start() + length};
 }
