@@ -228,6 +228,12 @@ TEST_F(EscStatesTest, OneThatRefusesFreeRunWantsSync0) {
   EXPECT_EQ(request(0x18), "14 00 00 00 2D 00");
   EXPECT_EQ(write(0x0981, "00"), 1);
   EXPECT_EQ(write(0x0990, store_le(2'000'000'000, 8)), 1);
+  EXPECT_EQ(write(0x0981, "01"), 1);  // Cyclic, and no pulse.
+  EXPECT_EQ(request(0x18), "14 00 00 00 27 00");
+  EXPECT_EQ(write(0x09A0, store_le(0, 4)), 1);
+  EXPECT_EQ(write(0x0981, "03"), 1);  // A pulse, and no cycle.
+  EXPECT_EQ(request(0x18), "14 00 00 00 27 00");
+  EXPECT_EQ(write(0x09A0, store_le(4'000'000, 4)), 1);
   EXPECT_EQ(write(0x0981, "03"), 1);
   EXPECT_EQ(request(0x18), kOp);
 }
