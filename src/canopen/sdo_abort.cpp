@@ -62,9 +62,27 @@ constexpr std::array kRows{
     Row{0x0800'0024, "no data available", ""},
 };
 
+/// What CANopen over EtherCAT has beside them (ETG.1000.6, table 41).
+constexpr std::array kEtherCatRows{
+    Row{0x0601'0003, "sub-index cannot be written unless sub-index 0 is 0",
+        "write 0 to sub-index 0 first, then the entries, then their count"},
+    Row{0x0601'0004, "complete access is not supported for an object of variable length",
+        "access its entries one by one"},
+    Row{0x0601'0005, "object is longer than the mailbox", ""},
+    Row{0x0601'0006, "object is mapped to an RxPDO, download blocked",
+        "it is written by the process data: write it in PRE-OP, or remove it from the PDO"},
+    Row{0x0609'0033, "configured list of modules does not match the detected one", ""},
+};
+
+template <class Rows>
+const Row* find_in(const Rows& rows, std::uint32_t code) {
+  const auto row = std::find_if(rows.begin(), rows.end(), [&](const Row& r) { return r.code == code; });
+  return row == rows.end() ? nullptr : &*row;
+}
+
 const Row* find(std::uint32_t code) {
-  const auto row = std::find_if(kRows.begin(), kRows.end(), [&](const Row& r) { return r.code == code; });
-  return row == kRows.end() ? nullptr : &*row;
+  const auto* row = find_in(kRows, code);
+  return row != nullptr ? row : find_in(kEtherCatRows, code);
 }
 
 /// The error class of the high byte (ISO 9506, from which CiA 301 has it).
@@ -112,6 +130,6 @@ bool refuses_block_transfer(std::uint32_t code) {
   }
 }
 
-bool is_standard_sdo_abort(std::uint32_t code) { return find(code) != nullptr; }
+bool is_standard_sdo_abort(std::uint32_t code) { return find_in(kRows, code) != nullptr; }
 
 }  // namespace servoctl::canopen

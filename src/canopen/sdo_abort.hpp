@@ -37,8 +37,9 @@ inline constexpr std::uint32_t kDeviceState = 0x0800'0022;
 inline constexpr std::uint32_t kNoData = 0x0800'0024;
 }  // namespace sdo_abort
 
-/// What the code says in plain words. A code that CiA 301 does not list is named by its class (the error
-/// class is the high byte), so that a vendor's own code still says something.
+/// What the code says in plain words, those of CANopen over EtherCAT (ETG.1000.6, table 41) as well. A code
+/// that neither lists is named by its class (the error class is the high byte), so that a vendor's own code
+/// still says something.
 std::string sdo_abort_text(std::uint32_t code);
 
 /// What the user can do about it; empty when the code leaves nothing to say.

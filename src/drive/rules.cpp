@@ -37,6 +37,7 @@ class RulesReader {
                               {"sdo", section(read_sdo)},
                               {"nmt", section(read_nmt)},
                               {"pdo", section(read_pdo)},
+                              {"coe", section(read_coe)},
                               {"store", section(read_store)},
                               {"restart", section(read_restart)},
                               {"mirror", section(read_mirror)},

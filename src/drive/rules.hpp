@@ -117,6 +117,25 @@ struct PdoRules {
   }
 };
 
+/// A piece of the memory of an EtherCAT slave.
+struct EscArea {
+  std::uint16_t start = 0;
+  std::uint16_t size = 0;  ///< Bytes; 0: there is none.
+};
+
+/// How the objects are reached over EtherCAT (CoE), where the drive's own SII does not tell it. Out and in
+/// are the master's.
+struct CoeRules {
+  EscArea mailbox_out;
+  EscArea mailbox_in;
+  std::uint16_t outputs = 0;  ///< Where the process data begin; how many there are says the mapping.
+  std::uint16_t inputs = 0;
+  bool sdo_info = false;         ///< It lists and describes its objects.
+  bool complete_access = false;  ///< All sub-indices of an object go in one transfer.
+
+  bool exists() const { return mailbox_out.size != 0 && mailbox_in.size != 0; }
+};
+
 /// How values survive power-off.
 struct StoreRules {
   std::vector<Setting> store;    ///< Beside 1010h.
@@ -235,6 +254,7 @@ struct Rules {
   SdoRules sdo;
   NmtRules nmt;
   PdoRules pdo;
+  CoeRules coe;
   StoreRules store;
   MotionRules motion;
   EmergencyRules emergency;

@@ -40,6 +40,14 @@ bool get(const toml::node& node, ModeBits& out) {
          get_int(at(node, "disabled"), out.disabled);
 }
 
+/// `[start, size]`.
+bool get(const toml::node& node, EscArea& out) {
+  std::vector<std::uint16_t> numbers;
+  if (!drive::get(node, numbers) || numbers.size() != 2 || numbers[0] + numbers[1] > 0x10000) return false;
+  out = {numbers[0], numbers[1]};
+  return true;
+}
+
 bool get(const toml::node& node, PdoRules::When& out) {
   std::string text;
   if (!drive::get(node, text)) return false;
@@ -130,6 +138,16 @@ Result<void> read_pdo(const TableReader& reader, Rules& rules) {
                       {"preset", presets},
                       {"assign_rpdo", into(out.assign_rpdo)},
                       {"assign_tpdo", into(out.assign_tpdo)}});
+}
+
+Result<void> read_coe(const TableReader& reader, Rules& rules) {
+  auto& out = rules.coe;
+  return reader.read({{"mailbox_out", [&](const auto& n) { return get(n, out.mailbox_out); }},
+                      {"mailbox_in", [&](const auto& n) { return get(n, out.mailbox_in); }},
+                      {"outputs", into(out.outputs)},
+                      {"inputs", into(out.inputs)},
+                      {"sdo_info", into(out.sdo_info)},
+                      {"complete_access", into(out.complete_access)}});
 }
 
 Result<void> read_store(const TableReader& reader, Rules& rules) {

@@ -50,6 +50,16 @@ TEST(SdoAbort, HasTheTextOfCia301) {
   }
 }
 
+TEST(SdoAbort, HasTheCodesThatEtherCatAdds) {
+  // ETG.1000.6, table 41; SOEM and ethercrab have the same.
+  for (const std::uint32_t code : {0x0601'0003U, 0x0601'0004U, 0x0601'0005U, 0x0601'0006U, 0x0609'0033U}) {
+    EXPECT_FALSE(is_standard_sdo_abort(code)) << "CiA 301 does not list it";
+    EXPECT_EQ(sdo_abort_text(code).find("not listed"), std::string::npos);
+    EXPECT_NE(sdo_abort_hint(code), "look the code up in the drive's manual");
+  }
+  EXPECT_EQ(sdo_abort_text(0x0601'0006), "object is mapped to an RxPDO, download blocked");
+}
+
 TEST(SdoAbort, OfAVendorIsNamedByItsClass) {
   EXPECT_FALSE(is_standard_sdo_abort(0x0504'0022));
   EXPECT_EQ(sdo_abort_text(0x0504'0022), "service error not listed in CiA 301");

@@ -51,6 +51,28 @@ reset_enabled_by = { object = "0x2000:21", value = 1 }
   EXPECT_EQ(rules->abort_texts.at(0x0800'0024).text_zh, "数值不存在");
 }
 
+TEST(Rules, KnowWhereTheMailboxesOfAnEthercatSlaveAre) {
+  const std::string head = "format = 1\nfamily = \"x1\"\n[coe]\n";
+  const auto rules = parse_rules(head + R"(
+mailbox_out = [0x1000, 256]
+mailbox_in = [0x1400, 128]
+outputs = 0x1800
+inputs = 0x1C00
+sdo_info = true
+)",
+                                 "x1.toml");
+  ASSERT_TRUE(rules) << rules.error().message;
+  EXPECT_TRUE(rules->coe.exists());
+  EXPECT_EQ(rules->coe.mailbox_in.start, 0x1400);
+  EXPECT_EQ(rules->coe.mailbox_in.size, 128);
+  EXPECT_EQ(rules->coe.inputs, 0x1C00);
+  EXPECT_TRUE(rules->coe.sdo_info);
+  EXPECT_FALSE(rules->coe.complete_access);
+  EXPECT_FALSE(parse_rules("format = 1\nfamily = \"x1\"\n", "x1.toml")->coe.exists());
+  for (const auto* wrong : {"[0x1000]", "[0x1000, 1, 2]", "[0xFFFF, 2]", "0x1000"})
+    EXPECT_FALSE(parse_rules(head + "mailbox_out = " + wrong + "\n", "x1.toml")) << wrong;
+}
+
 TEST(Rules, KnowSeveralWaysToOneMeasureAndWordsInTwoLanguages) {
   const auto rules = parse_rules(R"(
 format = 1

@@ -9,10 +9,11 @@ declare -A may=(
   [base]=""
   [can]="base"
   [canopen]="base can"
+  [ethercat]="base canopen"
   [od]="base"
   [drive]="base od"
   [report]="base"
-  [sim]="base can canopen od drive"
+  [sim]="base can canopen ethercat od drive"
   [session]="base can canopen od drive sim"
   [show]="base can canopen od drive sim session report"
   [motion]="base can canopen od drive sim session report show"
@@ -43,6 +44,7 @@ done < <(grep -rnE '^#include "[a-z]+/' src commands --include='*.cpp' --include
 # canopen knows frames, not buses: no I/O and no clock.
 if grep -rnE '#include "can/(bus|socketcan|local|trace|descriptor)' src/canopen; then echo "canopen must know can/frame.hpp only"; bad=1; fi
 if grep -rnE 'steady_now|steady_clock::now|system_clock' src/canopen src/od src/drive; then echo "no clock in these layers"; bad=1; fi
+if grep -rnE 'steady_now|steady_clock::now|system_clock|#include <(sys|net|linux)/' src/ethercat; then echo "the machines of ethercat know no clock and no socket"; bad=1; fi
 
 # What is in commands/ is a command, or the list of them.
 for file in commands/*; do
@@ -59,12 +61,12 @@ done
 
 # A simulated drive is a model without a wire and ports around it: of canopen the model includes what knows no frame, of sim nothing
 # that does. What is new in sim is the model's until it is named here.
-wire='can_port|cell|communication_guard|device|emergency_producer|heartbeat_consumer|pdo_engine|pdo_guard|sim_bus|sim_drive'
+wire='can_port|cell|communication_guard|device|emergency_producer|esc_[a-z_]+|heartbeat_consumer|pdo_engine|pdo_guard|sim_bus|sim_drive'
 frameless='node_id|object_store|sdo_abort'
 model=$(find src/sim -name '*.?pp' | grep -vE "/($wire)\.[ch]pp$")
 grep -q 'drive_model\.hpp' <<<"$model" || { echo "src/sim/drive_model.hpp was not found: the check itself is broken"; bad=1; }
 # shellcheck disable=SC2086  # Names of files without spaces.
-if grep -nE "^#include \"(can/|canopen/|sim/($wire)\.hpp)" $model | grep -vE "\"canopen/($frameless)\.hpp\""; then echo "the model of a simulated drive must know no wire"; bad=1; fi
+if grep -nE "^#include \"(can/|canopen/|ethercat/|sim/($wire)\.hpp)" $model | grep -vE "\"canopen/($frameless)\.hpp\""; then echo "the model of a simulated drive must know no wire"; bad=1; fi
 for header in ${frameless//|/ }; do
   if grep -nE '^#include "(can|canopen)/' "src/canopen/$header.hpp"; then echo "canopen/$header.hpp must know no frame"; bad=1; fi
 done

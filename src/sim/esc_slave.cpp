@@ -1,0 +1,103 @@
+#include "sim/esc_slave.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "drive/naming.hpp"
+
+namespace servoctl::sim {
+
+EscSlave::Options EscSlave::Options::of(const drive::Profile& profile) {
+  Options out;
+  out.coe.sdo_info = profile.rules.coe.sdo_info;
+  out.coe.complete_access = profile.rules.coe.complete_access;
+  return out;
+}
+
+EscSlave::EscSlave(const drive::Profile& profile, std::uint8_t node, Memory& memory, std::string key,
+                   Options options)
+    : model_(profile, node, memory, std::move(key)),
+      process_data_(model_),
+      coe_(model_, options.coe, faults_),
+      mailbox_(registers().sync_manager(EscRegisters::kMailboxOut),
+               registers().sync_manager(EscRegisters::kMailboxIn), coe_, faults_),
+      states_(*this) {
+  const auto index = [&](const std::string& name) {
+    const auto found = drive::resolve(&profile, name);
+    return found ? found->address.index : std::uint16_t{0};
+  };
+  assign_outputs_ = index(profile.rules.pdo.assign_rpdo);
+  assign_inputs_ = index(profile.rules.pdo.assign_tpdo);
+  model_.attach(*this);
+  ObjectValues values(profile);
+  values.load_defaults(node);
+  registers().sii().mute = options.sii == SiiFault::mute;
+  registers().sii().set_content(build_sii(profile, values, options.alias, options.sii));
+}
+
+void EscSlave::power_on(TimePoint now) {
+  mailbox_.stop();
+  states_.reset();
+  request_.reset();
+  outputs_seen_ = master_lost_ = false;
+  registers().power_on(now);
+  registers().set_al_status(states_.status(), states_.code());
+  model_.power_on(now);
+}
+
+bool EscSlave::on_frame(std::span<std::uint8_t> frame, TimePoint now) {
+  on_time(now);
+  if (!controller_.process(frame, now)) return false;
+  work(now);
+  return true;
+}
+
+void EscSlave::on_time(TimePoint now) {
+  model_.on_time(now);
+  registers().on_time(now);
+  if (registers().take_outputs_missed()) {
+    outputs_seen_ = false;
+    master_lost_ = true;
+    if (state() == EscState::op) states_.fall_to(EscState::safe_op, al_code::kWatchdog);
+    master_lost_ = false;
+  }
+  if (now >= fall_.time) states_.fall_to(fall_.to, std::exchange(fall_, {}).code);
+  work(now);
+}
+
+TimePoint EscSlave::deadline() const {
+  const auto next = std::min(
+      {model_.deadline(), registers().deadline(), states_.deadline(), mailbox_.deadline(), fall_.time});
+  return request_ ? std::min(next, request_->due) : next;
+}
+
+/// What the processor of the slave does, whenever something has happened.
+void EscSlave::work(TimePoint now) {
+  if (registers().take_settings_changed()) states_.on_settings_changed();
+  if (registers().take_outputs_written() && state() >= EscState::safe_op) {
+    outputs_seen_ = true;
+    if (state() == EscState::op) apply_outputs();
+  }
+  if (const auto control = registers().take_al_control())
+    request_ = Request{*control, now + faults_.state_delay};
+  if (request_ && now >= request_->due)
+    states_.on_control(std::exchange(request_, std::nullopt)->control, now);
+  states_.on_time(now);
+  mailbox_.on_time(now);
+  while (const auto emergency = model_.take_emergency()) mailbox_.push(EscCoe::emergency(*emergency), now);
+  mailbox_.on_time(now);
+  if (state() >= EscState::safe_op) sample_inputs();
+  registers().set_al_status(states_.status(), states_.code());
+}
+
+void EscSlave::apply_outputs() {
+  applies_ = true;
+  process_data_.apply(registers().sync_manager(EscRegisters::kOutputs).take());
+  applies_ = false;
+}
+
+void EscSlave::sample_inputs() {
+  registers().sync_manager(EscRegisters::kInputs).put(process_data_.sample());
+}
+
+}  // namespace servoctl::sim
