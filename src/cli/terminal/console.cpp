@@ -96,8 +96,7 @@ std::unique_ptr<command::Keys> StandardConsole::open_keys() {
 
 std::size_t StandardConsole::width() const {
   winsize size{};
-  if (!shows_output_ || ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0)
-    return 0;
+  if (!shows_output_ || ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return 0;
   return size.ws_col;
 }
 
