@@ -39,13 +39,13 @@ TEST_F(WrongFamilyPrompt, TellsAReadWhatIsKnown) {
   EXPECT_FALSE(told("is no"));
   EXPECT_EQ(run("write 0x6060 1 -n 1 -d gsd600"), 8);
   EXPECT_EQ(run("read 0x6041 -n 1 -d gsd600"), 0);
-  EXPECT_TRUE(told("node 1 is no gsd600")) << console.err_text;
+  EXPECT_TRUE(told("node 1 is not a gsd600")) << console.err_text;
   EXPECT_EQ(run("disable -n 1 -d gsd600"), 0) << console.err_text;
 }
 
 TEST_F(WrongFamilyPrompt, RefusesAllWhenOneOfSeveralIsAnother) {
   EXPECT_EQ(run("write 0x6060 3 -n 2,3 -d gsd600"), 8);
-  EXPECT_TRUE(told("node 3 is no gsd600")) << console.err_text;
+  EXPECT_TRUE(told("node 3: not a gsd600")) << console.err_text;
   EXPECT_EQ(run("read 0x6060 -n 2 --json"), 0);
   EXPECT_EQ(console.out_text.find("\"value\":3"), std::string::npos) << console.out_text;
   EXPECT_EQ(run("clone --from 2 --to 3 -d gsd600 --yes"), 8);
