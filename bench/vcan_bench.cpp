@@ -52,9 +52,7 @@ int run_pair(unsigned node, int reads) {
   double raw = 1e9;
   double ours = 1e9;
   for (int round = 0; round < 20; ++round) {
-    ::fcntl(ends[0], F_SETFL, 0);
     raw = std::min(raw, raw_reads(ends[0], node, reads / 20));
-    ::fcntl(ends[0], F_SETFL, O_NONBLOCK);
     const auto begin = Clock::now();
     for (int i = 0; i < reads / 20; ++i)
       if (!session.upload(static_cast<std::uint8_t>(node), {0x6041, 0})) return 3;

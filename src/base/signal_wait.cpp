@@ -30,6 +30,7 @@ bool take_noted() {
 
 void note_signal() { g_noted.fetch_add(1); }
 unsigned signals_noted() { return g_noted.load(); }
+bool signal_is_noted() { return take_noted(); }
 
 int wait_or_signal(std::span<pollfd> descriptors, std::optional<Duration> longest) {
   if (!longest) return wait_or_signal_until(descriptors, std::nullopt);

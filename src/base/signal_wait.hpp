@@ -14,6 +14,10 @@ void note_signal();
 /// How many were noted so far.
 unsigned signals_noted();
 
+/// Whether one was noted since a wait last ended by a signal; the question counts as such an end. For waits
+/// in which a signal may come a little too early to end them.
+bool signal_is_noted();
+
 /// ppoll() by which no signal slips: one that was noted since a wait last ended by a signal, before this call
 /// or in it, ends it with -1 and EINTR. So who tests what a handler sets, and then waits here, never waits in
 /// vain. Other signals do not end it. `longest`: empty for ever, else not negative. The answer is that of

@@ -15,6 +15,8 @@
 #include <cstring>
 #include <utility>
 
+#include "base/signal_wait.hpp"
+#include "base/timespec.hpp"
 #include "can/socketcan_error.hpp"
 
 namespace servoctl::can {
@@ -95,10 +97,22 @@ class StampClock {
   std::chrono::nanoseconds wall_;
 };
 
+/// The longest wait in one call of recvmmsg(): so late is a signal answered that came just before it.
+constexpr Duration kSlice = std::chrono::milliseconds(20);
+
+void wait_in_slices(int socket) {
+  const auto slice = to_timespec(kSlice);
+  const timeval limit{slice.tv_sec, slice.tv_nsec / 1000};
+  ::setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
+  ::fcntl(socket, F_SETFL, ::fcntl(socket, F_GETFL) & ~O_NONBLOCK);
+}
+
 }  // namespace
 
 SocketCanBus::SocketCanBus(Descriptor socket, std::string interface_name, Duration send_limit)
-    : socket_(std::move(socket)), interface_name_(std::move(interface_name)), send_limit_(send_limit) {}
+    : socket_(std::move(socket)), interface_name_(std::move(interface_name)), send_limit_(send_limit) {
+  wait_in_slices(socket_.get());
+}
 
 Result<void> SocketCanBus::send(const Frame& frame) {
   if (!is_sendable(frame))
@@ -108,7 +122,7 @@ Result<void> SocketCanBus::send(const Frame& frame) {
   const auto raw = kernel_frame(frame);
   std::optional<TimePoint> limit;  // The clock is asked only when the first try fails.
   for (;;) {
-    if (::send(socket_.get(), &raw, sizeof raw, MSG_NOSIGNAL) >= 0) return {};
+    if (::send(socket_.get(), &raw, sizeof raw, MSG_NOSIGNAL | MSG_DONTWAIT) >= 0) return {};
     const int error = errno;
     if (error == EINTR) continue;
     if (error != EAGAIN && error != ENOBUFS) return interface_lost(interface_name_, error);
@@ -131,8 +145,7 @@ Result<std::optional<Frame>> SocketCanBus::receive(TimePoint deadline) {
   }
   while (inbox_.empty()) {
     if (failed_) return fail(*std::exchange(failed_, std::nullopt));
-    if (wait_or_signal(socket_.get(), POLLIN, deadline) != Wake::ready) return std::optional<Frame>();
-    drain();
+    if (const auto woken = wait_for_frames(deadline); woken != Wake::ready) return std::optional<Frame>();
   }
   if (inbox_.size() >= kBatch && given_ >= kBatch) drain();
   ++given_;
@@ -142,12 +155,27 @@ Result<std::optional<Frame>> SocketCanBus::receive(TimePoint deadline) {
   return std::optional(frame);
 }
 
+/// Ready: something was taken into the inbox, or failed. While the deadline is far the kernel waits with the
+/// frames, in slices: one system call a frame instead of four. A signal that comes between the question for
+/// it and the call ends the next slice, not this one; near the deadline poll() leaves no such gap.
+Wake SocketCanBus::wait_for_frames(TimePoint deadline) {
+  while (deadline > now() + kSlice) {
+    if (signal_is_noted()) return Wake::interrupted;
+    drain(Take::awaited);
+    if (!inbox_.empty() || failed_) return Wake::ready;
+  }
+  const auto woken = wait_or_signal(socket_.get(), POLLIN, deadline);
+  if (woken == Wake::ready) drain();
+  return woken;
+}
+
 /// A socket of its own, whether the old one is still bound or not: it also tells whether the controller is on
 /// the bus. It takes the place of the old one, on which others may poll.
 Result<void> SocketCanBus::recover(TimePoint deadline) {
   for (;;) {
     auto opened = socketcan_socket(interface_name_, filters_);
     if (opened) {
+      wait_in_slices(opened->get());
       if (::dup3(opened->get(), socket_.get(), O_CLOEXEC) < 0)
         return fail(Errc::bus, fmt::format("cannot open {} again: {}", interface_name_, system_text(errno)));
       inbox_.clear();
@@ -162,31 +190,35 @@ Result<void> SocketCanBus::recover(TimePoint deadline) {
 }
 
 /// Whoever is slower than the bus finds its frames here: the kernel drops what its queue has no room for.
-void SocketCanBus::drain() {
+void SocketCanBus::drain(Take take) {
   given_ = 0;
   for (auto before = inbox_.size(); !failed_ && before < kMostWaiting; before = inbox_.size()) {
-    if (const auto filled = fill(); !filled) failed_ = filled.error();
+    if (const auto filled = fill(take); !filled) failed_ = filled.error();
     if (inbox_.size() < before + kBatch) return;
+    take = Take::present;
   }
 }
 
 /// Takes what is there into the inbox, as many frames as one call gives.
-Result<void> SocketCanBus::fill() {
+Result<void> SocketCanBus::fill(Take which) {
   std::array<can_frame, kBatch> raw;
   std::array<iovec, kBatch> parts;
-  std::array<mmsghdr, kBatch> messages{};
+  std::array<mmsghdr, kBatch> messages;
   struct Control {
     alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(std::uint32_t)) + CMSG_SPACE(sizeof(timespec))> bytes;
   };
   std::array<Control, kBatch> controls;
-  for (std::size_t i = 0; i < kBatch; ++i) {
+  const std::size_t most = which == Take::awaited ? 1 : kBatch;
+  for (std::size_t i = 0; i < most; ++i) {
     parts[i] = {&raw[i], sizeof raw[i]};
+    messages[i] = {};
     messages[i].msg_hdr.msg_iov = &parts[i];
     messages[i].msg_hdr.msg_iovlen = 1;
     messages[i].msg_hdr.msg_control = controls[i].bytes.data();
     messages[i].msg_hdr.msg_controllen = controls[i].bytes.size();
   }
-  const int count = ::recvmmsg(socket_.get(), messages.data(), kBatch, MSG_DONTWAIT, nullptr);
+  const int count = ::recvmmsg(socket_.get(), messages.data(), static_cast<unsigned>(most),
+                               which == Take::awaited ? 0 : MSG_DONTWAIT, nullptr);
   if (count < 0 && (errno == EAGAIN || errno == EINTR)) return {};
   if (count <= 0 || messages[0].msg_len == 0) {
     is_bus_off_ = false;

@@ -49,7 +49,7 @@ std::vector<std::string> can_interfaces();
 /// tests.
 class SocketCanBus final : public Bus {
  public:
-  /// `socket` must be non-blocking; `interface_name` is used in messages.
+  /// `interface_name` is used in messages. The socket is made a blocking one whose recv() ends after a while.
   SocketCanBus(Descriptor socket, std::string interface_name, Duration send_limit = kSendLimit);
   /// Filters that the socket has, for one that is opened in its place.
   void keep_filters(std::span<const Filter> filters) { filters_.assign(filters.begin(), filters.end()); }
@@ -67,8 +67,13 @@ class SocketCanBus final : public Bus {
   TimePoint next_event() const override { return inbox_.empty() ? kNever : TimePoint::min(); }
 
  private:
-  Result<void> fill();
-  void drain();
+  Wake wait_for_frames(TimePoint deadline);
+  enum class Take : std::uint8_t {
+    present,  ///< What is there now.
+    awaited,  ///< One frame, for which a slice is waited.
+  };
+  Result<void> fill(Take which);
+  void drain(Take take = Take::present);
   void take(const ::can_frame& raw, std::optional<std::uint32_t> lost_in_all, TimePoint time);
 
   Descriptor socket_;

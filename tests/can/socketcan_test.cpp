@@ -14,6 +14,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "base/signal_wait.hpp"
@@ -212,6 +213,28 @@ TEST_F(SocketCan, ReturnsEarlyWithNothingWhenASignalArrives) {
   ASSERT_TRUE(result);
   EXPECT_EQ(*result, std::nullopt);
   EXPECT_LT(bus_->now(), deadline);
+}
+
+TEST_F(SocketCan, DoesNotWaitAfterASignalThatCameBefore) {
+  note_signal();
+  const auto start = bus_->now();
+  EXPECT_EQ(bus_->receive(start + seconds(5)).value(), std::nullopt);
+  EXPECT_LT(bus_->now() - start, seconds(1));
+}
+
+TEST_F(SocketCan, WaitsInSlicesUntilTheDeadlineAndTakesWhatComesInBetween) {
+  auto start = bus_->now();
+  EXPECT_EQ(bus_->receive(start + milliseconds(65)).value(), std::nullopt);
+  EXPECT_GE(bus_->now() - start, milliseconds(65));
+  std::thread kernel([this] {
+    std::this_thread::sleep_for(milliseconds(30));
+    for (const std::uint8_t i : {1, 2, 3}) put(raw_frame(0x581, 1, {i}));
+  });
+  start = bus_->now();
+  for (const std::uint8_t i : {1, 2, 3})
+    EXPECT_EQ(bus_->receive(start + seconds(5)).value(), make_frame(0x581, std::array{i}));
+  EXPECT_LT(bus_->now() - start, seconds(1));
+  kernel.join();
 }
 
 TEST_F(SocketCan, TellsAPollLoopWhenAFrameIsThere) {
