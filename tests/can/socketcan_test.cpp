@@ -228,10 +228,10 @@ TEST_F(SocketCan, WaitsInSlicesUntilTheDeadlineAndTakesWhatComesInBetween) {
   EXPECT_GE(bus_->now() - start, milliseconds(65));
   std::thread kernel([this] {
     std::this_thread::sleep_for(milliseconds(30));
-    for (const std::uint8_t i : {1, 2, 3}) put(raw_frame(0x581, 1, {i}));
+    for (std::uint8_t i = 1; i <= 3; ++i) put(raw_frame(0x581, 1, {i}));
   });
   start = bus_->now();
-  for (const std::uint8_t i : {1, 2, 3})
+  for (std::uint8_t i = 1; i <= 3; ++i)
     EXPECT_EQ(bus_->receive(start + seconds(5)).value(), make_frame(0x581, std::array{i}));
   EXPECT_LT(bus_->now() - start, seconds(1));
   kernel.join();
