@@ -100,18 +100,20 @@ class StampClock {
 /// The longest wait in one call of recvmmsg(): so late is a signal answered that came just before it.
 constexpr Duration kSlice = std::chrono::milliseconds(20);
 
-void wait_in_slices(int socket) {
+/// Whether recv() waits for a slice from now on. A socket that could not be told how long stays non-blocking:
+/// nothing may wait without end.
+bool wait_in_slices(int socket) {
   const auto slice = to_timespec(kSlice);
   const timeval limit{slice.tv_sec, slice.tv_nsec / 1000};
-  ::setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
-  ::fcntl(socket, F_SETFL, ::fcntl(socket, F_GETFL) & ~O_NONBLOCK);
+  return ::setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit) == 0 &&
+         ::fcntl(socket, F_SETFL, ::fcntl(socket, F_GETFL) & ~O_NONBLOCK) == 0;
 }
 
 }  // namespace
 
 SocketCanBus::SocketCanBus(Descriptor socket, std::string interface_name, Duration send_limit)
     : socket_(std::move(socket)), interface_name_(std::move(interface_name)), send_limit_(send_limit) {
-  wait_in_slices(socket_.get());
+  waits_in_slices_ = wait_in_slices(socket_.get());
 }
 
 Result<void> SocketCanBus::send(const Frame& frame) {
@@ -159,7 +161,7 @@ Result<std::optional<Frame>> SocketCanBus::receive(TimePoint deadline) {
 /// frames, in slices: one system call a frame instead of four. A signal that comes between the question for
 /// it and the call ends the next slice, not this one; near the deadline poll() leaves no such gap.
 Wake SocketCanBus::wait_for_frames(TimePoint deadline) {
-  while (deadline > now() + kSlice) {
+  while (waits_in_slices_ && deadline > now() + kSlice) {
     if (signal_is_noted()) return Wake::interrupted;
     drain(Take::awaited);
     if (!inbox_.empty() || failed_) return Wake::ready;
@@ -175,7 +177,7 @@ Result<void> SocketCanBus::recover(TimePoint deadline) {
   for (;;) {
     auto opened = socketcan_socket(interface_name_, filters_);
     if (opened) {
-      wait_in_slices(opened->get());
+      waits_in_slices_ = wait_in_slices(opened->get());
       if (::dup3(opened->get(), socket_.get(), O_CLOEXEC) < 0)
         return fail(Errc::bus, fmt::format("cannot open {} again: {}", interface_name_, system_text(errno)));
       inbox_.clear();

@@ -81,6 +81,7 @@ class SocketCanBus final : public Bus {
   Duration send_limit_;
   std::vector<Filter> filters_;
   std::uint32_t lost_frames_ = 0;  ///< As last told by the kernel.
+  bool waits_in_slices_ = false;   ///< recv() of the socket ends after a slice.
   bool is_bus_off_ = false;        ///< As last reported.
   struct Received {
     Frame frame;
