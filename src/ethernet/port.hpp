@@ -10,8 +10,9 @@
 
 namespace servoctl::ethernet {
 
-/// One Ethernet wire with an EtherCAT ring on it, and the clock that belongs to it. Carries whole frames, from
-/// the destination address on, without the checksum; knows nothing of what is in them but the type 88A4h.
+/// One Ethernet wire with an EtherCAT ring on it, and the clock that belongs to it. Carries whole frames,
+/// from the destination address on, without the checksum; knows nothing of what is in them but the type
+/// 88A4h.
 class Port {
  public:
   Port() = default;
