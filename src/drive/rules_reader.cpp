@@ -146,6 +146,8 @@ Result<void> read_coe(const TableReader& reader, Rules& rules) {
                       {"mailbox_in", [&](const auto& n) { return get(n, out.mailbox_in); }},
                       {"outputs", into(out.outputs)},
                       {"inputs", into(out.inputs)},
+                      {"rpdo", into(out.rpdo)},
+                      {"tpdo", into(out.tpdo)},
                       {"sdo_info", into(out.sdo_info)},
                       {"complete_access", into(out.complete_access)}});
 }

@@ -26,7 +26,7 @@ std::uint16_t expected_counter(Command command, bool outputs, bool inputs) {
 
 }  // namespace
 
-ProcessImage::ProcessImage(const Options& options) : options_(options) {
+ProcessImage::ProcessImage(const Options& options) : options_(options), end_(options.logical) {
   options_.patience = std::clamp(options_.patience, 1U, kMaxPatience);
 }
 

@@ -24,7 +24,8 @@ class ProcessImage {
  public:
   struct Options {
     Duration cycle = std::chrono::milliseconds(4);
-    unsigned patience = 4;  ///< Cycles until a frame counts as lost; at most kMaxPatience.
+    unsigned patience = 4;      ///< Cycles until a frame counts as lost; at most kMaxPatience.
+    std::uint32_t logical = 0;  ///< The first logical address: images on one ring must not overlap.
   };
   static constexpr unsigned kMaxPatience = 6;
 

@@ -158,6 +158,23 @@ std::vector<std::string> CanNetwork::take_notices() {
   return out;
 }
 
+std::string CanNetwork::silence_hint(std::uint8_t node) const {
+  const auto start = state_command(node, NodeState::pre_operational);
+  if (records_.state(node) == NodeState::stopped)
+    return fmt::format("node {} is stopped (NMT, by its heartbeat) and cannot answer SDO: `{}`", node, start);
+  return fmt::format(
+      "is node {} powered, connected, at this bitrate and node-ID? `scan` shows which nodes answer; a "
+      "stopped node does not: `{}`",
+      node, start);
+}
+
+std::string CanNetwork::state_command(std::uint8_t node, NodeState state) const {
+  const auto* word = state == NodeState::operational ? "start"
+                     : state == NodeState::stopped   ? "stop"
+                                                     : "preop";
+  return fmt::format("nmt {} -n {}", word, node);
+}
+
 std::unique_ptr<ObjectChannel> CanNetwork::object_channel(std::uint8_t node, Duration timeout) {
   return std::make_unique<CanObjectChannel>(*this, node, timeout);
 }

@@ -67,6 +67,9 @@ class CanNetwork final : public Network {
   /// What the controller reported, and what the bus has to say.
   std::vector<std::string> take_notices() override;
   void flush_trace() override { bus_->flush_trace(); }
+  /// A heartbeat says that a node is stopped; of one that sends none nobody knows.
+  std::string silence_hint(std::uint8_t node) const override;
+  std::string state_command(std::uint8_t node, NodeState state) const override;
   CanNetwork* can() override { return this; }
 
   /// Sends a frame of any kind. Errors as can::Bus::send().

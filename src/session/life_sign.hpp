@@ -11,6 +11,8 @@ struct LifeSign {
   enum class Kind : std::uint8_t {
     heartbeat,  ///< A message of servoctl's own (CiA 301, 7.2.8.2.2.2).
     guarding,   ///< A question to the node (CiA 301, 7.2.8.2.2.1).
+    /// Outputs of a process image (ETG.1000.4, 6.3); `period` is how long the node goes on without them.
+    process_data,
   };
   Kind kind = Kind::heartbeat;
   std::uint8_t producer = 0;      ///< Of a heartbeat: the node-ID under which servoctl sends it, 1..127.

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -21,6 +22,7 @@
 namespace servoctl::session {
 
 class CanNetwork;
+class EtherCatNetwork;
 
 /// The way to the objects of one node: one transfer at a time, whatever carries it. Lives no longer than its
 /// network, which serves it in every step: what the node answers is noted there.
@@ -120,20 +122,31 @@ class Network {
   /// back; at once where it never comes.
   virtual Result<void> recover(TimePoint deadline) = 0;
 
+  /// Asked in waits that are the network's own: when it answers true they end with Errc::interrupted.
+  virtual void set_cancelled(std::function<bool()>) {}
+
   virtual std::unique_ptr<ObjectChannel> object_channel(std::uint8_t node, Duration timeout) = 0;
 
   virtual const NodeRecords& records() const = 0;
   /// What nodes sent since the last call, in order of time; empty if nothing is left.
   virtual std::optional<NodeEvent> take_event() = 0;
 
-  /// Commands a state change of the node; nothing confirms it. Errc::usage for a state that this network has
-  /// no word for, Errc::bus when it is not sent.
+  /// Commands a state change of the node; whether something confirms it is the network's own. Errc::usage for
+  /// a state that this network has no word for, Errc::bus when it is not sent.
   virtual Result<void> request_state(std::uint8_t node, NodeState state) = 0;
   /// Asks the node for its state where that is a question of its own; the answer goes to records().
   virtual Result<void> ask_state(std::uint8_t node) = 0;
   /// The node is told to change its state: what was heard of it is no longer known to be so, unless it goes
   /// on telling it by itself.
   virtual void doubt_state(std::uint8_t node) = 0;
+  /// Every node answers the question for its state, and nothing comes of asking.
+  virtual bool tells_state() const { return false; }
+  /// Nodes depend on what servoctl sends regularly now: step() must be called at next_event() whoever is
+  /// waited for.
+  virtual bool must_go_on() const { return false; }
+  /// Where a drive stays energised only while servoctl exchanges process data with it: that ends, and the
+  /// node goes back to where only its objects are served. Nothing anywhere else.
+  virtual Result<void> end_exchange(std::uint8_t) { return {}; }
 
   /// Whether it has this sign for its nodes.
   virtual bool carries(LifeSign::Kind sign) const = 0;
@@ -156,8 +169,15 @@ class Network {
   /// Whatever is kept back for a file is written to it now.
   virtual void flush_trace() {}
 
+  /// What to do about a node that does not answer.
+  virtual std::string silence_hint(std::uint8_t node) const;
+  /// The command that asks for a state of the node: `nmt start -n 3`.
+  virtual std::string state_command(std::uint8_t node, NodeState state) const;
+
   /// What only CAN has; null where there are no COB-IDs.
   virtual CanNetwork* can() { return nullptr; }
+  /// What only EtherCAT has; null elsewhere.
+  virtual EtherCatNetwork* ethercat() { return nullptr; }
 };
 
 }  // namespace servoctl::session

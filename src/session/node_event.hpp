@@ -23,6 +23,7 @@ struct NodeEvent {
       heartbeat,  ///< What it sends by itself stays away.
       guarding,   ///< It does not answer the question whether it lives.
       toggle,     ///< It answers that question, and its answers do not change their toggle bit.
+      counter,    ///< Frames go past it: no working counter.
     };
     Duration silence;
     Sign sign = Sign::heartbeat;

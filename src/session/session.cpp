@@ -19,7 +19,9 @@ Session::Session(std::unique_ptr<Network> network, std::string url, Options opti
       opened_at_(network_->now()),
       url_(std::move(url)),
       options_(std::move(options)),
-      energised_(options_.protection) {}
+      energised_(options_.protection) {
+  network_->set_cancelled([this] { return options_.cancelled && options_.cancelled(); });
+}
 
 Session::Session(std::unique_ptr<can::Bus> bus, std::string url, Options options)
     : Session(std::make_unique<CanNetwork>(std::move(bus), url), url, std::move(options)) {}

@@ -18,9 +18,20 @@ Result<void> tell(Session& session, std::uint8_t node, NodeState state) {
   return session.network().request_state(node, state);
 }
 
+/// Of a node that always answers.
+Result<std::optional<NodeState>> answered_state(Session& session, std::uint8_t node) {
+  const auto heard = session.watch().heartbeats(node);
+  if (const auto asked = session.network().ask_state(node); !asked) return fail(asked.error());
+  const auto waited = session.wait([&] { return session.watch().heartbeats(node) > heard; },
+                                   session.now() + session.options().timeout);
+  if (!waited) return fail(waited.error());
+  return *waited ? session.watch().state(node) : std::nullopt;
+}
+
 }  // namespace
 
 Result<std::optional<NodeState>> ask_state(Session& session, std::uint8_t node, bool by_question) {
+  if (session.network().tells_state()) return answered_state(session, node);
   const SdoRequest questions[] = {{.node = node, .object = objects::kProducerHeartbeat, .size = 2},
                                   {.node = node, .object = objects::kGuardTime, .size = 2},
                                   {.node = node, .object = objects::kLifeTimeFactor, .size = 1}};
@@ -55,10 +66,10 @@ Result<void> StatePause::leave(bool put_back) {
   if (!std::exchange(entered_, false)) return {};
   const bool known = before_ == NodeState::operational;
   if (known && put_back) return tell(*session_, node_, NodeState::operational);
-  notices_.push_back(fmt::format("node {}: it stays pre-operational, {}; `nmt start -n {}` starts it", node_,
+  notices_.push_back(fmt::format("node {}: it stays pre-operational, {}; `{}` starts it", node_,
                                  known ? "because a restore is incomplete"
                                        : "because neither heartbeat nor guarding showed its previous state",
-                                 node_));
+                                 session_->network().state_command(node_, NodeState::operational)));
   return {};
 }
 

@@ -12,17 +12,6 @@ constexpr std::size_t kLongTransfer = 1000;
 /// Requests from which on a list is; a scan asks 127 nodes at once.
 constexpr std::size_t kLongList = 128;
 
-/// A heartbeat says that a node is stopped; of one that sends none nobody knows.
-std::string silence_hint(const NodeRecords& watch, std::uint8_t node) {
-  if (watch.state(node) == NodeState::stopped)
-    return fmt::format("node {} is stopped (NMT, by its heartbeat) and cannot answer SDO: `nmt preop -n {}`",
-                       node, node);
-  return fmt::format(
-      "is node {} powered, connected, at this bitrate and node-ID? `scan` shows which nodes answer; a "
-      "stopped node does not: `nmt preop -n {}`",
-      node, node);
-}
-
 }  // namespace
 
 TransferRun::TransferRun(Session& session, std::span<const SdoRequest> requests)
@@ -125,7 +114,7 @@ void TransferRun::finish(Lane& channel, Result<Bytes> result) {
                                                                       : request.transfer);
   }
   if (silent && result.error().hint.empty())
-    result.error().hint = silence_hint(session_->watch(), request.node);
+    result.error().hint = session_->network().silence_hint(request.node);
   auto& place = results_[channel.current];
   place = std::move(result);
   --open_;

@@ -24,6 +24,7 @@ struct Words {
     switch (gone.sign) {
       case Sign::heartbeat: return fmt::format("heartbeat lost: silent for {} ms", silence);
       case Sign::guarding: return fmt::format("node guarding lost: no answer for {} ms", silence);
+      case Sign::counter: return fmt::format("no longer on the ring: no answer for {} ms", silence);
       case Sign::toggle: break;
     }
     return fmt::format("node guarding lost: toggle bit unchanged for {} ms", silence);

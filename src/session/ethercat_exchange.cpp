@@ -1,0 +1,274 @@
+#include "session/ethercat_exchange.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <utility>
+
+#include "drive/standard_objects.hpp"
+#include "ethercat/registers.hpp"
+#include "ethercat/sii_reader.hpp"
+#include "ethercat/sm_watchdog.hpp"
+#include "ethercat/words.hpp"
+#include "session/ethercat_object_channel.hpp"
+
+namespace servoctl::session {
+namespace {
+
+namespace reg = ethercat::reg;
+using ethercat::AlState;
+
+constexpr std::uint16_t kAssignOutputs = 0x1C12;
+constexpr std::uint16_t kAssignInputs = 0x1C13;
+constexpr Duration kTimeout = std::chrono::milliseconds(500);
+/// Whole cycles that a slave has to have seen before it is asked for OP.
+constexpr unsigned kFirstCycles = 5;
+constexpr Duration kFirstPatience = std::chrono::milliseconds(200);
+
+bool carries(const std::vector<canopen::PdoEntry>& entries, ObjectAddress object) {
+  return std::any_of(entries.begin(), entries.end(), [&](const auto& e) { return e.object == object; });
+}
+
+}  // namespace
+
+Result<Bytes> EtherCatExchange::upload(ObjectAddress object) {
+  EtherCatObjectChannel channel(*network_, *node_, kTimeout);
+  channel.start_upload(object, network_->now(), canopen::Transfer::automatic, 0);
+  return channel.finish_transfer();
+}
+
+Result<void> EtherCatExchange::download(ObjectAddress object, Bytes data) {
+  EtherCatObjectChannel channel(*network_, *node_, kTimeout);
+  channel.start_download(object, std::move(data), network_->now(), canopen::Transfer::automatic);
+  const auto done = channel.finish_transfer();
+  if (!done) return fail(done.error());
+  return {};
+}
+
+Result<void> EtherCatExchange::begin(AlState target) {
+  if (const auto ready = network_->prepare(*node_); !ready) return ready;
+  if (node_->exchanges() && node_->al && node_->al->state == target && !node_->al->error) return {};
+  if (node_->raised)
+    if (const auto down = end(); !down) return down;
+  auto done = climb(target);
+  if (!done) {
+    auto error = done.error();
+    if (const auto back = end(); !back) error.message += "; and then: " + back.error().message;
+    return fail(std::move(error));
+  }
+  return {};
+}
+
+Result<void> EtherCatExchange::climb(AlState target) {
+  node_->raised = true;
+  if (const auto there = network_->go_to(*node_, AlState::preop); !there) return fail(there.error());
+  node_->raised = true;
+  const auto mapped = mapping();
+  if (!mapped) return fail(mapped.error());
+  const auto values = presets(mapped->outputs);
+  if (!values) return fail(values.error());
+  const auto place = area();
+  if (!place) return fail(place.error());
+  const auto lrw = knows_lrw();
+  if (!lrw) return fail(lrw.error());
+  auto image = std::make_unique<ethercat::ProcessImage>(
+      ethercat::ProcessImage::Options{.logical = std::uint32_t{node_->number} << 16U});
+  const auto logical = image->add(node_->number, *mapped, *lrw);
+  const auto plan = plan_slave(node_->number, *place, *mapped, logical);
+  if (!plan) return fail(plan.error());
+  if (const auto set = set_up(*plan); !set) return set;
+  if (const auto there = network_->go_to(*node_, AlState::safeop); !there) return fail(there.error());
+  for (const auto& preset : *values)
+    if (const auto set = image->set(node_->number, preset.object, preset.value); !set)
+      return fail(set.error());
+  if (const auto started = image->start(network_->now()); !started) return started;
+  node_->image = std::move(image);
+  if (const auto flows = flow(); !flows) return flows;
+  if (target == AlState::safeop) return {};
+  if (const auto there = network_->go_to(*node_, AlState::op); !there) return fail(there.error());
+  return {};
+}
+
+Result<std::vector<std::uint16_t>> EtherCatExchange::assigned(std::uint16_t index) {
+  const auto count = upload({index, 0});
+  if (!count) return fail(count.error());
+  std::vector<std::uint16_t> out;
+  for (std::uint64_t sub = 1; sub <= load_le(*count); ++sub) {
+    const auto pdo = upload({index, static_cast<std::uint8_t>(sub)});
+    if (!pdo) return fail(pdo.error());
+    if (const auto number = load_le(*pdo); number != 0) out.push_back(static_cast<std::uint16_t>(number));
+  }
+  return out;
+}
+
+/// The list is switched off while it is written (ETG.1000.6, 5.6.7.4.7).
+Result<void> EtherCatExchange::assign(std::uint16_t index, const std::vector<std::uint16_t>& pdos) {
+  if (auto done = download({index, 0}, {0}); !done) return done;
+  for (std::size_t i = 0; i < pdos.size(); ++i)
+    if (auto done = download({index, static_cast<std::uint8_t>(i + 1)}, store_le(pdos[i], 2)); !done)
+      return done;
+  return download({index, 0}, {static_cast<std::uint8_t>(pdos.size())});
+}
+
+Result<std::vector<canopen::PdoEntry>> EtherCatExchange::entries(const std::vector<std::uint16_t>& pdos) {
+  std::vector<canopen::PdoEntry> out;
+  for (const auto pdo : pdos) {
+    const auto count = upload({pdo, 0});
+    if (!count) return fail(count.error());
+    for (std::uint64_t sub = 1; sub <= load_le(*count); ++sub) {
+      const auto entry = upload({pdo, static_cast<std::uint8_t>(sub)});
+      if (!entry) return fail(entry.error());
+      out.push_back(canopen::parse_pdo_entry(static_cast<std::uint32_t>(load_le(*entry))));
+    }
+  }
+  return out;
+}
+
+/// What one direction carries; where that lacks what a motion needs, with what the family's rules name.
+Result<std::vector<canopen::PdoEntry>> EtherCatExchange::side(std::uint16_t index, std::uint16_t wanted,
+                                                              ObjectAddress needed) {
+  const auto before = assigned(index);
+  if (!before) return fail(before.error());
+  auto out = entries(*before);
+  if (!out || carries(*out, needed)) return out;
+  if (wanted == 0)
+    return fail(
+        drive_error(Errc::refused, node_->number, {index, 0},
+                    fmt::format("the assigned PDOs do not carry {}, and process data without it are no use",
+                                to_string(needed)),
+                    "assign PDOs that do: `pdo show` shows them; or name the drive's family with -f"));
+  node_->assigned.push_back({index, *before});
+  if (const auto done = assign(index, {wanted}); !done) return fail(done.error());
+  out = entries({wanted});
+  if (!out || carries(*out, needed)) return out;
+  return fail(drive_error(Errc::protocol, node_->number, {wanted, 0},
+                          fmt::format("it does not carry {}", to_string(needed)),
+                          "the family's data names it for motions: is the drive of this family?"));
+}
+
+Result<ethercat::ProcessMapping> EtherCatExchange::mapping() {
+  ethercat::ProcessMapping out;
+  auto outputs = side(kAssignOutputs, node_->rules.rpdo, objects::kControlword);
+  if (!outputs) return fail(outputs.error());
+  auto inputs = side(kAssignInputs, node_->rules.tpdo, objects::kStatusword);
+  if (!inputs) return fail(inputs.error());
+  out.outputs = std::move(*outputs);
+  out.inputs = std::move(*inputs);
+  return out;
+}
+
+/// A zero that nobody meant must not move, stop or starve a motor.
+Result<std::vector<EtherCatExchange::Preset>> EtherCatExchange::presets(
+    const std::vector<canopen::PdoEntry>& outputs) {
+  std::vector<Preset> out;
+  for (const auto& entry : outputs) {
+    if (entry.is_gap()) continue;
+    const auto object = entry.object;
+    const std::size_t size = (entry.bits + 7U) / 8U;
+    if (object == objects::kControlword || object == objects::kTargetVelocity ||
+        object == objects::kTargetTorque) {
+      out.push_back({object, Bytes(size, 0)});
+      continue;
+    }
+    const auto from = object == objects::kTargetPosition ? objects::kPositionActual : object;
+    const auto value = upload(from);
+    if (!value && value.error().code != Errc::sdo_abort) return fail(value.error());
+    if (!value || value->size() != size)
+      return fail(drive_error(
+          Errc::refused, node_->number, object,
+          value
+              ? fmt::format("it is an output of {} bytes, and the drive gave {} for it", size, value->size())
+              : fmt::format("it is an output, and {} cannot be read to preset it", to_string(from)),
+          "outputs are preset from the drive: do not map one that cannot be read; `pdo show`"));
+    out.push_back({object, *value});
+  }
+  return out;
+}
+
+Result<ethercat::ProcessArea> EtherCatExchange::area() {
+  ethercat::SiiReader reader(node_->number, node_->address());
+  reader.start(network_->now());
+  const auto image = network_->wire_.ask(reader);
+  if (!image && (image.error().code == Errc::bus || image.error().code == Errc::interrupted))
+    return fail(image.error());
+  if (image)
+    if (const auto out = ethercat::process_area(ethercat::parse_sii(*image)); out.exists()) return out;
+  ethercat::ProcessArea out;
+  out.out_start = node_->rules.outputs;
+  out.in_start = node_->rules.inputs;
+  out.out_control = reg::kSmOutputs;
+  out.in_control = reg::kSmInputs;
+  return out;
+}
+
+Result<bool> EtherCatExchange::knows_lrw() {
+  const auto replies = network_->wire_.exchange({read_registers(node_->address(), reg::kFmmuCount, 1),
+                                                 read_registers(node_->address(), reg::kFeatures, 2)});
+  if (!replies) return fail(replies.error());
+  if (!(*replies)[0].done() || !(*replies)[1].done()) return fail(network_->no_answer(node_->number));
+  fmmus_ = (*replies)[0].data[0];
+  const auto features = ethercat::word_at((*replies)[1].data, 0);
+  has_clock_ = (features & reg::kFeatureDc) != 0;
+  return (features & reg::kFeatureNoLrw) == 0;
+}
+
+Result<void> EtherCatExchange::write_all(const std::vector<ethercat::Request>& requests) {
+  const auto replies = network_->wire_.exchange(requests);
+  if (!replies) return fail(replies.error());
+  for (std::size_t i = 0; i < requests.size(); ++i)
+    if (!(*replies)[i].done())
+      return fail(drive_error(Errc::timeout, node_->number,
+                              fmt::format("register {:04X}h was not written", requests[i].address >> 16U),
+                              network_->silence_hint(node_->number)));
+  return {};
+}
+
+/// What a predecessor left in FMMUs and clocks is taken away first.
+Result<void> EtherCatExchange::set_up(const ethercat::SlavePlan& plan) {
+  const auto slave = node_->address();
+  constexpr unsigned kMostFmmus = 16;
+  std::vector<ethercat::Request> requests;
+  const auto fmmus = std::min(fmmus_, kMostFmmus);
+  if (fmmus > 0) requests.push_back(write_registers(slave, reg::fmmu(0), Bytes(fmmus * reg::kFmmuSize, 0)));
+  if (has_clock_) requests.push_back(write_registers(slave, reg::kDcActivation, {0}));
+  const auto watchdog = ethercat::sm_watchdog(node_->watchdog);
+  if (!watchdog) return fail(watchdog.error());
+  for (auto& request : watchdog->requests(slave)) requests.push_back(std::move(request));
+  for (auto& request : plan.requests(slave)) requests.push_back(std::move(request));
+  return write_all(requests);
+}
+
+/// Outputs have to come before OP is asked for (AL status code 001Bh else), and inputs have to be there
+/// before anybody reads one.
+Result<void> EtherCatExchange::flow() {
+  const auto end = network_->now() + kFirstPatience;
+  const auto& cycle = node_->image->options().cycle;
+  for (;;) {
+    if (const auto stepped = network_->wire_.step(network_->now() + cycle); !stepped)
+      return fail(stepped.error());
+    if (!node_->exchanges()) break;
+    const auto& counts = node_->image->counts(node_->number);
+    if (counts.cycles >= kFirstCycles && counts.missing == 0) return {};
+    if (network_->now() >= end) break;
+  }
+  return fail(drive_error(Errc::timeout, node_->number, "it takes no process data: working counter too low",
+                          network_->silence_hint(node_->number)));
+}
+
+Result<void> EtherCatExchange::put_assignment_back() {
+  Result<void> out;
+  for (const auto& before : std::exchange(node_->assigned, {}))
+    if (auto done = assign(before.index, before.pdos); !done && out) out = done;
+  return out;
+}
+
+Result<void> EtherCatExchange::end() {
+  if (node_->exchanges() && node_->al && node_->al->state == AlState::op)
+    (void)network_->go_to(*node_, AlState::safeop);  // What refuses is asked for PRE-OP all the same.
+  network_->end_cycles(*node_);
+  const auto there = network_->go_to(*node_, AlState::preop);
+  if (!there) return fail(there.error());
+  node_->raised = false;
+  return put_assignment_back();
+}
+
+}  // namespace servoctl::session
