@@ -25,7 +25,7 @@ struct Cell {
 /// a time from `now`; the time every SDO answer takes. `counts=N` are the counts per motor revolution of
 /// those whose objects do not report them; Errc::usage where there is none of these, and for what is wrong in
 /// the text.
-Result<Cell> build_cell(std::string_view spec, std::span<const std::filesystem::path> folders, TimePoint now);
+Result<Cell> build_cell(std::string_view text, std::span<const std::filesystem::path> folders, TimePoint now);
 
 /// A bus in this process with these drives.
 Result<std::unique_ptr<can::Bus>> open_sim(std::string_view spec,

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "base/signal_wait.hpp"
-
 namespace servoctl::sim {
 namespace {
 
@@ -19,7 +17,7 @@ void SimBus::attach(Device& device) {
   collect();
 }
 
-TimePoint SimBus::now() const { return clock_ == Clock::real_time ? steady_now() : virtual_now_; }
+TimePoint SimBus::now() const { return clock_.now(); }
 
 Result<void> SimBus::send(const can::Frame& frame) {
   deliver(frame, nullptr);
@@ -54,27 +52,17 @@ TimePoint SimBus::next_event() const {
   return next;
 }
 
-bool SimBus::wait_until(TimePoint time) {
-  if (clock_ == Clock::virtual_time) {
-    virtual_now_ = std::max(virtual_now_, time);
-    return true;
-  }
-  const auto left = time - steady_now();
-  if (left <= Duration::zero()) return true;
-  return wait_or_signal({}, std::min<Duration>(left, std::chrono::hours(1))) == 0;
-}
-
 Result<std::optional<can::Frame>> SimBus::receive(TimePoint deadline) {
   for (;;) {
     run_devices();
     if (!rx_.empty()) {
-      if (clock_ == Clock::virtual_time) virtual_now_ += kFrameTime;
+      clock_.move_on(kFrameTime);
       const auto frame = rx_.front();
       rx_.pop_front();
       return std::optional(frame);
     }
     const auto wake = std::min(next_event(), deadline);
-    if (!wait_until(wake)) return std::optional<can::Frame>{};
+    if (!clock_.wait_until(wake)) return std::optional<can::Frame>{};
     if (wake == deadline && next_event() > deadline) return std::optional<can::Frame>{};
   }
 }

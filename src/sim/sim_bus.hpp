@@ -5,6 +5,7 @@
 
 #include "can/bus.hpp"
 #include "sim/device.hpp"
+#include "sim/sim_clock.hpp"
 
 namespace servoctl::sim {
 
@@ -12,7 +13,7 @@ namespace servoctl::sim {
 /// real time; with the real clock it behaves like a bus of hardware.
 class SimBus final : public can::Bus {
  public:
-  enum class Clock : std::uint8_t { virtual_time, real_time };
+  using Clock = SimClock::Kind;
 
   explicit SimBus(Clock clock) : clock_(clock) {}
 
@@ -29,10 +30,8 @@ class SimBus final : public can::Bus {
   void deliver(const can::Frame& frame, const Device* sender);
   void collect();
   void run_devices();
-  bool wait_until(TimePoint time);
 
-  Clock clock_;
-  TimePoint virtual_now_{std::chrono::seconds(1)};
+  SimClock clock_;
   std::vector<Device*> devices_;
   std::deque<can::Frame> rx_;
 };

@@ -1,0 +1,141 @@
+#include "sim/cell_spec.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "base/duration.hpp"
+#include "base/number.hpp"
+#include "base/text.hpp"
+#include "canopen/node_id.hpp"
+
+namespace servoctl::sim {
+namespace {
+
+Result<CellSpec::Place> parse_place(const CellSpec& spec, std::string_view text) {
+  const auto at = text.find('@');
+  CellSpec::Place place;
+  // The case of a family's name is all the same, that of a file's is not.
+  const auto family = text.substr(0, at);
+  place.family = family.find_first_of("./") == std::string_view::npos ? lower(family) : std::string(family);
+  if (place.family.empty()) return spec.wrong("a simulated drive has no family name");
+  if (at == std::string_view::npos) return place;
+  const auto node = parse_digits(text.substr(at + 1), 10);
+  if (!node || *node < canopen::kFirstNode || *node > canopen::kLastNode)
+    return spec.wrong(fmt::format("'{}' is not a node-ID (1..127)", text.substr(at + 1)));
+  place.node = static_cast<std::uint8_t>(*node);
+  return place;
+}
+
+CellSpec::Option parse_option(std::string_view text) {
+  const auto equals = text.find('=');
+  if (equals == std::string_view::npos) return {text, {}};
+  return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+/// A fault by its code, or by what the panel shows: then its code and vendor bytes are looked up.
+std::optional<Alarm> alarm_of(const drive::Profile& profile, std::string_view text) {
+  if (const auto code = parse_integer(text))
+    return code->negative || code->magnitude > 0xFFFF
+               ? std::nullopt
+               : std::optional(Alarm{static_cast<std::uint16_t>(code->magnitude), {}});
+  for (const auto& fault : profile.faults)
+    if (equals_nocase(fault.panel, text) && fault.code)
+      return Alarm{*fault.code, drive::panel_bytes(profile.rules.emergency, fault.panel)};
+  return std::nullopt;
+}
+
+Result<bool> plan_fault(const CellSpec& spec, std::string_view text, std::span<DriveModel* const> drives,
+                        TimePoint now) {
+  const auto at = text.find('@');
+  const auto delay = parse_duration(at == std::string_view::npos ? "0s" : text.substr(at + 1));
+  for (auto* drive : drives) {
+    const auto alarm = alarm_of(drive->profile(), text.substr(0, at));
+    if (!alarm || !delay)
+      return spec.wrong(
+          fmt::format("'fault={}' is not CODE@TIME or PANEL@TIME, such as fault=0xFF00@2s", text));
+    drive->raise_fault_at(*alarm, now + *delay);
+  }
+  return true;
+}
+
+/// Whether a turn of its motor has counts that no object tells.
+bool has_own_counts(const drive::Profile& profile) {
+  const auto ways = profile.rules.units.find(drive::Measure::increments_per_turn);
+  return ways != profile.rules.units.end() &&
+         std::any_of(ways->second.begin(), ways->second.end(), [](const auto& way) { return way.learned; });
+}
+
+Result<bool> set_counts(const CellSpec& spec, std::string_view text, std::span<DriveModel* const> drives) {
+  const auto counts = parse_digits(text, 10);
+  if (!counts || *counts < 2)
+    return spec.wrong(fmt::format("'counts={}': counts per revolution must be 2 or more", text));
+  bool taken = false;
+  for (auto* drive : drives) {
+    if (!has_own_counts(drive->profile())) continue;
+    drive->own_counts() = static_cast<double>(*counts);
+    taken = true;
+  }
+  if (taken) return true;
+  return spec.wrong(fmt::format("'counts={}': all drives here report their counts per revolution", text));
+}
+
+}  // namespace
+
+tl::unexpected<Error> CellSpec::wrong(std::string what) const {
+  return fail(Errc::usage, std::move(what), std::string(example));
+}
+
+Result<CellSpec> parse_cell_spec(std::string_view text, std::string_view example) {
+  CellSpec spec;
+  spec.example = example;
+  const auto question = text.find('?');
+  if (question != std::string_view::npos)
+    for (const auto option : split(text.substr(question + 1), '&'))
+      spec.options.push_back(parse_option(option));
+  for (const auto part : split(text.substr(0, question), ',')) {
+    auto place = parse_place(spec, part);
+    if (!place) return fail(place.error());
+    spec.places.push_back(std::move(*place));
+  }
+  if (spec.places.empty()) return spec.wrong("no simulated drive is named");
+  return spec;
+}
+
+Result<std::unique_ptr<Memory>> open_memory(const CellSpec& spec) {
+  for (const auto& option : spec.options) {
+    if (option.key != "state") continue;
+    auto memory = Memory::open(std::string(option.value));
+    if (!memory) return fail(memory.error());
+    return std::make_unique<Memory>(std::move(*memory));
+  }
+  return std::make_unique<Memory>();
+}
+
+Result<const drive::Profile*> profile_of(std::vector<std::unique_ptr<drive::Profile>>& known,
+                                         const std::string& family,
+                                         std::span<const std::filesystem::path> folders) {
+  for (const auto& profile : known)
+    if (profile->family == family) return profile.get();
+  auto loaded = drive::load_profile(family, folders);
+  if (!loaded) return fail(loaded.error());
+  known.push_back(std::make_unique<drive::Profile>(std::move(*loaded)));
+  return known.back().get();
+}
+
+Result<Duration> time_of(const CellSpec& spec, const CellSpec::Option& option) {
+  auto time = read_duration(option.value);
+  if (!time)
+    return spec.wrong(fmt::format("{}: {}; {}", option.key, time.error().message, time.error().hint));
+  return time;
+}
+
+Result<bool> apply_drive_option(const CellSpec& spec, const CellSpec::Option& option,
+                                std::span<DriveModel* const> drives, TimePoint now) {
+  if (option.key == "fault") return plan_fault(spec, option.value, drives, now);
+  if (option.key == "counts") return set_counts(spec, option.value, drives);
+  return false;
+}
+
+}  // namespace servoctl::sim
