@@ -14,6 +14,7 @@
 #include "motion/power.hpp"
 #include "session/can_network.hpp"
 #include "session/link_wait.hpp"
+#include "session/open_network.hpp"
 #include "traffic/sync_end.hpp"
 
 namespace servoctl::cli {
@@ -52,9 +53,9 @@ Result<session::Session*> BusHolder::open(const Settings& settings) {
 }
 
 Result<void> BusHolder::connect(const std::string& url) {
-  auto bus = session::open_bus(url, bus_options_);
-  if (!bus) return fail(bus.error());
-  auto session = std::make_unique<session::Session>(std::move(*bus), url, options_);
+  auto network = session::open_network(url, bus_options_);
+  if (!network) return fail(network.error());
+  auto session = std::make_unique<session::Session>(std::move(*network), url, options_);
   // Boot-ups of drives that are simulated in this process are no news.
   if (auto heard = session->listen(); !heard) return heard;
   (void)session->take_events();
@@ -142,8 +143,10 @@ void BusHolder::stop_sync() {
   console_->err(fmt::format("notice: SYNC is no longer produced on {}, after {}\n", session_->url(), count));
 }
 
+bool BusHolder::must_go_on() const { return session_ && session_->network().must_go_on(); }
+
 Duration BusHolder::serve() {
-  if (!produces_sync()) return Duration::max();
+  if (!must_go_on() && !produces_sync()) return Duration::max();
   // What goes wrong is told to the next line.
   (void)session_->listen();
   return std::max(Duration::zero(), session_->next_event() - session_->now());

@@ -40,6 +40,9 @@ class BusHolder {
   void close() { drop(); }
 
   bool produces_sync() const;
+  /// Nodes depend on what servoctl sends regularly: while their user is waited for it goes on, and before the
+  /// program ends they are let go.
+  bool must_go_on() const;
   /// Ends the SYNC that is produced, and says so.
   void stop_sync();
 

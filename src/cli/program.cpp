@@ -66,7 +66,11 @@ int run_lines(Shell& shell, const std::vector<std::string>& words, StandardConso
   const auto first = match_command(words).first;
   if (first < words.size() && words[first] == "-") return run_batch(shell, as_run(words, first), &std::cin);
   if (is_batch(words)) return run_batch(shell, words, &std::cin);
-  if (first < words.size() || asks_for_help(words)) return shell.run(words);
+  if (first < words.size() || asks_for_help(words)) {
+    const int code = shell.run(words);
+    if (code == 0) shell.hold();
+    return code;
+  }
   auto settings = settings_for_lines(shell.defaults(), words);
   if (!settings) return shell.report_error(settings.error(), false);
   shell.defaults() = std::move(*settings);

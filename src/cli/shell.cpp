@@ -7,9 +7,11 @@
 #include <span>
 #include <utility>
 
+#include "base/printable.hpp"
 #include "base/text.hpp"
 #include "cli/terminal/signals.hpp"
 #include "command/help_text.hpp"
+#include "session/ethercat_network.hpp"
 #include "session/identify.hpp"
 #include "session/scan.hpp"
 #include "show/notice.hpp"
@@ -32,6 +34,14 @@ bool wants_json(const std::vector<std::string>& words) {
       return true;
   }
   return false;
+}
+
+/// Where a slave does not tell how it is reached, the data of its family do.
+void learn_family(session::Session& session, std::span<const std::uint8_t> nodes,
+                  const drive::Profile& profile) {
+  auto* ring = session.ethercat();
+  for (const auto node : nodes)
+    if (ring != nullptr) ring->learn(node, profile.rules.coe);
 }
 
 }  // namespace
@@ -129,6 +139,7 @@ Result<void> Shell::prepare(Run& run, const command::Arguments& arguments) {
   run.context.session = *opened;
   if (const auto possible = check_network(command, **opened); !possible) return possible;
   if (const auto named = prepare_nodes(run); !named) return named;
+  if (run.context.profile != nullptr) learn_family(**opened, run.context.nodes, *run.context.profile);
   return run.line.hold_family(run.context.nodes, run.context.profile, weight_of(command, arguments));
 }
 
@@ -251,7 +262,21 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
           .abort_words = std::move(words)};
 }
 
+/// A drive that stays energised only while servoctl is there is held until the user ends it.
+void Shell::hold() {
+  if (!bus_.must_go_on()) return;
+  console_->err("notice: process data go on, and the drive stays as it is: Ctrl-C ends it\n");
+  auto& session = *bus_.session();
+  while (!cancelled() && bus_.must_go_on()) {
+    const auto stepped = session.step(session.now() + std::chrono::milliseconds(250));
+    for (const auto& notice : take_notices(nullptr, false))
+      console_->err("notice: " + printable(notice) + "\n");
+    if (!stepped) return;
+  }
+}
+
 int Shell::close(int code) {
+  if (bus_.must_go_on()) bus_.let_go();
   bus_.close();
   auto failure = bus_.take_trace_failure();
   if (!failure) failure = std::exchange(incomplete_trace_, std::nullopt);

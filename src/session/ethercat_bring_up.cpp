@@ -52,10 +52,10 @@ Error EtherCatNetwork::nothing_back() const {
 }
 
 Error EtherCatNetwork::no_answer(std::uint8_t node) const {
-  if (node > count_)
+  if (node > present_)
     return drive_error(Errc::timeout, node,
-                       fmt::format("there is no slave at this position: {} {} on the ring", count_,
-                                   count_ == 1 ? "is" : "are"),
+                       fmt::format("there is no slave at this position: {} {} on the ring", present_,
+                                   present_ == 1 ? "is" : "are"),
                        "`scan` shows them");
   return drive_error(Errc::timeout, node, "it does not answer", silence_hint(node));
 }
@@ -70,21 +70,16 @@ Result<void> EtherCatNetwork::count_slaves() {
         Errc::bus, fmt::format("{}: no EtherCAT slave is there", url_),
         "frames come back and nobody has touched them: is this the port with the drives, and is the first "
         "one powered?");
-  const std::size_t counted = reply.working_counter;
-  if (numbered_ && counted != count_) {
-    changed_ = true;
-  } else {
-    count_ = counted;
-  }
+  present_ = reply.working_counter;
+  if (!numbered_) count_ = present_;
+  changed_ = changed_ || present_ > count_;
   return {};
 }
 
 Result<std::vector<EtherCatNetwork::Glance>> EtherCatNetwork::glance() {
   if (const auto counted = count_slaves(); !counted) return fail(counted.error());
-  if (changed_)
-    return fail(Errc::bus, fmt::format("{}: slaves were added or are gone since they were numbered", url_),
-                "a node is a position on the ring: `scan` numbers them anew");
-  const auto most = std::min(count_, kMostNodes);
+  if (changed_) return fail(numbered_otherwise());
+  const auto most = std::min(present_, kMostNodes);
   constexpr std::size_t kEach = 3;
   std::vector<ethercat::Request> requests;
   for (std::size_t i = 0; i < most; ++i) {
@@ -125,9 +120,19 @@ Result<void> EtherCatNetwork::check_free(const EtherCatNode& node, const std::ve
   return {};
 }
 
-/// Gives every slave the address of its place.
+Error EtherCatNetwork::numbered_otherwise() const {
+  return make_error(Errc::bus, fmt::format("{}: the ring has changed since its slaves were numbered", url_),
+                    "a node is a position on the ring: `scan` numbers them anew");
+}
+
+/// Gives every slave the address of its place. Once that is done, only to those that have restarted: another
+/// place on the ring must not become another node in the middle of a job.
 Result<void> EtherCatNetwork::claim(const std::vector<Glance>& slaves) {
   std::vector<ethercat::Request> requests;
+  for (std::size_t i = 0; numbered_ && i < slaves.size(); ++i)
+    changed_ = changed_ ||
+               (slaves[i].station != 0 && slaves[i].station != station_of(static_cast<std::uint8_t>(i + 1)));
+  if (changed_) return fail(numbered_otherwise());
   for (std::size_t i = 0; i < slaves.size(); ++i) {
     const auto station = station_of(static_cast<std::uint8_t>(i + 1));
     if (slaves[i].station == station) continue;
@@ -251,12 +256,13 @@ Result<std::vector<EtherCatNetwork::Seen>> EtherCatNetwork::look(bool sii) {
   for (const auto& slave : view->slaves) out.push_back({slave, {}, {}});
   const bool foreign =
       std::any_of(out.begin(), out.end(), [](const Seen& s) { return is_driven(s.look.al); });
-  if (changed_ && !must_go_on()) {
+  if ((changed_ || view->count != count_) && !must_go_on()) {
     for (const auto& node : nodes_)
       if (node) forget_mailbox(*node, drive_error(Errc::timeout, node->number, "the ring was numbered anew"));
     changed_ = numbered_ = false;
   }
-  count_ = numbered_ ? count_ : view->count;
+  present_ = view->count;
+  if (!numbered_) count_ = present_;
   for (std::size_t i = 0; sii && i < out.size(); ++i) {
     const auto node = static_cast<std::uint8_t>(i + 1);
     if (foreign) {

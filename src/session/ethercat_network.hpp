@@ -72,7 +72,7 @@ class EtherCatNetwork final : public Network, private EtherCatTenant {
   /// anew where the ring has changed. Errc::bus when nothing comes back, or nobody is there.
   Result<std::vector<Seen>> look(bool sii);
   /// Slaves that were there when it was counted last; 0 before.
-  std::size_t count() const { return count_; }
+  std::size_t count() const { return present_; }
   /// What the family of a node says of it, for where its SII does not.
   void learn(std::uint8_t node, const drive::CoeRules& rules) { of(node).rules = rules; }
   /// From now on this node is treated as nobody's, whatever state it is in.
@@ -141,6 +141,7 @@ class EtherCatNetwork final : public Network, private EtherCatTenant {
   void forget_mailbox(EtherCatNode& node, const Error& why);
   Error no_answer(std::uint8_t node) const;
   Error nothing_back() const;
+  Error numbered_otherwise() const;
 
   // ethercat_watch.cpp
   void watch(ethercat::Ring& ring, TimePoint now);
@@ -157,9 +158,10 @@ class EtherCatNetwork final : public Network, private EtherCatTenant {
   std::string url_;
   std::array<std::unique_ptr<EtherCatNode>, 128> nodes_;
   std::array<bool, 128> taken_over_{};
-  std::size_t count_ = 0;
-  bool numbered_ = false;  ///< Stations are given.
-  bool changed_ = false;   ///< There are more or fewer slaves than were numbered.
+  std::size_t count_ = 0;    ///< Slaves when they were numbered.
+  std::size_t present_ = 0;  ///< When they were counted last.
+  bool numbered_ = false;    ///< Stations are given.
+  bool changed_ = false;     ///< They stand otherwise than they were numbered.
   Watching watching_;
   std::deque<NodeEvent> events_;
   std::vector<std::string> notices_;

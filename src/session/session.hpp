@@ -100,6 +100,8 @@ class Session {
   /// What only CAN has: frames, NMT, SYNC, heartbeats and guarding. Null where there are no COB-IDs; commands
   /// that cannot do without say so in the registry.
   CanNetwork* can() { return network_->can(); }
+  /// What only EtherCAT has; null elsewhere.
+  EtherCatNetwork* ethercat() { return network_->ethercat(); }
   const std::string& url() const { return url_; }
   Options& options() { return options_; }
 

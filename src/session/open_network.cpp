@@ -1,0 +1,20 @@
+#include "session/open_network.hpp"
+
+#include "session/can_network.hpp"
+#include "session/ethercat_network.hpp"
+#include "session/open_port.hpp"
+
+namespace servoctl::session {
+
+Result<std::unique_ptr<Network>> open_network(const std::string& url, const BusOptions& options) {
+  if (is_ethercat(url)) {
+    auto port = open_port(url, options);
+    if (!port) return fail(port.error());
+    return std::make_unique<EtherCatNetwork>(std::move(*port), url);
+  }
+  auto bus = open_bus(url, options);
+  if (!bus) return fail(bus.error());
+  return std::make_unique<CanNetwork>(std::move(*bus), url);
+}
+
+}  // namespace servoctl::session

@@ -1,0 +1,225 @@
+// A session on a ring of simulated slaves.
+#include "session/ethercat_network.hpp"
+
+#include <gtest/gtest.h>
+
+#include "drive/standard_objects.hpp"
+#include "ethercat_world.hpp"
+
+namespace servoctl::session {
+namespace {
+
+using std::chrono::milliseconds;
+
+TEST_F(EtherCatTest, OpeningSendsNothing) {
+  open("sv2@1");
+  pass(milliseconds(300));
+  EXPECT_EQ(ring().sent(), 0U);
+}
+
+TEST_F(EtherCatTest, ObjectsOfASlaveInInitAreRead) {
+  open("sv2@1,sv2@2");
+  EXPECT_EQ(load_le(session_->upload(2, objects::kVendorId).value()), 0x0044'5653U);
+  EXPECT_EQ(slave(0).state(), sim::EscState::init) << "nobody asked for it";
+  EXPECT_EQ(slave(1).state(), sim::EscState::pre_op);
+  EXPECT_EQ(session_->watch().state(2), NodeState::pre_operational);
+}
+
+TEST_F(EtherCatTest, AReadOfASlaveInPreOpTakesTenFramesAtMost) {
+  open("sv2@1");
+  ASSERT_TRUE(session_->upload(1, objects::kVendorId));
+  const auto before = ring().sent();
+  session_ = connect();
+  ASSERT_TRUE(session_->upload(1, objects::kVendorId));
+  EXPECT_LE(ring().sent() - before, 10U);
+}
+
+TEST_F(EtherCatTest, APlaceWithoutASlaveIsTold) {
+  open("sv2@1,sv2@2");
+  const auto answer = session_->upload(3, objects::kVendorId);
+  ASSERT_FALSE(answer);
+  EXPECT_EQ(answer.error().code, Errc::timeout);
+  EXPECT_EQ(answer.error().message, "node 3: there is no slave at this position: 2 are on the ring");
+}
+
+TEST_F(EtherCatTest, WritesAndAbortsAreTheDrives) {
+  open("sv2@1");
+  EXPECT_TRUE(session_->download(1, objects::kTargetVelocity, store_le(1000U, 4)));
+  EXPECT_EQ(slave().model().values().number(objects::kTargetVelocity), 1000U);
+  EXPECT_EQ(session_->upload(1, {0x1234, 0}).error().abort_code, 0x0602'0000U);
+}
+
+TEST_F(EtherCatTest, ARingWithAnotherMasterIsNotTouched) {
+  open("sv2@1,sv2@2");
+  ASSERT_TRUE(session_->upload(1, objects::kVendorId));
+  ASSERT_TRUE(session_->upload(2, objects::kVendorId));
+  network().learn(2, rules());
+  ASSERT_TRUE(network().request_state(2, NodeState::safe_operational));
+  const auto other = connect();
+  const auto answer = other->upload(1, objects::kVendorId);
+  ASSERT_FALSE(answer);
+  EXPECT_EQ(answer.error().code, Errc::refused);
+  EXPECT_EQ(answer.error().message, "node 1: another master works with this ring: node 2 is in SAFE-OP");
+  EXPECT_EQ(other->network().ethercat()->look(true).value().size(), 2U);
+  other->network().ethercat()->take_over(2);
+  EXPECT_TRUE(other->network().request_state(2, NodeState::pre_operational));
+  EXPECT_EQ(slave(1).state(), sim::EscState::pre_op);
+}
+
+TEST_F(EtherCatTest, ASlaveGoesToOpAndBack) {
+  open("sv2@1");
+  network().learn(1, rules());
+  const auto up = network().request_state(1, NodeState::operational);
+  ASSERT_TRUE(up) << up.error().message;
+  EXPECT_EQ(slave().state(), sim::EscState::op);
+  EXPECT_TRUE(network().must_go_on());
+  pass(milliseconds(500));
+  EXPECT_EQ(slave().state(), sim::EscState::op) << "cycles go on";
+  ASSERT_TRUE(network().request_state(1, NodeState::pre_operational));
+  EXPECT_EQ(slave().state(), sim::EscState::pre_op);
+  EXPECT_EQ(load_le(session_->upload(1, {0x1C12, 0}).value()), 0U) << "the assignment is as it was";
+  EXPECT_FALSE(network().must_go_on());
+}
+
+TEST_F(EtherCatTest, TheEndOfASessionTakesItsSlavesOutOfOp) {
+  open("sv2@1");
+  network().learn(1, rules());
+  ASSERT_TRUE(network().request_state(1, NodeState::operational));
+  ASSERT_EQ(slave().state(), sim::EscState::op);
+  session_.reset();
+  EXPECT_EQ(slave().state(), sim::EscState::pre_op);
+}
+
+TEST_F(EtherCatTest, OutputsArePresetFromTheDriveBeforeOp) {
+  open("sv2@1");
+  network().learn(1, rules());
+  ASSERT_TRUE(session_->download(1, {0x6060, 0}, {3}));
+  const auto limit = session_->upload(1, {0x607F, 0}).value();
+  const auto here = session_->upload(1, objects::kPositionActual).value();
+  ASSERT_TRUE(network().request_state(1, NodeState::operational));
+  pass(milliseconds(20));
+  EXPECT_EQ(slave().model().values().number({0x6060, 0}), 3U);
+  EXPECT_EQ(slave().model().values().number({0x607F, 0}), load_le(limit));
+  EXPECT_EQ(slave().model().values().number(objects::kTargetPosition), load_le(here));
+  EXPECT_EQ(slave().model().values().number(objects::kTargetVelocity), 0U);
+}
+
+TEST_F(EtherCatTest, MappedObjectsGoThroughTheImage) {
+  open("sv2@1");
+  network().learn(1, rules());
+  ASSERT_TRUE(network().request_state(1, NodeState::operational));
+  slave().faults().mailbox_stays_full = true;
+  EXPECT_TRUE(session_->download(1, objects::kTargetVelocity, store_le(500U, 4)));
+  EXPECT_EQ(slave().model().values().number(objects::kTargetVelocity), 500U);
+  EXPECT_TRUE(session_->upload(1, objects::kStatusword));
+  EXPECT_FALSE(session_->upload(1, objects::kVendorId)) << "by the mailbox, which is full";
+}
+
+TEST_F(EtherCatTest, AWriteWhoseOutputsAreNotTakenIsNoSuccess) {
+  open("sv2@1");
+  network().learn(1, rules());
+  ASSERT_TRUE(network().request_state(1, NodeState::operational));
+  ring().cut_cable(0);
+  const auto done = session_->download(1, objects::kTargetVelocity, store_le(500U, 4));
+  ASSERT_FALSE(done);
+  EXPECT_EQ(slave().model().values().number(objects::kTargetVelocity), 0U);
+}
+
+TEST_F(EtherCatTest, ASlaveThatRestartsIsTold) {
+  open("sv2@1,sv2@2");
+  ASSERT_TRUE(session_->upload(1, objects::kVendorId));
+  ring().power_off(0);
+  ring().power_on(0, port_->now());
+  pass(milliseconds(400));
+  const auto events = session_->take_events();
+  ASSERT_FALSE(events.empty());
+  EXPECT_TRUE(std::holds_alternative<NodeEvent::BootUp>(events.front().what));
+  EXPECT_EQ(session_->watch().boots(1), 1U);
+  EXPECT_TRUE(session_->upload(1, objects::kVendorId)) << "it is brought up again";
+}
+
+TEST_F(EtherCatTest, ASlaveBehindACutCableIsGoneAndBack) {
+  open("sv2@1,sv2@2");
+  ASSERT_TRUE(session_->upload(2, objects::kVendorId));
+  ring().cut_cable(1);
+  pass(milliseconds(400));
+  auto events = session_->take_events();
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_TRUE(std::holds_alternative<NodeEvent::Gone>(events.front().what));
+  EXPECT_FALSE(session_->upload(2, objects::kVendorId));
+  ring().join_cable(1);
+  pass(milliseconds(400));
+  events = session_->take_events();
+  ASSERT_FALSE(events.empty());
+  EXPECT_TRUE(std::holds_alternative<NodeEvent::Back>(events.front().what));
+  EXPECT_TRUE(session_->upload(2, objects::kVendorId));
+}
+
+TEST_F(EtherCatTest, ASlaveThatFallsOutOfOpIsToldWithItsReason) {
+  open("sv2@1");
+  network().learn(1, rules());
+  ASSERT_TRUE(network().request_state(1, NodeState::operational));
+  slave().plan_fall({port_->now() + milliseconds(50), sim::EscState::safe_op, 0x001A});
+  pass(milliseconds(400));
+  bool told = false;
+  for (const auto& event : session_->take_events())
+    if (const auto* error = std::get_if<NodeEvent::StateError>(&event.what))
+      told = told || error->code == 0x1A;
+  EXPECT_TRUE(told);
+  EXPECT_FALSE(network().must_go_on());
+  EXPECT_TRUE(session_->upload(1, objects::kVendorId));
+  EXPECT_TRUE(network().request_state(1, NodeState::pre_operational));
+}
+
+TEST_F(EtherCatTest, FreeRunRefusedIsToldInWordsAndLeavesItInPreOp) {
+  open("sv2@1");
+  network().learn(1, rules());
+  slave().faults().refuses_free_run = true;
+  const auto up = network().request_state(1, NodeState::operational);
+  ASSERT_FALSE(up);
+  EXPECT_EQ(up.error().code, Errc::negative);
+  EXPECT_NE(up.error().message.find("0027h"), std::string::npos) << up.error().message;
+  EXPECT_EQ(slave().state(), sim::EscState::pre_op);
+  EXPECT_EQ(load_le(session_->upload(1, {0x1C12, 0}).value()), 0U);
+}
+
+TEST_F(EtherCatTest, NoSlaveIsNoNetwork) {
+  open("sv2@1");
+  ring().cut_cable(0);
+  const auto answer = session_->upload(1, objects::kVendorId);
+  ASSERT_FALSE(answer);
+  EXPECT_EQ(answer.error().code, Errc::bus);
+}
+
+TEST_F(EtherCatTest, ASlaveThatTakesAnothersPlaceIsNotTakenForIt) {
+  open("sv2@1,sv2@2");
+  ASSERT_TRUE(session_->upload(1, objects::kVendorId));
+  ASSERT_TRUE(session_->upload(2, objects::kVendorId));
+  // The first was taken out: in its place stands the one that was the second.
+  ASSERT_TRUE(slave(0).registers().write(0x0010, store_le(0x1002U, 2)));
+  ring().cut_cable(1);
+  pass(milliseconds(400));
+  const auto answer = session_->upload(1, objects::kVendorId);
+  ASSERT_FALSE(answer);
+  EXPECT_EQ(answer.error().message, "coe:sim: the ring has changed since its slaves were numbered");
+  ASSERT_TRUE(network().look(false));
+  EXPECT_TRUE(session_->upload(1, objects::kVendorId)) << "numbered anew";
+}
+
+TEST_F(EtherCatTest, TwoSlavesAreInOpAtTheSameTime) {
+  open("sv2@1,sv2@2");
+  network().learn(1, rules());
+  network().learn(2, rules());
+  ASSERT_TRUE(network().request_state(1, NodeState::operational));
+  const auto second = network().request_state(2, NodeState::operational);
+  ASSERT_TRUE(second) << second.error().message;
+  pass(milliseconds(300));
+  EXPECT_EQ(slave(0).state(), sim::EscState::op);
+  EXPECT_EQ(slave(1).state(), sim::EscState::op);
+  ASSERT_TRUE(session_->download(2, objects::kTargetVelocity, store_le(7U, 4)));
+  EXPECT_EQ(slave(0).model().values().number(objects::kTargetVelocity), 0U);
+  EXPECT_EQ(slave(1).model().values().number(objects::kTargetVelocity), 7U);
+}
+
+}  // namespace
+}  // namespace servoctl::session
