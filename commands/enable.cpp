@@ -25,8 +25,12 @@ Result<void> energise(Context& context, motion::Motion& motion, session::Rehears
   if (const auto heard = context.session->listen(); !heard) return heard;
   motion::MotionGuard guard(*context.session, motion.units(), motion.node());
   if (context.dry_run) guard.rehearse(rehearsal);
+  const bool starts_first = guard.needs_process_data();
+  if (starts_first)
+    if (const auto done = guard.start_node(); !done) return done;
   if (const auto done = guard.neutral_targets(); !done) return done;
-  if (const auto done = guard.start_node(); !done) return done;
+  if (!starts_first)
+    if (const auto done = guard.start_node(); !done) return done;
   if (const auto done = guard.enable(); !done) return done;
   return guard.release();
 }
@@ -101,7 +105,9 @@ const Command kEnable{
     .details =
         "Shows the preflight checks, asks, sets the targets so that nothing moves (60FFh and 6071h to 0, "
         "607Ah to the actual position), and goes to \"operation enabled\" by controlwords 06h, 07h, 0Fh, "
-        "waiting for each state. The drive stays energised when servoctl ends: `disable` de-energises it. "
+        "waiting for each state. The drive stays energised when servoctl ends: `disable` de-energises it. Over "
+        "EtherCAT it stays so only while servoctl exchanges process data with it: a single command holds it until "
+        "Ctrl-C, and then stops and disables it. "
         "`jog` and `move` enable and disable by themselves.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,

@@ -150,6 +150,10 @@ Result<void> Motion::make_ready(MotionGuard& guard, std::int8_t mode,
   if (const auto done = guard.spare_flash(); !done) return done;
   rehearsal.begin_step("watchdog");
   if (const auto done = guard.arm(watchdog_); !done) return done;
+  const bool starts_first = guard.needs_process_data();
+  rehearsal.begin_step("start");
+  if (starts_first)
+    if (const auto done = guard.start_node(); !done) return done;
   rehearsal.begin_step("mode");
   if (const auto done = guard.change_mode(mode); !done) return done;
   rehearsal.begin_step("target");
@@ -158,7 +162,7 @@ Result<void> Motion::make_ready(MotionGuard& guard, std::int8_t mode,
   for (const auto& [object, data] : settings)
     if (const auto done = guard.change(object, data); !done) return done;
   rehearsal.begin_step("start");
-  return guard.start_node();
+  return starts_first ? Result<void>() : guard.start_node();
 }
 
 Result<std::vector<session::PlannedMessage>> Motion::rehearse(const MotionPlan& plan) {

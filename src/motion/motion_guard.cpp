@@ -116,6 +116,8 @@ Result<void> MotionGuard::arm(const WatchdogPlan& plan) {
     const session::LifeSign sign{session::LifeSign::Kind::guarding, 0, plan.time / kLife, kLife};
     if (auto sent = send_life_sign(sign); !sent) return sent;
   }
+  if (plan.kind == WatchdogPlan::Kind::sync_manager)
+    return send_life_sign({session::LifeSign::Kind::process_data, 0, plan.time});
   if (rehearsal_ != nullptr) return {};
   // The drive watches from the first message on.
   return pause(*session_, Duration::zero());
@@ -136,11 +138,14 @@ Result<void> MotionGuard::spare_flash() {
   return change(*object, *data);
 }
 
+bool MotionGuard::needs_process_data() const {
+  return session_->network().carries(session::LifeSign::Kind::process_data);
+}
+
 Result<void> MotionGuard::start_node() {
   state_before_ = session_->watch().state(node_);
-  if (!units_->profile().rules.nmt.disables_outside_operational ||
-      state_before_ == session::NodeState::operational)
-    return {};
+  const bool needed = needs_process_data() || units_->profile().rules.nmt.disables_outside_operational;
+  if (!needed || state_before_ == session::NodeState::operational) return {};
   started_ = true;
   if (rehearsal_ != nullptr) {
     rehearsal_->add(session::planned_state(node_, session::NodeState::operational));

@@ -49,7 +49,10 @@ class MotionGuard {
   Result<void> arm(const WatchdogPlan& plan);
   /// Where the family chooses by a switch whether writes go to its flash: to the RAM, until end().
   Result<void> spare_flash();
-  /// Starts the node (NMT) where the family is energised in Operational only.
+  /// A drive of this network obeys process data only: its node is started before anything is set for a
+  /// motion, because it may not follow before.
+  bool needs_process_data() const;
+  /// Starts the node where the family, or the network, has its drives energised in Operational only.
   Result<void> start_node();
   /// "Operation enabled", by the shortest legal way. Errc::refused when somebody else has enabled it: two
   /// masters would command it.

@@ -136,6 +136,16 @@ Result<void> plan_guarding(session::Session& session, const drive::Profile& prof
   return {};
 }
 
+/// What a drive does when it leaves OP is no part of the standard.
+WatchdogPlan plan_outputs(const drive::Profile& profile) {
+  WatchdogPlan plan;
+  plan.kind = WatchdogPlan::Kind::sync_manager;
+  plan.time = kOutputsTime;
+  plan.alarms = profile.rules.nmt.lost_alarms;
+  plan.assumed = true;
+  return plan;
+}
+
 }  // namespace
 
 Result<std::optional<std::uint8_t>> next_producer(session::Session& session, std::uint8_t node,
@@ -156,6 +166,12 @@ Result<WatchdogPlan> plan_watchdog(session::Session& session, const drive::Profi
                 "leave it out, and servoctl takes a free node-ID");
   using Sign = session::LifeSign::Kind;
   const auto& network = session.network();
+  if (network.carries(Sign::process_data)) {
+    if (producer)
+      return fail(Errc::usage, "--master-node: there are no heartbeats on EtherCAT",
+                  "leave it out: the watchdog of the process data stops the drive there");
+    return plan_outputs(profile);
+  }
   auto plan = network.carries(Sign::heartbeat) ? plan_heartbeat(session, profile, node, producer)
                                                : Result<WatchdogPlan>(WatchdogPlan{});
   if (!plan) return plan;
@@ -189,6 +205,12 @@ std::string to_string(const WatchdogPlan& plan) {
     case WatchdogPlan::Kind::guarding:
       return fmt::format("life guarding by servoctl: the drive stops by itself {} after the last request{}",
                          servoctl::to_string(plan.time), then);
+    case WatchdogPlan::Kind::sync_manager:
+      return fmt::format(
+          "sync manager watchdog: the drive leaves OP by itself {} after the last outputs{}{}",
+          servoctl::to_string(plan.time),
+          plan.alarms.empty() ? std::string() : fmt::format(" (alarm {})", fmt::join(plan.alarms, ", ")),
+          then);
     case WatchdogPlan::Kind::none: break;
   }
   auto none =

@@ -19,6 +19,7 @@ struct WatchdogPlan {
     heartbeat,  ///< Heartbeat consumer, 1016h; servoctl is the producer.
     guarding,  ///< Life guarding, 100Ch and 100Dh; servoctl asks. Not where the drive itself sends heartbeats
                ///< or masks the alarm of it.
+    sync_manager,  ///< Outputs of a process image (ETG.1000.4, 6.3): without them the drive leaves OP.
   };
   Kind kind = Kind::none;
   Duration time{};                      ///< From the last message until the drive reacts.
@@ -37,6 +38,9 @@ inline constexpr std::uint8_t kReactWithFault = 1;
 
 /// Time of the watchdog unless asked otherwise; servoctl sends five messages in it.
 inline constexpr Duration kWatchdogTime = std::chrono::milliseconds(500);
+
+/// The same over EtherCAT, where process data are exchanged every 4 ms: what masters use there by default.
+inline constexpr Duration kOutputsTime = std::chrono::milliseconds(100);
 
 /// How long the bus is listened to before a node-ID counts as free: masters that only send heartbeats send
 /// one at least so often.
