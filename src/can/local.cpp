@@ -57,11 +57,6 @@ std::optional<Frame> frame_of(const Datagram& raw) {
   return frame;
 }
 
-bool is_bus_name(std::string_view name) {
-  constexpr std::string_view kAllowed = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-";
-  return !name.empty() && name.size() <= 32 && name.find_first_not_of(kAllowed) == std::string_view::npos;
-}
-
 tl::unexpected<Error> busy(std::string_view name, const LocalDirectory& directory) {
   return fail(
       Errc::bus, fmt::format("local:{} stays busy: a stopped or hanging process holds it", name),
@@ -171,9 +166,7 @@ Result<std::optional<Frame>> LocalBus::receive(TimePoint deadline) {
 }
 
 Result<std::unique_ptr<Bus>> open_local(std::string_view name, Duration send_limit) {
-  if (!is_bus_name(name))
-    return fail(Errc::usage, fmt::format("'{}' cannot be the name of a local bus", name),
-                "use 1 to 32 of these: A-Z a-z 0-9 . _ -");
+  if (const auto named = check_local_name(name); !named) return fail(named.error());
   auto directory = LocalDirectory::open(name);
   if (!directory) return fail(directory.error());
   Descriptor socket(::socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));

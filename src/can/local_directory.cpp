@@ -63,6 +63,14 @@ const sockaddr* generic(const sockaddr_un& address) { return reinterpret_cast<co
 
 }  // namespace
 
+Result<void> check_local_name(std::string_view name) {
+  constexpr std::string_view kAllowed = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-";
+  if (!name.empty() && name.size() <= 32 && name.find_first_not_of(kAllowed) == std::string_view::npos)
+    return {};
+  return fail(Errc::usage, fmt::format("'{}' cannot be the name of a local bus", name),
+              "use 1 to 32 of these: A-Z a-z 0-9 . _ -");
+}
+
 Result<LocalDirectory> LocalDirectory::open(std::string_view bus_name) {
   const auto base = base_path();
   if (const auto parent = open_private(base); !parent) return fail(parent.error());
@@ -104,6 +112,18 @@ std::vector<std::string> LocalDirectory::members() const {
 
 void LocalDirectory::remove(const std::string& member) const {
   ::unlinkat(::dirfd(listing_.get()), member.c_str(), 0);
+}
+
+Result<void> LocalDirectory::bind(int socket, const std::string& name) const {
+  remove(name);
+  const auto address = address_of(::dirfd(listing_.get()), name);
+  if (::bind(socket, generic(address), sizeof address) == 0) return {};
+  return cannot_use(path_ + "/" + name, system_text(errno));
+}
+
+int LocalDirectory::connect(int socket, const std::string& name) const {
+  const auto address = address_of(::dirfd(listing_.get()), name);
+  return ::connect(socket, generic(address), sizeof address) == 0 ? 0 : errno;
 }
 
 LocalDirectory::Delivery LocalDirectory::deliver(int socket, std::span<const std::uint8_t> datagram,

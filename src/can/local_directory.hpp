@@ -15,6 +15,9 @@
 
 namespace servoctl::can {
 
+/// Whether a virtual bus can have this name: 1 to 32 of A-Z a-z 0-9 . _ -; Errc::usage.
+Result<void> check_local_name(std::string_view name);
+
 /// The directory of one virtual bus. It holds a datagram socket for each member, `member-PID-N`, and the file
 /// `lock`.
 ///
@@ -35,6 +38,10 @@ class LocalDirectory {
   /// The names of all members, dead ones included.
   std::vector<std::string> members() const;
   void remove(const std::string& member) const;
+  /// Binds the socket to this name; what a dead process left there gives way. Needs the lock.
+  Result<void> bind(int socket, const std::string& name) const;
+  /// Connects the socket to the one of this name, without waiting: 0, or a value of errno.
+  int connect(int socket, const std::string& name) const;
 
   enum class Delivery { done, full, gone };
   /// Gives the datagram to one member, without waiting.

@@ -21,9 +21,9 @@ Result<std::unique_ptr<can::Bus>> open_plain(std::string_view url, const BusOpti
   if (scheme == "local") return can::open_local(rest);
   if (scheme == "sim") return sim::open_sim(rest, options.drive_folders, options.clock);
   if (scheme == "replay") return can::open_replay(rest);
-  const std::string schemes[] = {"socketcan", "local", "sim", "replay"};
+  const std::string schemes[] = {"socketcan", "local", "sim", "replay", "coe"};
   auto hint = did_you_mean(scheme, schemes);
-  if (hint.empty()) hint = "write can0, local:NAME, sim:FAMILY@NODE or replay:FILE";
+  if (hint.empty()) hint = "write can0, coe:eth0, local:NAME, sim:FAMILY@NODE or replay:FILE";
   return fail(Errc::usage, fmt::format("'{}' is not a bus", url), std::move(hint));
 }
 

@@ -12,8 +12,12 @@ namespace servoctl::session {
 /// Whether the URL is that of a wire with EtherCAT: `coe:…`.
 bool is_ethercat(std::string_view url);
 
-/// Opens a wire with an EtherCAT ring by URL: `coe:sim:sv2@1,sv2@2?state=FILE`.
-/// Errc::usage for a URL that is not understood.
+/// Opens a wire with an EtherCAT ring by URL, as its master: `coe:eth0`, `coe:local:NAME`,
+/// `coe:sim:sv2@1,sv2@2?state=FILE`.
+/// Errc::usage for a URL that is not understood; else as open_raw_port(), open_local_port(), open_sim_port().
 Result<std::unique_ptr<ethernet::Port>> open_port(std::string_view url, const BusOptions& options);
+
+/// The other end of such a wire, for who stands for its slaves: `coe:eth0`, `coe:local:NAME`.
+Result<std::unique_ptr<ethernet::Port>> open_ring_port(std::string_view url);
 
 }  // namespace servoctl::session

@@ -29,6 +29,25 @@ TEST(OpenPort, WhatIsNoEtherCatBusIsTold) {
   EXPECT_EQ(port.error().hint, "did you mean sim?");
 }
 
+TEST(OpenPort, WhatStandsBehindItsNameSaysWhichWireItIs) {
+  EXPECT_EQ(open("coe:nosucheth7").error().message, "there is no interface nosucheth7");
+  EXPECT_EQ(open("coe:local:a/b").error().message, "'a/b' cannot be the name of a local bus");
+  for (const auto* url : {"coe:", "coe::", "coe:x:", "can0", ""}) {
+    const auto port = open(url);
+    ASSERT_FALSE(port) << url;
+    EXPECT_EQ(port.error().code, Errc::usage) << url;
+    EXPECT_EQ(port.error().hint, "write coe:eth0, coe:local:NAME or coe:sim:FAMILY@1") << url;
+  }
+}
+
+TEST(OpenPort, WhatIsSimulatedHasNoOtherEnd) {
+  const auto port = open_ring_port("coe:sim:sv2@1");
+  ASSERT_FALSE(port);
+  EXPECT_EQ(port.error().code, Errc::usage);
+  EXPECT_EQ(port.error().message, "a simulated drive cannot be put on a bus that is simulated itself");
+  EXPECT_EQ(open_ring_port("coe:nosucheth7").error().message, "there is no interface nosucheth7");
+}
+
 TEST(OpenPort, OnlyUrlsOfEtherCatAreItsOwn) {
   EXPECT_TRUE(is_ethercat("coe:eth0"));
   EXPECT_FALSE(is_ethercat("can0"));
