@@ -37,8 +37,12 @@ Result<void> energise(Context& context, motion::Motion& motion, session::Rehears
 
 Result<void> enable_one(Context& context, motion::Motion& motion, session::Rehearsal& rehearsal) {
   if (const auto ready = motion.prepare(); !ready) return fail(ready.error());
-  // It stays energised after servoctl has gone, so nothing can watch servoctl.
-  const auto items = motion::preflight(*context.session, motion.units(), motion.node(), {}, context.chinese);
+  // Where it stays energised after servoctl has gone nothing can watch servoctl.
+  const auto watchdog = context.session->network().carries(session::LifeSign::Kind::process_data)
+                            ? motion.watchdog()
+                            : motion::WatchdogPlan{};
+  const auto items =
+      motion::preflight(*context.session, motion.units(), motion.node(), watchdog, context.chinese);
   if (!items) return fail(items.error());
   context.tell(motion::preflight_text(*items));
   if (const auto possible = motion::check_preflight(*items, motion.node()); !possible)
@@ -51,6 +55,11 @@ Result<void> enable_one(Context& context, motion::Motion& motion, session::Rehea
       motion.node(), motion::mode_text(*context.profile, *mode, context.chinese));
   if (const auto answer = context.confirm(question); !answer) return fail(answer.error());
   return energise(context, motion, rehearsal);
+}
+
+std::string_view result_text(const Context& context) {
+  return context.session->network().must_go_on() ? "ENERGISED while servoctl runs"
+                                                 : "ENERGISED, and stays so";
 }
 
 /// What would be sent to all nodes, up to the first that is refused.
@@ -88,9 +97,9 @@ Result<Value> run(Context& context, const Arguments& arguments) {
     if (!done) context.errors.push_back(done.error());
     table.rows.push_back({node, state ? Value(drive::name(*state)) : Value(),
                           state ? Value(drive::is_energised(*state)) : Value(),
-                          done ? "ENERGISED, and stays so" : "failed",
+                          done ? result_text(context) : "failed",
                           done ? Value() : show::error_record(done.error())});
-    if (done) context.notices.push_back(motion::energised_notice(node));
+    if (done) context.notices.push_back(motion::energised_notice(*context.session, node));
     if (!done) break;
   }
   return Value(std::move(table));

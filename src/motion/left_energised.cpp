@@ -7,7 +7,9 @@
 
 namespace servoctl::motion {
 
-std::string energised_notice(std::uint8_t node) {
+std::string energised_notice(const session::Session& session, std::uint8_t node) {
+  if (session.network().must_go_on())
+    return fmt::format("node {} IS ENERGISED as long as servoctl runs, and not supervised", node);
   return fmt::format("node {} IS ENERGISED and not supervised; `disable -n {}` de-energises it", node, node);
 }
 
@@ -25,7 +27,7 @@ void tell_left_energised(show::Desk& desk) {
     Power power(*desk.session, plain, node);
     const auto state = power.state();
     if (state && drive::is_energised(*state))
-      desk.notices.push_back(energised_notice(node));
+      desk.notices.push_back(energised_notice(*desk.session, node));
     else if (state && desk.session->energised().contains(node))
       desk.notices.push_back(fmt::format(
           "node {} left \"operation enabled\" by itself ({}) and may restart by itself: 6040h may still hold "

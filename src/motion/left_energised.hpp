@@ -9,7 +9,7 @@
 namespace servoctl::motion {
 
 /// What a user has to know of one.
-std::string energised_notice(std::uint8_t node);
+std::string energised_notice(const session::Session& session, std::uint8_t node);
 
 /// Of one that was left energised: `node 1 was left energised; it is stopped and disabled now`.
 std::string disabled_notice(std::uint8_t node);

@@ -88,25 +88,28 @@ Result<void> EtherCatExchange::climb(AlState target) {
   return {};
 }
 
-Result<std::vector<std::uint16_t>> EtherCatExchange::assigned(std::uint16_t index) {
+Result<EtherCatNode::Assignment> EtherCatExchange::assigned(std::uint16_t index) {
   const auto count = upload({index, 0});
   if (!count) return fail(count.error());
-  std::vector<std::uint16_t> out;
-  for (std::uint64_t sub = 1; sub <= load_le(*count); ++sub) {
-    const auto pdo = upload({index, static_cast<std::uint8_t>(sub)});
+  EtherCatNode::Assignment out{index, static_cast<std::uint8_t>(load_le(*count)), {}};
+  for (std::uint8_t sub = 1; sub <= std::max<std::uint8_t>(out.count, 1); ++sub) {
+    const auto pdo = upload({index, sub});
     if (!pdo) return fail(pdo.error());
-    if (const auto number = load_le(*pdo); number != 0) out.push_back(static_cast<std::uint16_t>(number));
+    out.pdos.push_back(static_cast<std::uint16_t>(load_le(*pdo)));
   }
   return out;
 }
 
-/// The list is switched off while it is written (ETG.1000.6, 5.6.7.4.7).
-Result<void> EtherCatExchange::assign(std::uint16_t index, const std::vector<std::uint16_t>& pdos) {
+/// The list is switched off while it is written (ETG.1000.6, 5.6.7.4.7). What lies behind those in use may
+/// not be writable.
+Result<void> EtherCatExchange::assign(const EtherCatNode::Assignment& assignment) {
+  const auto index = assignment.index;
   if (auto done = download({index, 0}, {0}); !done) return done;
-  for (std::size_t i = 0; i < pdos.size(); ++i)
-    if (auto done = download({index, static_cast<std::uint8_t>(i + 1)}, store_le(pdos[i], 2)); !done)
-      return done;
-  return download({index, 0}, {static_cast<std::uint8_t>(pdos.size())});
+  for (std::size_t i = 0; i < assignment.pdos.size(); ++i) {
+    auto done = download({index, static_cast<std::uint8_t>(i + 1)}, store_le(assignment.pdos[i], 2));
+    if (!done && (i < assignment.count || done.error().code != Errc::sdo_abort)) return done;
+  }
+  return download({index, 0}, {assignment.count});
 }
 
 Result<std::vector<canopen::PdoEntry>> EtherCatExchange::entries(const std::vector<std::uint16_t>& pdos) {
@@ -128,7 +131,7 @@ Result<std::vector<canopen::PdoEntry>> EtherCatExchange::side(std::uint16_t inde
                                                               ObjectAddress needed) {
   const auto before = assigned(index);
   if (!before) return fail(before.error());
-  auto out = entries(*before);
+  auto out = entries(before->in_use());
   if (!out || carries(*out, needed)) return out;
   if (wanted == 0)
     return fail(
@@ -136,8 +139,8 @@ Result<std::vector<canopen::PdoEntry>> EtherCatExchange::side(std::uint16_t inde
                     fmt::format("the assigned PDOs do not carry {}, and process data without it are no use",
                                 to_string(needed)),
                     "assign PDOs that do: `pdo show` shows them; or name the drive's family with -f"));
-  node_->assigned.push_back({index, *before});
-  if (const auto done = assign(index, {wanted}); !done) return fail(done.error());
+  node_->assigned.push_back(*before);
+  if (const auto done = assign({index, 1, {wanted}}); !done) return fail(done.error());
   out = entries({wanted});
   if (!out || carries(*out, needed)) return out;
   return fail(drive_error(Errc::protocol, node_->number, {wanted, 0},
@@ -257,7 +260,7 @@ Result<void> EtherCatExchange::flow() {
 Result<void> EtherCatExchange::put_assignment_back() {
   Result<void> out;
   for (const auto& before : std::exchange(node_->assigned, {}))
-    if (auto done = assign(before.index, before.pdos); !done && out) out = done;
+    if (auto done = assign(before); !done && out) out = done;
   return out;
 }
 

@@ -32,8 +32,8 @@ class EtherCatExchange {
   Result<void> climb(ethercat::AlState target);
   Result<Bytes> upload(ObjectAddress object);
   Result<void> download(ObjectAddress object, Bytes data);
-  Result<std::vector<std::uint16_t>> assigned(std::uint16_t index);
-  Result<void> assign(std::uint16_t index, const std::vector<std::uint16_t>& pdos);
+  Result<EtherCatNode::Assignment> assigned(std::uint16_t index);
+  Result<void> assign(const EtherCatNode::Assignment& assignment);
   Result<std::vector<canopen::PdoEntry>> entries(const std::vector<std::uint16_t>& pdos);
   Result<std::vector<canopen::PdoEntry>> side(std::uint16_t index, std::uint16_t wanted,
                                               ObjectAddress needed);

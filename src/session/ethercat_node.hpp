@@ -34,7 +34,10 @@ struct EtherCatNode {
   /// What the drive had in its assignment objects before servoctl chose PDOs for an exchange.
   struct Assignment {
     std::uint16_t index = 0;
-    std::vector<std::uint16_t> pdos;
+    std::uint8_t count = 0;           ///< Of those below that hold; the rest lies behind them.
+    std::vector<std::uint16_t> pdos;  ///< One at least.
+
+    std::vector<std::uint16_t> in_use() const { return {pdos.begin(), pdos.begin() + count}; }
   };
 
   explicit EtherCatNode(std::uint8_t node) : number(node) {}

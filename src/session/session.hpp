@@ -97,6 +97,7 @@ class Session {
   /// Since then everything is heard.
   TimePoint opened_at() const { return opened_at_; }
   Network& network() { return *network_; }
+  const Network& network() const { return *network_; }
   /// What only CAN has: frames, NMT, SYNC, heartbeats and guarding. Null where there are no COB-IDs; commands
   /// that cannot do without say so in the registry.
   CanNetwork* can() { return network_->can(); }
