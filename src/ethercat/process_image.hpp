@@ -79,6 +79,10 @@ class ProcessImage {
   Result<void> start(TimePoint now);
   void stop() { next_ = kNever; }
   bool running() const { return next_ != kNever; }
+  /// The next cycle, and all that follow, come so much later; earlier when it is negative.
+  void shift(Duration by) {
+    if (running()) next_ += by;
+  }
 
   /// Takes in what came, and sends a cycle that is due. To be called after each frame and each on_time() of
   /// the ring, and at deadline().

@@ -231,6 +231,9 @@ Result<ethercat::AlStatus> EtherCatNetwork::go_to(EtherCatNode& node, AlState st
   if (there) {
     hear(node, *there, now(), true);
     node.raised = node.raised && state != AlState::preop && state != AlState::init;
+  } else if (there.error().code == Errc::negative) {
+    request.start_look(now());
+    if (const auto found = wire_.ask(request)) node.al = *found;
   }
   return there;
 }

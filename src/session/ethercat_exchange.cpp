@@ -22,7 +22,7 @@ constexpr std::uint16_t kAssignInputs = 0x1C13;
 constexpr Duration kTimeout = std::chrono::milliseconds(500);
 /// Whole cycles that a slave has to have seen before it is asked for OP.
 constexpr unsigned kFirstCycles = 5;
-constexpr Duration kFirstPatience = std::chrono::milliseconds(200);
+constexpr Duration kFirstPatience = std::chrono::milliseconds(400);
 
 bool carries(const std::vector<canopen::PdoEntry>& entries, ObjectAddress object) {
   return std::any_of(entries.begin(), entries.end(), [&](const auto& e) { return e.object == object; });
@@ -50,6 +50,18 @@ Result<void> EtherCatExchange::begin(AlState target) {
   if (node_->raised)
     if (const auto down = end(); !down) return down;
   auto done = climb(target);
+  // Free run first: a pulse has to be kept, and most drives need none for what is done here.
+  if (!done && done.error().code == Errc::negative && has_clock_ && node_->al &&
+      ethercat::demands_clock(node_->al->code)) {
+    const auto why = fmt::format("{} (AL status code {:04X}h)", ethercat::al_status_text(node_->al->code),
+                                 node_->al->code);
+    synchronous_ = true;
+    done = end();
+    if (done) done = climb(target);
+    if (done)
+      network_->notices_.push_back(fmt::format(
+          "node {}: it runs with SYNC0 every 4 ms, because it refused without: {}", node_->number, why));
+  }
   if (!done) {
     auto error = done.error();
     if (const auto back = end(); !back) error.message += "; and then: " + back.error().message;
@@ -76,6 +88,8 @@ Result<void> EtherCatExchange::climb(AlState target) {
   const auto plan = plan_slave(node_->number, *place, *mapped, logical);
   if (!plan) return fail(plan.error());
   if (const auto set = set_up(*plan); !set) return set;
+  if (synchronous_)
+    if (const auto set = start_clock(image->options().cycle); !set) return set;
   if (const auto there = network_->go_to(*node_, AlState::safeop); !there) return fail(there.error());
   for (const auto& preset : *values)
     if (const auto set = image->set(node_->number, preset.object, preset.value); !set)
@@ -250,11 +264,25 @@ Result<void> EtherCatExchange::flow() {
       return fail(stepped.error());
     if (!node_->exchanges()) break;
     const auto& counts = node_->image->counts(node_->number);
-    if (counts.cycles >= kFirstCycles && counts.missing == 0) return {};
-    if (network_->now() >= end) break;
+    const bool in_step = !node_->clock || node_->clock->is_locked();
+    if (counts.cycles >= kFirstCycles && counts.missing == 0 && in_step) return {};
+    if (network_->now() < end) continue;
+    if (counts.missing == 0)
+      return fail(drive_error(Errc::timeout, node_->number,
+                              "its cycles cannot be kept in step with its clock",
+                              "is this machine too busy? A load beside servoctl delays its frames"));
+    break;
   }
   return fail(drive_error(Errc::timeout, node_->number, "it takes no process data: working counter too low",
                           network_->silence_hint(node_->number)));
+}
+
+Result<void> EtherCatExchange::start_clock(Duration cycle) {
+  auto& clock = node_->clock.emplace(node_->address(), cycle);
+  const auto time = network_->wire_.exchange({clock.ask_time()});
+  if (!time) return fail(time.error());
+  if (!time->front().done()) return fail(network_->no_answer(node_->number));
+  return write_all(clock.start(load_le(time->front().data)));
 }
 
 Result<void> EtherCatExchange::put_assignment_back() {
@@ -267,10 +295,13 @@ Result<void> EtherCatExchange::put_assignment_back() {
 Result<void> EtherCatExchange::end() {
   if (node_->exchanges() && node_->al && node_->al->state == AlState::op)
     (void)network_->go_to(*node_, AlState::safeop);  // What refuses is asked for PRE-OP all the same.
+  const auto clock = std::exchange(node_->clock, std::nullopt);
   network_->end_cycles(*node_);
   const auto there = network_->go_to(*node_, AlState::preop);
   if (!there) return fail(there.error());
   node_->raised = false;
+  if (clock)
+    if (const auto off = write_all({clock->stop()}); !off) return off;
   return put_assignment_back();
 }
 

@@ -13,6 +13,7 @@ namespace servoctl::session {
 /// Up: the PDOs that are assigned (1C12h, 1C13h) are taken as they are if they carry the controlword and the
 /// statusword, else those that the family's rules name are assigned until the end. Every output is preset
 /// before one is sent: 607Ah with 6064h, 60FFh, 6071h and 6040h with 0, all others with what the drive holds.
+/// A drive that refuses free run is run with SYNC0, which the notices of the network tell.
 class EtherCatExchange {
  public:
   EtherCatExchange(EtherCatNetwork& network, EtherCatNode& node) : network_(&network), node_(&node) {}
@@ -43,6 +44,7 @@ class EtherCatExchange {
   Result<bool> knows_lrw();
   Result<void> set_up(const ethercat::SlavePlan& plan);
   Result<void> write_all(const std::vector<ethercat::Request>& requests);
+  Result<void> start_clock(Duration cycle);
   Result<void> flow();
   Result<void> put_assignment_back();
 
@@ -50,6 +52,7 @@ class EtherCatExchange {
   EtherCatNode* node_;
   unsigned fmmus_ = 0;
   bool has_clock_ = false;
+  bool synchronous_ = false;  ///< With SYNC0.
 };
 
 }  // namespace servoctl::session

@@ -84,6 +84,7 @@ void EtherCatNetwork::serve(ethercat::Ring& ring, TimePoint now) {
 
 void EtherCatNetwork::serve_node(EtherCatNode& node, ethercat::Ring& ring, TimePoint now) {
   if (node.image) node.image->serve(ring, now);
+  if (node.image && node.clock) node.clock->serve(ring, *node.image);
   if (!node.coe) return;
   if (node.coe->deadline() <= now) node.coe->on_time(now);
   node.coe->serve(ring, now);

@@ -11,6 +11,7 @@
 #include "ethercat/al_status.hpp"
 #include "ethercat/coe_slave.hpp"
 #include "ethercat/process_image.hpp"
+#include "ethercat/sync_clock.hpp"
 #include "session/node_state.hpp"
 
 namespace servoctl::session {
@@ -50,7 +51,8 @@ struct EtherCatNode {
   std::unique_ptr<ethercat::CoeSlave> coe;  ///< Set when objects can be read.
   EtherCatObjectChannel* owner = nullptr;   ///< Whose transfer its client carries.
   std::unique_ptr<ethercat::ProcessImage> image;
-  bool raised = false;  ///< servoctl has taken it above PRE-OP.
+  std::optional<ethercat::SyncClock> clock;  ///< Where the drive demands SYNC0.
+  bool raised = false;                       ///< servoctl has taken it above PRE-OP.
   std::vector<Assignment> assigned;
   Duration watchdog = std::chrono::milliseconds(100);
   TimePoint output_at{};  ///< When it took an output last that was set by object.

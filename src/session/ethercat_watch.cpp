@@ -120,6 +120,8 @@ void EtherCatNetwork::hear(EtherCatNode& node, const ethercat::AlStatus& al, Tim
 
 void EtherCatNetwork::end_cycles(EtherCatNode& node) {
   if (!node.image) return;
+  if (node.clock) node.clock->leave(wire_.ring());
+  node.clock.reset();
   node.image->stop();
   node.image->leave(wire_.ring());
   const auto& counts = node.image->counts(node.number);

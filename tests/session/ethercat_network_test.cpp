@@ -171,16 +171,31 @@ TEST_F(EtherCatTest, ASlaveThatFallsOutOfOpIsToldWithItsReason) {
   EXPECT_TRUE(network().request_state(1, NodeState::pre_operational));
 }
 
-TEST_F(EtherCatTest, FreeRunRefusedIsToldInWordsAndLeavesItInPreOp) {
+TEST_F(EtherCatTest, ADriveThatRefusesFreeRunIsRunWithSync0) {
   open("sv2@1");
   network().learn(1, rules());
   slave().faults().refuses_free_run = true;
   const auto up = network().request_state(1, NodeState::operational);
-  ASSERT_FALSE(up);
-  EXPECT_EQ(up.error().code, Errc::negative);
-  EXPECT_NE(up.error().message.find("0027h"), std::string::npos) << up.error().message;
-  EXPECT_EQ(slave().state(), sim::EscState::pre_op);
+  ASSERT_TRUE(up) << up.error().message;
+  EXPECT_EQ(slave().state(), sim::EscState::op);
+  const auto notices = network().take_notices();
+  ASSERT_EQ(notices.size(), 1U);
+  EXPECT_NE(notices.front().find("SYNC0"), std::string::npos) << notices.front();
+  EXPECT_NE(notices.front().find("0027h"), std::string::npos) << notices.front();
+  pass(milliseconds(500));
+  EXPECT_EQ(slave().state(), sim::EscState::op);
+  ASSERT_TRUE(network().request_state(1, NodeState::pre_operational));
+  EXPECT_FALSE(slave().registers().is_sync0_set_up());
   EXPECT_EQ(load_le(session_->upload(1, {0x1C12, 0}).value()), 0U);
+}
+
+TEST_F(EtherCatTest, ASlaveThatRefusesOpIsToldInWordsAndLeftInPreOp) {
+  open("sv2@1");
+  network().learn(1, rules());
+  slave().faults().state_delay = std::chrono::seconds(30);
+  ASSERT_FALSE(network().request_state(1, NodeState::operational));
+  EXPECT_NE(slave().state(), sim::EscState::op);
+  EXPECT_FALSE(network().must_go_on());
 }
 
 TEST_F(EtherCatTest, NoSlaveIsNoNetwork) {
