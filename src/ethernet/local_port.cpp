@@ -120,6 +120,12 @@ bool give(int socket, ByteSpan frame) {
   }
 }
 
+/// Whether the other end is closed, though what it sent before is still to be read.
+bool has_left(int socket) {
+  pollfd entry{socket, POLLRDHUP, 0};
+  return ::poll(&entry, 1, 0) == 1 && (entry.revents & (POLLRDHUP | POLLHUP)) != 0;
+}
+
 Result<std::unique_ptr<Port>> serve_ring(std::string_view name) {
   auto directory = LocalDirectory::open(fmt::format("coe:{}", name));
   if (!directory) return fail(directory.error());
@@ -203,6 +209,8 @@ void LocalRing::let_in() {
   for (;;) {
     Descriptor comer(::accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
     if (!comer) return;
+    // It may have left since it was read from last.
+    if (master_ && has_left(master_.get())) master_ = Descriptor();
     const auto said = welcome_with(master_ ? known(peer_process(master_.get())) : 0);
     if (give(comer.get(), said) && !master_) master_ = std::move(comer);
   }

@@ -7,6 +7,7 @@
 #include "can/replay.hpp"
 #include "can/socketcan.hpp"
 #include "can/trace.hpp"
+#include "session/open_port.hpp"
 #include "sim/cell.hpp"
 
 namespace servoctl::session {
@@ -30,6 +31,12 @@ Result<std::unique_ptr<can::Bus>> open_plain(std::string_view url, const BusOpti
 }  // namespace
 
 Result<std::unique_ptr<can::Bus>> open_bus(std::string_view url, const BusOptions& options) {
+  if (is_pcap(options.trace))
+    return fail(
+        Errc::usage,
+        fmt::format("the trace of a CAN bus is no pcap: {} would hold lines of candump",
+                    options.trace.string()),
+        fmt::format("name it {}.log; .pcap is for the frames of a coe: bus", options.trace.stem().string()));
   auto bus = open_plain(url, options);
   if (!bus || options.trace.empty()) return bus;
   const auto colon = url.find(':');

@@ -5,6 +5,7 @@
 
 #include "base/text.hpp"
 #include "ethernet/local_port.hpp"
+#include "ethernet/pcap_trace.hpp"
 #include "ethernet/raw_port.hpp"
 #include "sim/sim_port.hpp"
 
@@ -14,6 +15,14 @@ namespace {
 using ethernet::End;
 
 constexpr std::string_view kScheme = "coe:";
+
+/// What Wireshark opens, so that nobody takes it for a trace of CAN.
+Result<void> check_trace_name(const std::filesystem::path& file) {
+  if (is_pcap(file)) return {};
+  return fail(Errc::usage,
+              fmt::format("the trace of an EtherCAT bus is a .pcap or .pcapng, not {}", file.string()),
+              fmt::format("name it {}.pcap; Wireshark opens it", file.stem().string()));
+}
 
 /// What stands behind `coe:`, taken apart: `local` and `cell`; an interface has no scheme.
 struct Place {
@@ -43,21 +52,43 @@ Result<std::unique_ptr<ethernet::Port>> open_wire(std::string_view url, End end)
   return no_port(url, scheme);
 }
 
+/// With a trace where one is wanted; what is wrong with its name is told before anything is opened.
+template <class Open>
+Result<std::unique_ptr<ethernet::Port>> traced(std::string_view url, const BusOptions& options,
+                                               can::TraceClock clock, Open open) {
+  if (!options.trace.empty())
+    if (const auto named = check_trace_name(options.trace); !named) return fail(named.error());
+  Result<std::unique_ptr<ethernet::Port>> port = open();
+  if (!port || options.trace.empty()) return port;
+  auto name = url.substr(kScheme.size());
+  if (place_of(url).scheme == "sim") name = "sim";
+  return ethernet::pcap_to(std::move(*port), options.trace, name, clock, options.trace_failed);
+}
+
 }  // namespace
+
+bool is_pcap(const std::filesystem::path& file) {
+  const auto ending = file.extension().string();
+  return equals_nocase(ending, ".pcap") || equals_nocase(ending, ".pcapng");
+}
 
 bool is_ethercat(std::string_view url) { return url.starts_with(kScheme); }
 
 Result<std::unique_ptr<ethernet::Port>> open_port(std::string_view url, const BusOptions& options) {
-  if (is_ethercat(url) && place_of(url).scheme == "sim")
-    return sim::open_sim_port(place_of(url).rest, options.drive_folders, options.clock);
-  return open_wire(url, End::master);
+  const bool is_simulated = is_ethercat(url) && place_of(url).scheme == "sim";
+  if (!is_simulated)
+    return traced(url, options, can::TraceClock::wall, [&] { return open_wire(url, End::master); });
+  const auto clock =
+      options.clock == sim::SimClock::Kind::virtual_time ? can::TraceClock::bus : can::TraceClock::wall;
+  return traced(url, options, clock,
+                [&] { return sim::open_sim_port(place_of(url).rest, options.drive_folders, options.clock); });
 }
 
-Result<std::unique_ptr<ethernet::Port>> open_ring_port(std::string_view url) {
+Result<std::unique_ptr<ethernet::Port>> open_ring_port(std::string_view url, const BusOptions& options) {
   if (is_ethercat(url) && place_of(url).scheme == "sim")
     return fail(Errc::usage, "a simulated drive cannot be put on a bus that is simulated itself",
                 "use a bus others can reach: coe:local:NAME, or coe:veth1 on one end of a veth pair");
-  return open_wire(url, End::ring);
+  return traced(url, options, can::TraceClock::wall, [&] { return open_wire(url, End::ring); });
 }
 
 }  // namespace servoctl::session

@@ -125,7 +125,7 @@ TEST_F(LocalPortTest, ASecondRingIsRefusedAndTheFirstIsNamed) {
 
 TEST_F(LocalPortTest, AMasterThatWasKilledHindersNobody) {
   const Child ring(serving());
-  for (int i = 0; i < 5; ++i) {
+  for (int i = 0; i < 50; ++i) {
     Child first([](const auto& ready) {
       const auto master = join();
       for (int k = 0; k < 10; ++k) (void)master->send(frame_of(9));

@@ -41,11 +41,33 @@ TEST(OpenPort, WhatStandsBehindItsNameSaysWhichWireItIs) {
 }
 
 TEST(OpenPort, WhatIsSimulatedHasNoOtherEnd) {
-  const auto port = open_ring_port("coe:sim:sv2@1");
+  const auto port = open_ring_port("coe:sim:sv2@1", BusOptions());
   ASSERT_FALSE(port);
   EXPECT_EQ(port.error().code, Errc::usage);
   EXPECT_EQ(port.error().message, "a simulated drive cannot be put on a bus that is simulated itself");
-  EXPECT_EQ(open_ring_port("coe:nosucheth7").error().message, "there is no interface nosucheth7");
+  EXPECT_EQ(open_ring_port("coe:nosucheth7", BusOptions()).error().message, "there is no interface nosucheth7");
+}
+
+TEST(OpenPort, ATraceIsAPcapOnEtherCatAndNoneOnCan) {
+  const auto folder = std::filesystem::path(testing::TempDir());
+  BusOptions options;
+  options.drive_folders = kFolders;
+  options.trace = folder / "open_port.log";
+  options.clock = sim::SimBus::Clock::virtual_time;
+  const auto port = open_port("coe:sim:sv2@1", options);
+  ASSERT_FALSE(port);
+  EXPECT_EQ(port.error().code, Errc::usage);
+  EXPECT_EQ(port.error().message.find("the trace of an EtherCAT bus is a .pcap or .pcapng, not "), 0U);
+  EXPECT_EQ(port.error().hint, "name it open_port.pcap; Wireshark opens it");
+  options.trace = folder / "open_port.pcap";
+  EXPECT_TRUE(open_port("coe:sim:sv2@1", options));
+  EXPECT_TRUE(std::filesystem::exists(options.trace));
+  std::filesystem::remove(options.trace);
+  const auto bus = open_bus("sim:sv2@1", options);
+  ASSERT_FALSE(bus);
+  EXPECT_EQ(bus.error().code, Errc::usage);
+  EXPECT_EQ(bus.error().hint, "name it open_port.log; .pcap is for the frames of a coe: bus");
+  EXPECT_FALSE(std::filesystem::exists(options.trace));
 }
 
 TEST(OpenPort, OnlyUrlsOfEtherCatAreItsOwn) {
