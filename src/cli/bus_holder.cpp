@@ -15,6 +15,7 @@
 #include "session/can_network.hpp"
 #include "session/link_wait.hpp"
 #include "session/open_network.hpp"
+#include "session/serve_ring.hpp"
 #include "traffic/sync_end.hpp"
 
 namespace servoctl::cli {
@@ -50,6 +51,11 @@ Result<session::Session*> BusHolder::open(const Settings& settings) {
   session_->options().timeout = settings.timeout;
   session_->options().retries = settings.retries;
   return session_.get();
+}
+
+Result<std::unique_ptr<session::RingEnd>> BusHolder::open_ring_end(const Settings& settings) {
+  bus_options_.trace = settings.trace;
+  return session::open_ring_end(settings.bus, bus_options_, options_.cancelled);
 }
 
 Result<void> BusHolder::connect(const std::string& url) {

@@ -12,6 +12,10 @@
 #include "session/open_bus.hpp"
 #include "session/session.hpp"
 
+namespace servoctl::session {
+class RingEnd;
+}  // namespace servoctl::session
+
 namespace servoctl::cli {
 
 /// The bus of a front end: opened when a line needs it and kept for the next one. It knows the drives that
@@ -31,6 +35,9 @@ class BusHolder {
   /// The session on the bus of the settings; another bus that is open is let go first. Errors as open_bus(),
   /// Errc::usage when the settings name no bus.
   Result<session::Session*> open(const Settings& settings);
+  /// The slaves' end of the bus of the settings, beside whatever bus is open; errors as
+  /// session::open_ring_end().
+  Result<std::unique_ptr<session::RingEnd>> open_ring_end(const Settings& settings);
   /// The bus as it is open now; null when none is.
   session::Session* session() { return session_.get(); }
 

@@ -5,6 +5,7 @@
 #include "base/printable.hpp"
 #include "cli/batch/setting_lines.hpp"
 #include "cli/shell.hpp"
+#include "session/serve_ring.hpp"
 
 namespace servoctl::cli {
 
@@ -44,6 +45,10 @@ Result<session::Session*> RunningLine::open_bus() {
   const auto opened = shell_->open(*settings_);
   if (opened) context_->session = *opened;
   return opened;
+}
+
+Result<std::unique_ptr<session::RingEnd>> RunningLine::open_ring_end() {
+  return shell_->open_ring_end(*settings_);
 }
 
 Result<void> RunningLine::hold_family(std::span<const std::uint8_t> nodes, const drive::Profile* profile,

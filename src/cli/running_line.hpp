@@ -28,6 +28,8 @@ class RunningLine final : public show::Audience, public command::FrontEnd {
   bool is_gone() const override;
 
   Result<session::Session*> open_bus() override;
+  std::string_view bus_url() const override { return settings_->bus; }
+  Result<std::unique_ptr<session::RingEnd>> open_ring_end() override;
   Result<void> hold_family(std::span<const std::uint8_t> nodes, const drive::Profile* profile,
                            bool changes) override;
   Result<const drive::Profile*> family(const std::string& name) override;

@@ -14,6 +14,7 @@
 #include "session/ethercat_network.hpp"
 #include "session/identify.hpp"
 #include "session/scan.hpp"
+#include "session/serve_ring.hpp"
 #include "show/notice.hpp"
 #include "show/records.hpp"
 
@@ -129,7 +130,7 @@ Result<void> Shell::prepare(Run& run, const command::Arguments& arguments) {
   if (const auto allowed = check_allowed(command, arguments, run.settings); !allowed) return allowed;
   if (!run.settings.drive.empty() || includes(command.needs, Needs::dictionary))
     if (const auto ready = prepare_profile(run); !ready) return ready;
-  if (!includes(command.needs, Needs::bus)) return name_nodes(run);
+  if (!includes(command.needs, Needs::bus) || command.opens_bus) return name_nodes(run);
   // What is wrong in the line itself is told before a bus is opened.
   if (includes(command.needs, Needs::node) && run.settings.nodes.empty()) return fail(no_node(command));
   if (!run.settings.nodes.empty())
@@ -260,6 +261,10 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
           .errors = std::move(errors),
           .notices = std::move(run.context.notices),
           .abort_words = std::move(words)};
+}
+
+Result<std::unique_ptr<session::RingEnd>> Shell::open_ring_end(const Settings& settings) {
+  return bus_.open_ring_end(settings);
 }
 
 /// A drive that stays energised only while servoctl is there is held until the user ends it.

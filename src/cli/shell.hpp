@@ -77,6 +77,8 @@ class Shell {
   Result<const drive::Profile*> profile(const std::string& family);
   /// As BusHolder::open().
   Result<session::Session*> open(const Settings& settings) { return bus_.open(settings); }
+  /// As BusHolder::open_ring_end().
+  Result<std::unique_ptr<session::RingEnd>> open_ring_end(const Settings& settings);
   const std::vector<std::filesystem::path>& drive_folders() const { return options_.drive_folders; }
 
   /// Lines about what nodes told since the last call.

@@ -82,6 +82,7 @@ struct Command {
   /// The values it writes, for a batch file that is read as settings; null: it writes none.
   Result<std::vector<settings::NamedValue>> (*settings)(const Arguments&) = nullptr;
   bool to_all = false;        ///< Node 0 stays one message to all, and is not taken for those that answer.
+  bool opens_bus = false;     ///< Its words decide which end of the bus it needs: it opens it itself.
   bool of_front_end = false;  ///< It runs other command lines: the front end does it, `run` is null.
 
   /// What it does with these arguments.

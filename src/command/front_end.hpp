@@ -4,11 +4,16 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "command/keys.hpp"
 #include "drive/profile.hpp"
 #include "session/session.hpp"
 #include "settings/setting_line.hpp"
+
+namespace servoctl::session {
+class RingEnd;
+}  // namespace servoctl::session
 
 namespace servoctl::command {
 
@@ -17,6 +22,11 @@ class FrontEnd : public settings::LineReader {
  public:
   /// Opens the bus of the line; the context has its session then.
   virtual Result<session::Session*> open_bus() = 0;
+  /// The URL of the bus of the line; empty when it names none.
+  virtual std::string_view bus_url() const = 0;
+  /// Opens the slaves' end of the bus of the line, which is one with EtherCAT; errors as
+  /// session::open_ring_end().
+  virtual Result<std::unique_ptr<session::RingEnd>> open_ring_end() = 0;
   /// Holds a family against the identity of these nodes; `changes`: they will be written to. Errc::refused
   /// when they contradict it, or two nodes have one number.
   virtual Result<void> hold_family(std::span<const std::uint8_t> nodes, const drive::Profile* profile,

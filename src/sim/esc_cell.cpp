@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <utility>
 
-#include "base/text.hpp"
 #include "sim/cell_spec.hpp"
+#include "sim/esc_cell_options.hpp"
 
 namespace servoctl::sim {
 namespace {
@@ -24,31 +24,14 @@ Result<const drive::Profile*> coe_profile_of(EscCell& cell, const CellSpec::Plac
   return profile;
 }
 
-Result<void> apply_option(const CellSpec& spec, const CellSpec::Option& option, EscCell& cell,
-                          TimePoint now) {
-  if (option.key == "state") return {};
-  std::vector<DriveModel*> models;
-  for (const auto& slave : cell.slaves) models.push_back(&slave->model());
-  const auto is_applied = apply_drive_option(spec, option, models, now);
-  if (!is_applied) return fail(is_applied.error());
-  if (*is_applied) return {};
-  if (option.key != "delay") {
-    const std::string keys[] = {"state", "fault", "delay", "counts"};
-    return spec.wrong(
-        fmt::format("'{}' is not an option of a simulated ring: use {}", option.key, one_of(keys)));
-  }
-  const auto time = time_of(spec, option);
-  if (!time) return fail(time.error());
-  for (const auto& slave : cell.slaves) slave->faults().answer_delay = *time;
-  return {};
-}
-
 }  // namespace
 
 Result<EscCell> build_esc_cell(std::string_view text, std::span<const std::filesystem::path> folders,
                                TimePoint now) {
   const auto spec = parse_cell_spec(text, kExample);
   if (!spec) return fail(spec.error());
+  const auto sii = sii_fault_of(*spec);
+  if (!sii) return fail(sii.error());
   EscCell cell;
   auto memory = open_memory(*spec);
   if (!memory) return fail(memory.error());
@@ -61,7 +44,9 @@ Result<EscCell> build_esc_cell(std::string_view text, std::span<const std::files
       return spec->wrong(fmt::format(
           "drive {0} of an EtherCAT ring is node {0}, not {1}: nodes are positions", position, place.node));
     const auto key = fmt::format("{}.{}", position, place.family);
-    cell.slaves.push_back(std::make_unique<EscSlave>(**profile, place.node, *cell.memory, key));
+    auto options = EscSlave::Options::of(**profile);
+    options.sii = *sii;
+    cell.slaves.push_back(std::make_unique<EscSlave>(**profile, place.node, *cell.memory, key, options));
     cell.ring.attach(*cell.slaves.back(), now);
   }
   for (const auto& option : spec->options)

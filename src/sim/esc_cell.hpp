@@ -24,8 +24,8 @@ struct EscCell {
 };
 
 /// Builds slaves from `sv2@1,sv2@2?state=FILE&fault=0xFF00@2s&delay=20ms`: families with [coe] rules, and
-/// their positions from 1 in their order; the options as build_cell()'s, delay= that of the mailbox's
-/// answers. They have power from `now` on. Errc::usage for what is wrong in the text.
+/// their positions from 1 in their order; then options of the drives as build_cell()'s, and those of
+/// apply_option(). They have power from `now` on. Errc::usage for what is wrong in the text.
 Result<EscCell> build_esc_cell(std::string_view text, std::span<const std::filesystem::path> folders,
                                TimePoint now);
 

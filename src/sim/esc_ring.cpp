@@ -60,7 +60,7 @@ void EscRing::on_frame(ByteSpan frame, TimePoint now) {
   if (reachable() == 0 || faults_.lost_requests.contains(sent_)) return;
   Bytes passing(frame.begin(), frame.end());
   if (!pass(passing, now) || !comes_back()) return;
-  if (faults_.short_counters.contains(sent_)) shorten_counters(passing);
+  if (comes_back_short()) shorten_counters(passing);
   returning_.push_back({std::move(passing), now + faults_.delay});
 }
 
@@ -94,6 +94,11 @@ bool EscRing::comes_back() const {
   return !is_one_of_many && !faults_.lost_answers.contains(sent_);
 }
 
+bool EscRing::comes_back_short() const {
+  const bool is_one_of_many = faults_.shortens_every != 0 && sent_ % faults_.shortens_every == 0;
+  return is_one_of_many || faults_.short_counters.contains(sent_);
+}
+
 void EscRing::shorten_counters(Bytes& frame) {
   auto reader = ethercat::FrameReader::open(frame);
   if (!reader) return;
@@ -102,8 +107,23 @@ void EscRing::shorten_counters(Bytes& frame) {
       set_working_counter(frame, *datagram, static_cast<std::uint16_t>(datagram->working_counter - 1));
 }
 
+void EscRing::plan(RingEvent event) { planned_.emplace(event.time, event); }
+
+void EscRing::carry_out(const RingEvent& event) {
+  switch (event.kind) {
+    case RingEvent::Kind::cut_cable: return cut_cable(event.slave);
+    case RingEvent::Kind::join_cable: return join_cable(event.slave);
+    case RingEvent::Kind::power_off: return power_off(event.slave);
+    case RingEvent::Kind::power_on: return power_on(event.slave, now_);
+  }
+}
+
 void EscRing::on_time(TimePoint now) {
   now_ = std::max(now_, now);
+  while (!planned_.empty() && planned_.begin()->first <= now_) {
+    carry_out(planned_.begin()->second);
+    planned_.erase(planned_.begin());
+  }
   for (auto& place : slaves_)
     if (place.powered) place.slave->on_time(now_);
 }
@@ -117,6 +137,7 @@ std::optional<Bytes> EscRing::take_frame() {
 
 TimePoint EscRing::deadline() const {
   auto next = returning_.empty() ? kNever : returning_.front().due;
+  if (!planned_.empty()) next = std::min(next, planned_.begin()->first);
   for (const auto& place : slaves_)
     if (place.powered) next = std::min(next, place.slave->deadline());
   return next;

@@ -26,8 +26,18 @@ struct RingFaults {
   std::set<std::uint64_t> lost_answers;   ///< Lost behind the last: what they asked for was done.
   std::uint32_t loses_every = 0;          ///< Each frame whose number this divides loses its answer; 0: none.
   std::set<std::uint64_t> short_counters;  ///< Every working counter comes back with one less.
+  std::uint32_t shortens_every = 0;        ///< As loses_every, for working counters.
   std::map<std::uint64_t, Damage> damaged;
   Duration delay{};  ///< From a frame to its return.
+};
+
+/// What happens to the wire at a time.
+struct RingEvent {
+  enum class Kind : std::uint8_t { cut_cable, join_cable, power_off, power_on };
+
+  TimePoint time;
+  Kind kind = Kind::cut_cable;
+  std::size_t slave = 0;
 };
 
 /// The wire of an EtherCAT master: frames go through its slaves in their order and come back. Cables stand in
@@ -53,6 +63,8 @@ class EscRing {
   /// Frames do not get past a slave without power.
   void power_off(std::size_t slave);
   void power_on(std::size_t slave, TimePoint now);
+  /// Does one of the above at its time; events of one time in the order in which they were planned.
+  void plan(RingEvent event);
   /// Slaves that frames of the master reach.
   std::size_t reachable() const;
 
@@ -70,7 +82,9 @@ class EscRing {
   bool pass(Bytes& frame, TimePoint now);
   bool is_damaged(std::size_t cable, bool way_back) const;
   bool comes_back() const;
+  bool comes_back_short() const;
   static void shorten_counters(Bytes& frame);
+  void carry_out(const RingEvent& event);
   bool joins(std::size_t cable) const;
   void update_links();
 
@@ -78,6 +92,7 @@ class EscRing {
   RingFaults faults_;
   std::uint64_t sent_ = 0;
   std::deque<Returning> returning_;
+  std::multimap<TimePoint, RingEvent> planned_;
   TimePoint now_{};
 };
 

@@ -70,8 +70,10 @@ TEST(EscCell, WhatIsWrongInTheTextIsTold) {
   EXPECT_EQ(refused("").message, "no simulated drive is named");
   EXPECT_EQ(refused("@1").message, "a simulated drive has no family name");
   EXPECT_EQ(refused("sv2@0").message, "'0' is not a node-ID (1..127)");
-  EXPECT_EQ(refused("sv2@1?silent=5s").message,
-            "'silent' is not an option of a simulated ring: use state, fault, delay or counts");
+  EXPECT_EQ(
+      refused("sv2@1?colour=blue").message,
+      "'colour' is not an option of a simulated ring: use state, fault, counts, sii, delay, silent, lose, "
+      "short, mailbox, emergency, fall, free-run, power or cut");
   EXPECT_EQ(refused("sv2@1?delay=20").message.substr(0, 7), "delay: ");
   EXPECT_EQ(refused("sv2@1?fault=nonsense").message,
             "'fault=nonsense' is not CODE@TIME or PANEL@TIME, such as fault=0xFF00@2s");
