@@ -10,11 +10,15 @@ namespace servoctl::od {
 
 void Findings::add(Severity severity, std::uint32_t line, std::uint32_t column, std::string_view rule,
                    std::string message, std::string remedy) {
-  if (enough_of(rule)) return;
-  auto& known = rules_[std::string(rule)];
-  known.severity = severity;
+  add({severity, line, column, std::string(rule), std::move(message), std::move(remedy)});
+}
+
+void Findings::add(Diagnostic finding) {
+  if (enough_of(finding.rule)) return;
+  auto& known = rules_[finding.rule];
+  known.severity = finding.severity;
   ++known.count;
-  all_.push_back({severity, line, column, std::string(rule), std::move(message), std::move(remedy)});
+  all_.push_back(std::move(finding));
 }
 
 void Findings::error(const IniKey& key, std::string_view rule, std::string message, std::string remedy) {

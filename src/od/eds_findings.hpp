@@ -21,6 +21,8 @@ class Findings {
   void warn(const IniKey& key, std::string_view rule, std::string message, std::string remedy);
   void add(Severity severity, std::uint32_t line, std::uint32_t column, std::string_view rule,
            std::string message, std::string remedy);
+  /// One that knows its section and key.
+  void add(Diagnostic finding);
   /// Whether the rule has enough findings already. Then the one at hand is counted, and the caller needs no
   /// text for it.
   bool enough_of(std::string_view rule);

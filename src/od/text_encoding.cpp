@@ -105,9 +105,11 @@ bool means_something(std::string_view bytes, TextEncoding encoding) {
   return whole;
 }
 
-DecodedText to_utf8(std::string_view bytes) {
+DecodedText to_utf8(std::string_view bytes) { return to_utf8(bytes, guess_encoding(bytes)); }
+
+DecodedText to_utf8(std::string_view bytes, TextEncoding encoding) {
   DecodedText out;
-  out.encoding = guess_encoding(bytes);
+  out.encoding = encoding;
   out.mark = mark_of(bytes, out.encoding);
   const auto content = bytes.substr(out.mark);
   if (out.encoding == TextEncoding::utf8) {

@@ -46,6 +46,8 @@ struct DecodedText {
 
 /// Never fails and loses no byte but NULs: what cannot be read is written out. Linear in the length.
 DecodedText to_utf8(std::string_view bytes);
+/// The same of bytes whose encoding is known.
+DecodedText to_utf8(std::string_view bytes, TextEncoding encoding);
 
 /// Whether more than one of 20 bytes at the beginning (16 KiB) is a control character no text has: an image,
 /// a program, an archive.
