@@ -91,13 +91,17 @@ void inherit(Dictionary& dictionary, const Dictionary& parent) {
     for (const auto& from : object.entries) {
       auto* entry = dictionary.find(from.address);
       if (entry == nullptr || entry->type != from.type) continue;
-      entry->name_zh = from.name_zh;
-      entry->unit = from.unit;
-      entry->scale = from.scale;
-      entry->encoding = from.encoding;
-      entry->labels = from.labels;
-      entry->note = from.note;
-      entry->note_zh = from.note_zh;
+      if (entry->name_zh.empty()) entry->name_zh = from.name_zh;
+      if (entry->unit.empty()) {
+        entry->unit = from.unit;
+        entry->scale = from.scale;
+        entry->encoding = from.encoding;
+      }
+      if (entry->labels.empty()) entry->labels = from.labels;
+      if (entry->note.empty()) {
+        entry->note = from.note;
+        entry->note_zh = from.note_zh;
+      }
       entry->command = from.command;
       entry->is_volatile = from.is_volatile;
       if (entry->effect == Effect::unstated && writable(entry->access)) entry->effect = from.effect;

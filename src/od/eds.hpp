@@ -45,9 +45,10 @@ struct EntryNote {
   std::string download_file;  ///< What is written into a DOMAIN.
 };
 
-/// An EDS or DCF read in full: everything usable, and everything that was not.
+/// An EDS, a DCF or a device of an ESI read in full: everything usable, and everything that was not.
 struct EdsFile {
   DeviceInfo device;
+  bool ethercat = false;     ///< Of an ESI: `device` is what a master knows it by.
   std::uint8_t node_id = 0;  ///< DCF only, 0 otherwise.
   Dictionary dictionary;
   std::vector<EntryNote> notes;         ///< Only of entries that have one; in rising address.

@@ -260,6 +260,10 @@ Result<EdsFile> read_eds(std::string_view text, std::string_view file) {
   const auto decoded = to_utf8(text);
   auto out = EdsReader(decoded.text(text), findings_of(decoded)).read();
   if (!out.dictionary.empty()) return out;
+  if (decoded.text(text).find("<EtherCATInfo") != std::string_view::npos)
+    return refuse(
+        file, "this is an ESI (EtherCATInfo), not an EDS or DCF file",
+        "it describes objects and has no values: it can be named with -d, and checked by `eds check`");
   if (starts_with_nocase(trim(decoded.text(text)), "<"))
     return refuse(file, "this is XML, not an EDS or DCF file",
                   "XML device descriptions (XDD and XDC, CiA 311) are not supported: use the device's EDS");
