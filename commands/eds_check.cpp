@@ -3,9 +3,10 @@
 #include <array>
 #include <iostream>
 
-#include "base/file.hpp"
+#include "base/pdo_index.hpp"
+#include "base/text.hpp"
 #include "command/command.hpp"
-#include "od/eds.hpp"
+#include "od/data_sheet.hpp"
 #include "show/records.hpp"
 
 namespace servoctl::commands {
@@ -17,7 +18,7 @@ using report::Show;
 
 constexpr Parameter kParameters[] = {
     {.name = "file",
-     .help = "an EDS or DCF file; - for standard input",
+     .help = "an EDS, DCF or ESI file; - for standard input",
      .kind = Kind::file,
      .required = true,
      .many = true},
@@ -29,7 +30,7 @@ constexpr std::string_view kStandardInput = "-";
 std::string standard_input() {
   std::string out;
   std::array<char, 65536> chunk{};
-  while (std::cin && out.size() <= od::kMostEdsBytes) {
+  while (std::cin && out.size() <= od::kMostEsiBytes) {
     std::cin.read(chunk.data(), static_cast<std::streamsize>(chunk.size()));
     out.append(chunk.data(), static_cast<std::size_t>(std::cin.gcount()));
   }
@@ -37,7 +38,7 @@ std::string standard_input() {
 }
 
 Result<std::string> text_of(const Context& context, const std::string& path) {
-  if (path != kStandardInput) return read_file(path, od::kMostEdsBytes);
+  if (path != kStandardInput) return od::read_sheet_file(path);
   if (context.stays_open)
     return fail(Errc::usage, "standard input contains the command lines, and no file for this one",
                 "name a file");
@@ -55,6 +56,40 @@ report::Table findings_of(const od::EdsFile& file) {
                         finding.severity == od::Severity::error ? "error" : "warning", finding.rule,
                         finding.message, finding.remedy});
   return out;
+}
+
+/// `DC (DC-Synchron)`, as the file calls it.
+std::string modes_of(const od::EsiLayout& layout) {
+  std::string out;
+  for (const auto& mode : layout.modes)
+    append(out, mode.description.empty() ? mode.name : fmt::format("{} ({})", mode.name, mode.description));
+  return out;
+}
+
+/// What an ESI says beside the objects.
+report::Record ethercat_record(const od::EsiFile& esi) {
+  const auto& layout = esi.layout;
+  const auto pdos = [&](PdoDirection direction) {
+    return std::count_if(layout.pdos.begin(), layout.pdos.end(),
+                         [&](const od::EsiPdo& pdo) { return pdo.direction == direction; });
+  };
+  const auto size = [&](od::EsiSyncManager::Use use) {
+    const auto* manager = layout.find(use);
+    return manager == nullptr || manager->size == 0 ? report::Value() : report::Value(manager->size);
+  };
+  using Use = od::EsiSyncManager::Use;
+  return {{"type", report::text_or_null(esi.device.type)},
+          {"group", report::text_or_null(esi.device.group)},
+          {"product_code", report::Hex{esi.device.product_code, 8}, Show::everywhere, "product code"},
+          {"revision", report::Hex{esi.device.revision, 8}},
+          {"coe", layout.coe},
+          {"sdo_info", layout.sdo_info, Show::everywhere, "SDO information"},
+          {"complete_access", layout.complete_access, Show::everywhere, "complete access"},
+          {"mailbox_out", size(Use::mailbox_out), Show::everywhere, "mailbox out"},
+          {"mailbox_in", size(Use::mailbox_in), Show::everywhere, "mailbox in"},
+          {"rx_pdos", pdos(PdoDirection::receive), Show::everywhere, "RxPDOs"},
+          {"tx_pdos", pdos(PdoDirection::transmit), Show::everywhere, "TxPDOs"},
+          {"synchronisation", report::text_or_null(modes_of(layout))}};
 }
 
 report::Record record_of(const std::string& path, const od::EdsFile& file) {
@@ -88,25 +123,69 @@ Error errors_error(const std::string& path, std::size_t errors) {
                     "the remedy column says what to change; everything else in the file is usable");
 }
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
-  report::List out;
-  const auto paths = arguments.all("file");
-  for (const auto& path : paths) {
-    const auto text = text_of(context, path);
-    const auto file = text ? od::read_eds(*text, path) : fail(text.error());
-    if (!file) {
-      context.errors.push_back(file.error());
-      out.emplace_back(record_of(path, file.error(), paths.size() == 1));
-      continue;
-    }
-    if (const auto errors = file->error_count(); errors > 0)
-      context.errors.push_back(errors_error(path, errors));
-    out.emplace_back(record_of(path, *file));
+/// The findings of a file, one record for each device it describes; an error stands in the list as well.
+class Check {
+ public:
+  Check(Context& context, bool alone) : context_(&context), alone_(alone) {}
+
+  void file(const std::string& word) {
+    const auto text = text_of(*context_, word);
+    if (!text) return refuse(word, text.error());
+    if (od::is_xml(*text)) return esi(word, *text);
+    const auto file = od::read_eds(*text, word);
+    if (!file) return refuse(word, file.error());
+    count_errors(word, *file);
+    out_.emplace_back(record_of(word, *file));
   }
+
+  report::List take() { return std::move(out_); }
+
+ private:
+  void esi(const std::string& word, const std::string& text) {
+    const auto name = od::sheet_name(word);
+    if (name.device.empty()) {
+      const auto all = od::read_all_esi(text, name.path);
+      if (!all) return refuse(word, all.error());
+      for (const auto& file : *all)
+        add(file.devices == 1 ? word : fmt::format("{}#{}", name.path, file.number), file);
+      return;
+    }
+    const auto file = od::read_esi(text, name.path, name.device);
+    if (!file) return refuse(word, file.error());
+    add(word, *file);
+  }
+
+  void add(const std::string& word, const od::EsiFile& file) {
+    count_errors(word, file.sheet);
+    auto record = record_of(word, file.sheet);
+    const auto ethercat = ethercat_record(file);
+    record.insert(record.begin() + 3, ethercat.begin(), ethercat.end());
+    out_.emplace_back(std::move(record));
+  }
+
+  void refuse(const std::string& word, const Error& error) {
+    context_->errors.push_back(error);
+    out_.emplace_back(record_of(word, error, alone_));
+  }
+
+  void count_errors(const std::string& word, const od::EdsFile& file) {
+    if (const auto errors = file.error_count(); errors > 0)
+      context_->errors.push_back(errors_error(word, errors));
+  }
+
+  Context* context_;
+  bool alone_ = false;
+  report::List out_;
+};
+
+Result<report::Value> run(Context& context, const Arguments& arguments) {
+  const auto words = arguments.all("file");
+  Check check(context, words.size() == 1);
+  for (const auto& word : words) check.file(word);
   // The first error makes the exit code: the worst one, in whatever order the files are named.
   std::stable_sort(context.errors.begin(), context.errors.end(),
                    [](const Error& a, const Error& b) { return exit_code(a.code) > exit_code(b.code); });
-  return report::Value(std::move(out));
+  return report::Value(check.take());
 }
 
 }  // namespace
@@ -114,11 +193,13 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
 extern const Command kEdsCheck;
 const Command kEdsCheck{
     .path = "eds check",
-    .summary = "Check EDS and DCF files against CiA 306",
+    .summary = "Check EDS, DCF and ESI files",
     .details =
+        "EDS and DCF are held against CiA 306, ESI files (XML, of EtherCAT devices) against ETG.2000. "
         "Every finding gives line, section, key, rule and remedy, and what is used instead. Exit code 1 if "
         "there are errors; warnings alone are fine. A file that cannot be read is listed with its error; of "
-        "several files the worst sets the exit code. `-` reads standard input to its end: in a pipe of "
+        "several files the worst sets the exit code. Of an ESI with several devices each is checked: FILE.xml#2 is "
+        "the second alone, and FILE.xml#NAME the one of that name. `-` reads standard input to its end: in a pipe of "
         "command lines, what follows this line.",
     .parameters = kParameters,
     .needs = Needs::nothing,

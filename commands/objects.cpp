@@ -5,7 +5,7 @@
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "command/command.hpp"
-#include "od/eds.hpp"
+#include "od/data_sheet.hpp"
 #include "show/reading.hpp"
 #include "show/records.hpp"
 
@@ -49,8 +49,9 @@ bool wanted(std::string_view pattern, const od::Object& object, const od::Entry&
 
 /// What the data sheet says beside the dictionary; nothing where there is none.
 od::EdsFile data_sheet_of(const drive::Profile& profile) {
-  const auto text = read_file(profile.data_sheet, od::kMostEdsBytes);
-  if (profile.data_sheet.empty() || !text) return {};
+  if (profile.data_sheet.empty()) return {};
+  const auto text = od::read_sheet_file(profile.data_sheet.string());
+  if (!text || od::is_xml(*text)) return {};  // An ESI says nothing beside it.
   return od::read_eds(*text, profile.data_sheet.string()).value_or(od::EdsFile{});
 }
 
@@ -185,7 +186,8 @@ const Command kObjects{
     .details =
         "Works without a bus. The pattern is part of a name in English or Chinese, an index, or an index "
         "with `*`; for a single index the meanings of its values are listed too. For a DCF, value and "
-        "denotation are those of each entry (ParameterValue, Denotation). `?` marks what the manual does not "
+        "denotation are those of each entry (ParameterValue, Denotation). `-d FILE.xml` lists what the ESI of "
+        "an EtherCAT device describes, `-d FILE.xml#2` the second device of several. `?` marks what the manual does not "
         "state, `!` what it states inconsistently; --json gives the line numbers.",
     .parameters = kParameters,
     .needs = Needs::dictionary,

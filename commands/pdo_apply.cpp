@@ -5,7 +5,7 @@
 #include "base/text.hpp"
 #include "command/command.hpp"
 #include "command/setting_options.hpp"
-#include "od/eds.hpp"
+#include "od/data_sheet.hpp"
 #include "pdo/pdo_recipes.hpp"
 #include "session/pdo_setup.hpp"
 #include "settings/backup_file.hpp"
@@ -19,7 +19,7 @@ using session::Values;
 
 constexpr Parameter kParameters[] = {
     {.name = "file",
-     .help = "pdos.toml or .json of `pdo save`, a backup, an .eds or .dcf",
+     .help = "pdos.toml or .json of `pdo save`, a backup, an .eds, .dcf or .xml",
      .kind = Kind::file,
      .required = true},
     kKeepOption,
@@ -60,21 +60,23 @@ Result<drive::PdoFile> from_backup(const Context& context, const std::filesystem
 }
 
 Result<drive::PdoFile> from_dictionary(const Context& context, const std::filesystem::path& path) {
-  const auto text = read_file(path);
+  const auto text = od::read_sheet_file(path.string());
   if (!text) return fail(text.error());
-  const auto file = od::read_eds(*text, path.string());
+  const auto file = od::read_data_sheet(*text, path.string());
   if (!file) return fail(file.error());
   if (file->error_count() > 0)
     return fail(Errc::file, fmt::format("{} has {} errors", path.string(), file->error_count()),
                 fmt::format("`eds check {}` shows them", path.string()));
-  // An EDS is of no node: any node-ID does, as it is taken out again.
+  // An EDS or ESI is of no node: any node-ID does, as it is taken out again.
   const std::uint8_t node = file->node_id == 0 ? 127 : file->node_id;
   return recipes_of(context.profile, {}, values_of(file->dictionary, node), node);
 }
 
 Result<drive::PdoFile> read(const Context& context, const std::filesystem::path& path) {
-  const auto extension = lower(path.extension().string());
-  if (extension == ".eds" || extension == ".dcf") return from_dictionary(context, path);
+  const auto extension =
+      lower(std::filesystem::path(od::sheet_name(path.string()).path).extension().string());
+  if (extension == ".eds" || extension == ".dcf" || extension == ".xml")
+    return from_dictionary(context, path);
   if (extension == ".toml") return pdo::read_pdo_file(path);
   const auto text = read_file(path);
   if (!text) return fail(text.error());
@@ -123,7 +125,7 @@ const Command kPdoApply{
     .summary = "Write the PDOs of a file to a drive",
     .details =
         "All PDOs of the file are written, or none. The file may come from `pdo save`, or be a backup of the "
-        "same family, an EDS or a DCF. CAN-IDs that contain the node-ID follow the node. PDOs not in the "
+        "same family, an EDS, a DCF or an ESI. CAN-IDs that contain the node-ID follow the node. PDOs not in the "
         "file stay unchanged.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::dictionary,

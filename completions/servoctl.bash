@@ -176,12 +176,20 @@ _servoctl_scan() {
   esac
 }
 
+# Data sheets in a folder, given as it was typed; those with signs the shell reads are left out.
+_servoctl_sheets() {
+  find "${1:-.}" -maxdepth 1 -type f \( -name '*.eds' -o -name '*.dcf' -o -name '*.[xX][mM][lL]' \) 2>/dev/null |
+    sed 's|.*/||' | grep -v '[^A-Za-z0-9._+-]' | while IFS= read -r sheet; do printf '%s%s\n' "$1" "$sheet"; done
+}
+
 _servoctl_words() {
   case $source in
     '='*) printf '%s\n' "${source#=}" | tr ' ' '\n' ;;
     objects|parameters)
       [ -z "$drive" ] || servoctl completion "$source" -d "$drive" 2>/dev/null ;;
-    families) servoctl completion families 2>/dev/null ;;
+    families)
+      servoctl completion families 2>/dev/null
+      _servoctl_sheets "${typed%"${typed##*/}"}" ;;
     buses)
       local interface
       for interface in /sys/class/net/*; do
@@ -193,6 +201,7 @@ _servoctl_words() {
 
 _servoctl() {
   local cur=${COMP_WORDS[COMP_CWORD]} command drive source options
+  local typed=$cur
   _servoctl_scan "${COMP_WORDS[@]:1:COMP_CWORD-1}"
   COMPREPLY=()
   if [[ $cur == -* ]]; then

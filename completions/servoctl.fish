@@ -49,10 +49,17 @@ function __servoctl_buses
     echo local:
 end
 
+function __servoctl_sheets
+    set -l typed (commandline -ct)
+    for sheet in $typed*.eds $typed*.dcf $typed*.xml
+        echo $sheet
+    end
+end
+
 complete -c servoctl -f
 complete -c servoctl -l bus -s b -x -a '(__servoctl_buses)' -d 'bus: can0, local:NAME, sim:gsd600@1 (default $SERVOCTL_BUS)'
 complete -c servoctl -l node -s n -x -a 'all' -d 'node-ID, a list 1,3,5-8 or all (default $SERVOCTL_NODE)'
-complete -c servoctl -l drive -s d -x -a '(servoctl completion families 2>/dev/null)' -d 'drive family or an .eds file (default $SERVOCTL_DRIVE)'
+complete -c servoctl -l drive -s d -x -a '(servoctl completion families 2>/dev/null; __servoctl_sheets)' -d 'drive family, or an .eds, .dcf or .xml file (default $SERVOCTL_DRIVE)'
 complete -c servoctl -l timeout -x -d 'longest wait for one answer (default 500ms)'
 complete -c servoctl -l retries -x -d 'retries of an unanswered read (default 1); a write is never repeated'
 complete -c servoctl -l json -d 'one JSON document instead of text'
@@ -334,8 +341,8 @@ complete -c servoctl -n '__servoctl_in replay' -l speed -x -d '2 is twice as fas
 complete -c servoctl -n '__servoctl_in replay' -l only -x -a 'nmt sync time emcy pdo sdo boot-up heartbeat guarding controller other' -d 'only this service, such as sdo (may be given several times)'
 complete -c servoctl -n '__servoctl_in replay' -l master -d 'only what a master sends: NMT, SYNC, TIME, SDO requests, RPDOs'
 complete -c servoctl -n __servoctl_at -a drives -d 'List the drive families servoctl knows, or the rules of one'
-complete -c servoctl -n '__servoctl_in drives' -x -a '(servoctl completion families 2>/dev/null)'
-complete -c servoctl -n '__servoctl_at eds' -a check -d 'Check EDS and DCF files against CiA 306'
+complete -c servoctl -n '__servoctl_in drives' -x -a '(servoctl completion families 2>/dev/null; __servoctl_sheets)'
+complete -c servoctl -n '__servoctl_at eds' -a check -d 'Check EDS, DCF and ESI files'
 complete -c servoctl -n '__servoctl_in eds check' -r -F
 complete -c servoctl -n __servoctl_at -a run -d 'Run the command lines of a file'
 complete -c servoctl -n '__servoctl_in run' -r -F

@@ -158,7 +158,8 @@ tl::unexpected<Error> Shell::ask_for_family(Run& run) {
   const auto families = drive::find_families(options_.drive_folders);
   std::vector<std::string> names;
   for (const auto& family : families) names.push_back(family.name);
-  auto hint = names.empty() ? std::string("add -d FILE.eds") : "add -d " + one_of(names) + ", or -d FILE.eds";
+  auto hint = names.empty() ? std::string("add -d FILE.eds or -d FILE.xml")
+                            : "add -d " + one_of(names) + ", or -d with an .eds or .xml file";
   const bool can_look =
       includes(run.command->needs, Needs::node) && !run.settings.nodes.empty() && !run.settings.bus.empty();
   const auto nodes = can_look ? parse_nodes(run.settings.nodes)

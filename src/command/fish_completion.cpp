@@ -62,13 +62,20 @@ function __servoctl_buses
     echo local:
 end
 
+function __servoctl_sheets
+    set -l typed (commandline -ct)
+    for sheet in $typed*.eds $typed*.dcf $typed*.xml
+        echo $sheet
+    end
+end
+
 complete -c servoctl -f
 )sh";
   const auto arguments = [](const Parameter& p) -> std::string {
     const auto source = source_of(p);
     if (source.front() == '=') return " -x -a " + shell_quoted(source.substr(1));
     if (source == "files") return " -r -F";
-    if (source == "families") return " -x -a '(servoctl completion families 2>/dev/null)'";
+    if (source == "families") return " -x -a '(servoctl completion families 2>/dev/null; __servoctl_sheets)'";
     if (source == "buses") return " -x -a '(__servoctl_buses)'";
     if (source == "objects" || source == "parameters") return " -x -a '(__servoctl_names " + source + ")'";
     return " -x";

@@ -92,12 +92,20 @@ std::string scan_function() {
 {}  esac
 }}
 
+# Data sheets in a folder, given as it was typed; those with signs the shell reads are left out.
+_servoctl_sheets() {{
+  find "${{1:-.}}" -maxdepth 1 -type f \( -name '*.eds' -o -name '*.dcf' -o -name '*.[xX][mM][lL]' \) 2>/dev/null |
+    sed 's|.*/||' | grep -v '[^A-Za-z0-9._+-]' | while IFS= read -r sheet; do printf '%s%s\n' "$1" "$sheet"; done
+}}
+
 _servoctl_words() {{
   case $source in
     '='*) printf '%s\n' "${{source#=}}" | tr ' ' '\n' ;;
     objects|parameters)
       [ -z "$drive" ] || servoctl completion "$source" -d "$drive" 2>/dev/null ;;
-    families) servoctl completion families 2>/dev/null ;;
+    families)
+      servoctl completion families 2>/dev/null
+      _servoctl_sheets "${{typed%"${{typed##*/}}"}}" ;;
     buses)
       local interface
       for interface in /sys/class/net/*; do
@@ -133,6 +141,7 @@ std::string bash_script() {
          R"sh(
 _servoctl() {
   local cur=${COMP_WORDS[COMP_CWORD]} command drive source options
+  local typed=$cur
   _servoctl_scan "${COMP_WORDS[@]:1:COMP_CWORD-1}"
   COMPREPLY=()
   if [[ $cur == -* ]]; then
@@ -154,7 +163,7 @@ std::string zsh_script() {
   return "#compdef servoctl\n# Completion of servoctl for zsh; written by `servoctl completion zsh`.\n" +
          scan_function() + R"sh(
 _servoctl() {
-  local command drive source options
+  local command drive source options typed=${words[CURRENT]}
   _servoctl_scan "${(@)words[2,CURRENT-1]}"
   if [[ ${words[CURRENT]} == -* ]]; then
     compadd -- ${=options}

@@ -25,10 +25,23 @@ std::uint64_t number(const od::EdsFile& file, ObjectAddress object) {
   return 0;
 }
 
+/// What a master knows an EtherCAT device by; defaults of objects in its file are often those of another.
+std::vector<IdentityMark> ethercat_marks(const od::DeviceInfo& device) {
+  std::vector<IdentityMark> out;
+  const auto take = [&](ObjectAddress object, std::uint32_t value, bool soft) {
+    if (value != 0) out.push_back({.object = object, .value = value, .text = {}, .soft = soft});
+  };
+  take(objects::kVendorId, device.vendor_number, false);
+  take(objects::kProductCode, device.product_number, false);
+  take(objects::kRevision, device.revision_number, true);
+  return out;
+}
+
 }  // namespace
 
 std::vector<IdentityMark> identity_marks(const od::EdsFile& file) {
   std::vector<IdentityMark> out;
+  if (file.ethercat) return ethercat_marks(file.device);
   if (const auto type = number(file, objects::kDeviceType); type != 0)
     out.push_back({.object = objects::kDeviceType, .value = type, .text = {}});
   const auto take = [&](ObjectAddress object, std::uint32_t info, bool soft) {

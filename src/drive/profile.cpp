@@ -4,12 +4,13 @@
 #include <algorithm>
 #include <cstdlib>
 #include <system_error>
+#include <utility>
 
 #include "base/file.hpp"
 #include "base/text.hpp"
 #include "drive/file_identity.hpp"
 #include "drive/standard_objects.hpp"
-#include "od/eds.hpp"
+#include "od/data_sheet.hpp"
 
 namespace servoctl::drive {
 namespace fs = std::filesystem;
@@ -49,10 +50,41 @@ void set_marks(Rules& rules, std::vector<IdentityMark> marks) {
                   [](const IdentityMark& mark) { return mark.object == objects::kVendorId; });
 }
 
-Result<void> add_dictionary(Profile& profile, const fs::path& path) {
-  const auto text = read_file(path, od::kMostEdsBytes);
+constexpr std::string_view kOutputAssignment = "0x1C12";
+constexpr std::string_view kInputAssignment = "0x1C13";
+
+/// What an ESI says of the way to the objects, where the rules do not say it.
+void add_layout(Rules& rules, const od::EsiLayout& layout) {
+  using Use = od::EsiSyncManager::Use;
+  const auto area = [&](Use use) {
+    const auto* manager = layout.find(use);
+    return manager == nullptr ? EscArea{} : EscArea{manager->start, manager->size};
+  };
+  if (!layout.coe || rules.coe.exists()) return;
+  rules.coe.mailbox_out = area(Use::mailbox_out);
+  rules.coe.mailbox_in = area(Use::mailbox_in);
+  rules.coe.outputs = area(Use::outputs).start;
+  rules.coe.inputs = area(Use::inputs).start;
+  rules.coe.sdo_info = layout.sdo_info;
+  rules.coe.complete_access = layout.complete_access;
+  rules.pdo.assign_rpdo = kOutputAssignment;
+  rules.pdo.assign_tpdo = kInputAssignment;
+}
+
+Result<od::EdsFile> read_sheet(Profile& profile, const std::string& word) {
+  const auto text = od::read_sheet_file(word);
   if (!text) return fail(text.error());
-  auto file = od::read_eds(*text, path.string());
+  if (!od::is_xml(*text)) return od::read_eds(*text, word);
+  const auto name = od::sheet_name(word);
+  auto esi = od::read_esi(*text, name.path, name.device);
+  if (!esi) return fail(esi.error());
+  add_layout(profile.rules, esi->layout);
+  return std::move(esi->sheet);
+}
+
+/// `path` may name one of several devices of an ESI (od::sheet_name()).
+Result<void> add_dictionary(Profile& profile, const fs::path& path) {
+  auto file = read_sheet(profile, path.string());
   if (!file) return fail(file.error());
   if (profile.rules.identity.empty()) set_marks(profile.rules, identity_marks(*file));
   if (is_drive(file->dictionary)) od::inherit(file->dictionary, profile.dictionary);
@@ -99,19 +131,24 @@ Result<void> add_rules(Profile& profile, const fs::path& path) {
   return {};
 }
 
+constexpr std::string_view kSheetExtensions[] = {".eds", ".dcf", ".xml"};
+
 struct Part {
   std::string_view extension;
   Result<void> (*add)(Profile&, const fs::path&);
 };
 /// In the order they need each other: the objects table annotates the dictionary.
 constexpr Part kParts[] = {
-    {".toml", add_rules},
-    {".eds", add_dictionary},
-    {".dcf", add_dictionary},
-    {".objects.csv", add_object_notes},
-    {".params.csv", add_parameters},
+    {".toml", add_rules},        {".eds", add_dictionary},           {".dcf", add_dictionary},
+    {".xml", add_dictionary},    {".objects.csv", add_object_notes}, {".params.csv", add_parameters},
     {".faults.csv", add_faults},
 };
+
+/// One data sheet is enough: the first there is.
+bool has_dictionary(const Part& part) {
+  return std::find(std::begin(kSheetExtensions), std::end(kSheetExtensions), part.extension) !=
+         std::end(kSheetExtensions);
+}
 
 /// Parents of parents end here: a family that is its own ancestor would never.
 constexpr int kMostAncestors = 4;
@@ -142,11 +179,12 @@ Result<Profile> load_parts(const Family& family, std::span<const fs::path> folde
   auto profile = std::move(*parent);
   profile.family = family.name;
   profile.warnings.clear();
+  bool has_sheet = false;
   std::error_code ignored;
   for (const auto& part : kParts) {
     const auto path = with_extension(family.stem, part.extension);
     if (!fs::exists(path, ignored)) continue;
-    if (part.extension == ".dcf" && fs::exists(with_extension(family.stem, ".eds"), ignored)) continue;
+    if (has_dictionary(part) && std::exchange(has_sheet, true)) continue;
     if (const auto added = part.add(profile, path); !added) return fail(added.error());
   }
   profile.build_index();
@@ -181,14 +219,15 @@ Result<Profile> load_single_file(const fs::path& path, std::span<const fs::path>
 bool names_a_file(std::string_view family) {
   const auto folded = lower(family);
   return family.find('/') != std::string_view::npos || folded.ends_with(".eds") || folded.ends_with(".dcf") ||
-         folded.ends_with(".csv") || folded.ends_with(".toml");
+         folded.ends_with(".csv") || folded.ends_with(".toml") ||
+         od::sheet_name(folded).path.ends_with(".xml");
 }
 
 void find_in(const fs::path& folder, std::vector<Family>& out) {
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     const auto extension = it->path().extension();
-    if (extension != ".eds" && extension != ".dcf" && extension != ".toml") continue;
+    if (extension != ".eds" && extension != ".dcf" && extension != ".xml" && extension != ".toml") continue;
     const auto name = lower(it->path().stem().string());
     if (std::none_of(out.begin(), out.end(), [&](const Family& f) { return f.name == name; }))
       out.push_back({name, folder / it->path().stem()});
@@ -275,8 +314,9 @@ Result<Profile> load_family(std::string_view family, std::span<const fs::path> f
   if (hint.empty())
     hint =
         names.empty()
-            ? std::string("no drive data was found: set SERVOCTL_DRIVES to its folder, or name an .eds file")
-            : "known families: " + one_of(names) + "; or name an .eds file";
+            ? std::string(
+                  "no drive data was found: set SERVOCTL_DRIVES to its folder, or name an .eds or .xml file")
+            : "known families: " + one_of(names) + "; or name an .eds or .xml file";
   return fail(Errc::usage, fmt::format("no drive family is called '{}'", family), std::move(hint));
 }
 

@@ -26,7 +26,8 @@ struct Profile {
   std::vector<Fault> faults;
   std::vector<std::string> warnings;  ///< Findings in the files that did not stop them from being used.
   bool of_file = false;               ///< A file of the user's own, not a family by its name.
-  std::filesystem::path data_sheet;   ///< The EDS or DCF the dictionary comes from; empty: none.
+  /// The EDS, DCF or ESI the dictionary comes from, as for od::sheet_name(); empty: none.
+  std::filesystem::path data_sheet;
 
   /// The parameter with this id, in any of the ways people write it (`Pn0202`, `pn202`).
   const od::Parameter* parameter(std::string_view id) const;
@@ -64,8 +65,8 @@ struct Family {
 /// file.
 std::vector<Family> find_families(std::span<const std::filesystem::path> folders);
 
-/// Loads a family by name, or a user's own `.eds`, `.dcf`, `.csv` or `.toml` file by path (a `.toml` with the
-/// files of the same name beside it). What its parent says holds where it says nothing itself. Errc::usage
+/// Loads a family by name, or a user's own `.eds`, `.dcf`, `.xml` (of several devices one: `.xml#2`), `.csv` or
+/// `.toml` file by path (a `.toml` with the files of the same name beside it). What its parent says holds where it says nothing itself. Errc::usage
 /// for an unknown name (nearest ones offered), Errc::file for a file that cannot be used.
 Result<Profile> load_profile(std::string_view family, std::span<const std::filesystem::path> folders);
 

@@ -5,8 +5,8 @@
 #include "base/number.hpp"
 #include "drive/naming.hpp"
 #include "drive/quantity.hpp"
+#include "od/data_sheet.hpp"
 #include "od/dcf.hpp"
-#include "od/eds.hpp"
 #include "settings/backup_formats.hpp"
 
 namespace servoctl::settings {
@@ -74,8 +74,12 @@ Result<std::string> dcf_text(const drive::Profile& profile, const Backup& backup
   if (profile.data_sheet.empty())
     return fail(Errc::usage, fmt::format("{} has no data sheet (EDS) to make a DCF of", profile.family),
                 "use --format json, csv or batch");
-  const auto eds = read_file(profile.data_sheet, od::kMostEdsBytes);
+  const auto eds = od::read_sheet_file(profile.data_sheet.string());
   if (!eds) return fail(eds.error());
+  if (od::is_xml(*eds))
+    return fail(Errc::usage,
+                fmt::format("{} is an ESI, and a DCF is made of an EDS", profile.data_sheet.string()),
+                "use --format json, csv or batch");
   od::DcfSettings settings;
   settings.file_name = file_name;
   settings.node_id = backup.identity.node;

@@ -9,6 +9,7 @@
 #include "base/file.hpp"
 #include "base/text.hpp"
 #include "drive/standard_objects.hpp"
+#include "od/data_sheet.hpp"
 #include "od/eds_section.hpp"
 #include "od/text_encoding.hpp"
 #include "session/cob_id_check.hpp"
@@ -58,7 +59,9 @@ BackupFormat guess_format(std::string_view bytes, std::string_view text, const s
   if (!wide && bytes.find('\0') != std::string_view::npos) return BackupFormat::concise_dcf;
   const auto line = first_line(text);
   if (line.empty() || line.front() == '{') return BackupFormat::json;
-  if (begins_section(line) || extension == ".dcf" || extension == ".eds") return BackupFormat::dcf;
+  // An ESI is a data sheet as well; it has no values.
+  if (line.front() == '<' || begins_section(line) || extension == ".dcf" || extension == ".eds")
+    return BackupFormat::dcf;
   if (is_table_head(line) || extension == ".csv") return BackupFormat::csv;
   return line == "[]" || line.starts_with("[[") ? BackupFormat::json : BackupFormat::batch;
 }
@@ -210,7 +213,7 @@ Result<std::string> backup_text(show::Desk& desk, const Backup& backup, BackupFo
 }
 
 Result<BackupSource> open_backup(const std::filesystem::path& file, LineReader* lines) {
-  const auto bytes = read_file(file);
+  const auto bytes = read_file(od::sheet_name(file.string()).path);
   if (!bytes) return fail(bytes.error());
   // Spreadsheets save tables in whatever encoding their system has.
   const auto decoded = od::to_utf8(*bytes);

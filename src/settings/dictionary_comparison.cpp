@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <set>
 
-#include "od/eds.hpp"
+#include "od/data_sheet.hpp"
 
 namespace servoctl::settings {
 namespace {
@@ -98,16 +98,16 @@ class Comparer {
 bool are_data_sheets(const BackupSource& a, const BackupSource& b) {
   if (a.format != BackupFormat::dcf || b.format != BackupFormat::dcf) return false;
   const auto is_without_values = [](const BackupSource& source) {
-    const auto file = od::read_eds(source.text, source.file);
+    const auto file = od::read_data_sheet(source.text, source.file);
     return file && !has_values(*file);
   };
   return is_without_values(a) || is_without_values(b);
 }
 
 Result<Value> compare_data_sheets(show::Desk& desk, const BackupSource& a, const BackupSource& b) {
-  const auto left = od::read_eds(a.text, a.file);
+  const auto left = od::read_data_sheet(a.text, a.file);
   if (!left) return fail(left.error());
-  const auto right = od::read_eds(b.text, b.file);
+  const auto right = od::read_data_sheet(b.text, b.file);
   if (!right) return fail(right.error());
   for (const auto& [source, file] : {std::pair(&a, &*left), std::pair(&b, &*right)})
     if (file->error_count() > 0)

@@ -39,6 +39,7 @@ cases() {  # cases SHELL FUNCTION
   contains "$1 option of a command" "--type --timeout" "$($2 read 0x6041 --t)"
   contains "$1 choice" "text json jsonl" "$($2 -o '')"
   contains "$1 family" "gsd600" "$($2 -d '')"
+  contains "$1 data sheet" "$source_dir/tests/cli/data/p20.xml $source_dir/tests/cli/data/node.eds" "$($2 -d "$source_dir/tests/cli/data/")"
   contains "$1 bus" "sim: local:" "$($2 -b '')"
 }
 cases bash bash_complete
