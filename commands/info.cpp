@@ -1,11 +1,15 @@
 #include <fmt/format.h>
+#include <algorithm>
+#include <utility>
 
 #include "command/command.hpp"
 #include "drive/cia402.hpp"
 #include "drive/standard_objects.hpp"
+#include "session/ethercat_network.hpp"
 #include "session/identify.hpp"
 #include "show/identity.hpp"
 #include "show/records.hpp"
+#include "show/ring_table.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -33,8 +37,19 @@ Value modes_text(const Result<Bytes>& bytes) {
   return out;
 }
 
+void add_state(Record& out, const session::Identity& node, session::Session& session) {
+  if (const auto* ring = session.ethercat()) {
+    const auto* al = ring->al_of(node.node);
+    if (al == nullptr) return;
+    out.push_back({"al", show::al_text(*al), report::Show::text, "AL state"});
+    for (auto& field : show::al_fields(*al)) out.push_back(std::move(field));
+    return;
+  }
+  out.push_back({"nmt", node.state ? Value(session::name(*node.state)) : Value()});
+}
+
 Value one(const session::Identity& node, std::span<const drive::Family> families,
-          std::span<const Result<Bytes>> more, const drive::Profile* profile, bool chinese) {
+          std::span<const Result<Bytes>> more, const drive::Profile* profile, const Context& context) {
   const auto guesses = session::guess_families(node, families);
   Record out{
       {"node", node.node},
@@ -50,11 +65,11 @@ Value one(const session::Identity& node, std::span<const drive::Family> families
       {"serial", optional_hex(node.serial)},
       {"error_register", optional_number(more[0]), report::Show::everywhere, "error register"},
       {"heartbeat_ms", optional_number(more[1]), report::Show::everywhere, "heartbeat (ms)"},
-      {"modes", modes_text(more[2])},
-      {"nmt", node.state ? Value(session::name(*node.state)) : Value()}};
+      {"modes", modes_text(more[2])}};
+  add_state(out, node, *context.session);
   if (profile != nullptr) {
     const auto& rules = profile->rules;
-    const auto& name = chinese && !rules.name_zh.empty() ? rules.name_zh : rules.name;
+    const auto& name = context.chinese && !rules.name_zh.empty() ? rules.name_zh : rules.name;
     const auto maker = rules.vendor.empty() ? std::string() : rules.vendor + " ";
     out.push_back(
         {"family", fmt::format("{} ({}{}), as you said", profile->family, maker, name), report::Show::text});
@@ -73,8 +88,17 @@ Value one(const session::Identity& node, std::span<const drive::Family> families
   return out;
 }
 
+/// On EtherCAT there are many reasons why, and each has its own words.
+Error no_answer(session::Session& session, std::uint8_t node, std::span<const Error> away) {
+  const auto why =
+      std::find_if(away.begin(), away.end(), [&](const Error& error) { return error.node == node; });
+  if (session.ethercat() != nullptr && why != away.end()) return *why;
+  return drive_error(Errc::timeout, node, "no answer", "`scan` shows which nodes answer");
+}
+
 Result<report::Value> run(Context& context, const Arguments&) {
-  auto found = session::scan(*context.session, context.nodes);
+  std::vector<Error> away;
+  auto found = session::scan(*context.session, context.nodes, &away);
   if (!found) return fail(found.error());
   const auto families = drive::find_families(context.drive_folders);
   session::look_for_families(*context.session, *found, families);
@@ -95,12 +119,11 @@ Result<report::Value> run(Context& context, const Arguments&) {
                              : context.hold_family(std::span(&node, 1), context.profile, false);
       if (!right) context.errors.push_back(right.error());
       out.push_back(one((*found)[at], families, std::span(answers).subspan(3 * at, 3),
-                        right ? context.profile : nullptr, context.chinese));
+                        right ? context.profile : nullptr, context));
       ++at;
       continue;
     }
-    context.errors.push_back(
-        drive_error(Errc::timeout, node, "no answer", "`scan` shows which nodes answer"));
+    context.errors.push_back(no_answer(*context.session, node, away));
   }
   return report::Value(std::move(out));
 }

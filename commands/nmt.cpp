@@ -190,6 +190,9 @@ constexpr std::string_view kDetails =
     "The command is sent once; nodes do not answer it. With --wait it is done when a heartbeat confirms it; "
     "exit code 4 if none does. `-n all` addresses every node.";
 
+constexpr std::string_view kElsewhere =
+    "the AL state of a slave is changed with `state init`, `state preop`, `state safeop` and `state op`";
+
 constexpr std::string_view kResetDetails =
     "The node restarts as after power-on: settings neither stored (`store`) nor kept (--keep) are lost. With "
     "--wait it is done when the boot-up message confirms it; exit code 4 if none comes. `-n all` addresses "
@@ -214,6 +217,7 @@ const Command kNmtStart{
     .family = FamilyCheck::never,
     .run = run_command<NmtCommand::start>,
     .to_all = true,
+    .elsewhere = kElsewhere,
 };
 
 extern const Command kNmtStop;
@@ -227,6 +231,7 @@ const Command kNmtStop{
     .family = FamilyCheck::never,
     .run = run_command<NmtCommand::stop>,
     .to_all = true,
+    .elsewhere = kElsewhere,
 };
 
 extern const Command kNmtPreop;
@@ -241,6 +246,7 @@ const Command kNmtPreop{
     .run = run_command<NmtCommand::enter_pre_operational>,
     .settings = [](const Arguments&) { return Result<std::vector<settings::NamedValue>>{}; },  // It prepares.
     .to_all = true,
+    .elsewhere = kElsewhere,
 };
 
 extern const Command kNmtReset;
@@ -254,6 +260,7 @@ const Command kNmtReset{
     .family = FamilyCheck::never,
     .run = run_command<NmtCommand::reset_node>,
     .to_all = true,
+    .elsewhere = kElsewhere,
 };
 
 extern const Command kNmtResetComm;
@@ -267,6 +274,7 @@ const Command kNmtResetComm{
     .family = FamilyCheck::never,
     .run = run_command<NmtCommand::reset_communication>,
     .to_all = true,
+    .elsewhere = kElsewhere,
 };
 
 }  // namespace servoctl::commands

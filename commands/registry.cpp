@@ -48,6 +48,10 @@ extern const Command kNmtPreop;
 extern const Command kNmtReset;
 extern const Command kNmtResetComm;
 extern const Command kNmtWatch;
+extern const Command kStateInit;
+extern const Command kStatePreop;
+extern const Command kStateSafeop;
+extern const Command kStateOp;
 extern const Command kPdoShow;
 extern const Command kPdoMap;
 extern const Command kPdoEnable;
@@ -130,6 +134,10 @@ constexpr Named kNamed[] = {
     {"nmt reset", &commands::kNmtReset},
     {"nmt reset-comm", &commands::kNmtResetComm},
     {"nmt watch", &commands::kNmtWatch},
+    {"state init", &commands::kStateInit},
+    {"state preop", &commands::kStatePreop},
+    {"state safeop", &commands::kStateSafeop},
+    {"state op", &commands::kStateOp},
     {"pdo show", &commands::kPdoShow},
     {"pdo map", &commands::kPdoMap},
     {"pdo enable", &commands::kPdoEnable},

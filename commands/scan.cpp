@@ -1,16 +1,41 @@
 #include "session/scan.hpp"
 
+#include <fmt/format.h>
+#include <utility>
+
 #include "canopen/node_list.hpp"
 #include "command/command.hpp"
 #include "session/identify.hpp"
+#include "session/ring_scan.hpp"
 #include "show/identity.hpp"
+#include "show/ring_table.hpp"
 
 namespace servoctl::commands {
 namespace {
 
 using namespace command;
 
+/// A ring is looked at as a whole; those that were named are shown.
+Result<report::Value> run_ring(Context& context, session::EtherCatNetwork& network) {
+  const auto ring = session::scan_ring(*context.session, network);
+  if (!ring) return fail(ring.error());
+  std::vector<std::uint8_t> nodes;
+  const bool all = !context.nodes_typed || context.nodes.empty() || context.nodes.front() == 0;
+  for (std::size_t node = 1; all && node <= ring->slaves.size(); ++node)
+    nodes.push_back(static_cast<std::uint8_t>(node));
+  for (const auto node : all ? std::vector<std::uint8_t>() : context.nodes) {
+    if (node <= ring->slaves.size())
+      nodes.push_back(node);
+    else
+      context.errors.push_back(drive_error(Errc::timeout, node, "there is no slave at this position",
+                                           fmt::format("slaves on the ring: {}", ring->count)));
+  }
+  for (auto& notice : show::ring_notices(*ring, nodes)) context.notices.push_back(std::move(notice));
+  return report::Value(show::ring_table(*ring, nodes, drive::find_families(context.drive_folders)));
+}
+
 Result<report::Value> run(Context& context, const Arguments&) {
+  if (auto* ring = context.session->ethercat()) return run_ring(context, *ring);
   auto nodes = context.nodes_typed ? context.nodes : std::vector<std::uint8_t>();
   if (nodes.empty() || nodes.front() == 0) nodes = canopen::every_node_id();
   auto found = session::scan(*context.session, nodes);
@@ -37,7 +62,10 @@ const Command kScan{
         "the scan takes one timeout however many there are. Families are identified by the identity and, "
         "where that is not enough, by reading two or three objects that only they have; `?` marks an "
         "unproven guess. cia402 fits every drive of that profile: it is listed where nothing else fits, and "
-        "always by `info` and in JSON.",
+        "always by `info` and in JSON. On EtherCAT, shows the ring: for each position (its node number) the "
+        "addresses, identity by the SII, AL state, ports with a link and, as notices, every error counter that "
+        "is not 0. Nothing is changed there: no state is entered, and a ring that another master works with is "
+        "only looked at.",
     .parameters = {},
     .needs = Needs::bus,
     .effect = Effect::reads,

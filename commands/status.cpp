@@ -7,8 +7,11 @@
 #include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/answer.hpp"
+#include "session/ethercat_network.hpp"
+#include "session/state_pause.hpp"
 #include "show/fault_records.hpp"
 #include "show/records.hpp"
+#include "show/ring_table.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -45,6 +48,17 @@ Result<void> hear_heartbeats(Context& context, std::span<const Result<Bytes>> an
   const auto heard =
       context.session->wait(all_heard, context.session->now() + std::min(longest, kMostPatience));
   if (!heard) return fail(heard.error());
+  return {};
+}
+
+/// Of those that answer; what they say is noted in the session's records.
+Result<void> ask_states(Context& context, std::span<const Result<Bytes>> answers) {
+  for (std::size_t i = 0; i < context.nodes.size(); ++i) {
+    const auto& first = answers[i * kCount];
+    if (!first && first.error().code != Errc::sdo_abort) continue;
+    if (const auto asked = session::ask_state(*context.session, context.nodes[i]); !asked)
+      return fail(asked.error());
+  }
   return {};
 }
 
@@ -94,8 +108,8 @@ void add_mode_and_fault(Record& out, const Context& context, std::span<const Res
   }
 }
 
-Record one(Context& context, std::uint8_t node, std::span<const Result<Bytes>> answers) {
-  Record out{{"node", node}};
+void add_nmt_state(Record& out, const Context& context, std::uint8_t node,
+                   std::span<const Result<Bytes>> answers) {
   const auto nmt = context.session->watch().state(node);
   const auto heartbeat = session::number_in(answers[4]);
   const bool has_no_heartbeat = !answers[4] && answers[4].error().code == Errc::sdo_abort;
@@ -106,6 +120,37 @@ Record one(Context& context, std::uint8_t node, std::span<const Result<Bytes>> a
                                                                 : "not heard"),
                  Show::text, "NMT state"});
   out.push_back({"nmt", nmt ? Value(session::name(*nmt)) : Value(), Show::json});
+}
+
+/// What went wrong with the cycles that its outputs and inputs go by.
+void add_cycles(Record& out, const ethercat::ProcessImage& image, std::uint8_t node) {
+  const auto& counts = image.counts(node);
+  out.push_back({"process_data",
+                 fmt::format("{} cycles; frames lost: {}, outputs not taken: {}, inputs not given: {}",
+                             counts.cycles, counts.lost, counts.short_outputs, counts.short_inputs),
+                 Show::text, "process data"});
+  out.push_back({"process_data",
+                 Record{{"cycles", counts.cycles},
+                        {"lost", counts.lost},
+                        {"outputs_not_taken", counts.short_outputs},
+                        {"inputs_not_given", counts.short_inputs}},
+                 Show::json});
+}
+
+void add_al_state(Record& out, const session::EtherCatNetwork& ring, std::uint8_t node) {
+  if (const auto* al = ring.al_of(node)) {
+    out.push_back({"al", show::al_text(*al), Show::text, "AL state"});
+    for (auto& field : show::al_fields(*al)) out.push_back(std::move(field));
+  }
+  if (const auto* image = ring.image_of(node)) add_cycles(out, *image, node);
+}
+
+Record one(Context& context, std::uint8_t node, std::span<const Result<Bytes>> answers) {
+  Record out{{"node", node}};
+  if (const auto* ring = context.session->ethercat())
+    add_al_state(out, *ring, node);
+  else
+    add_nmt_state(out, context, node, answers);
   add_drive_state(out, context, session::number_in(answers[0]), session::number_in(answers[1]));
   add_mode_and_fault(out, context, answers);
   return out;
@@ -117,7 +162,9 @@ Result<report::Value> run(Context& context, const Arguments&) {
     for (std::size_t i = 0; i < kCount; ++i)
       requests.push_back({.node = node, .object = kObjects[i], .size = kSizes[i]});
   const auto answers = context.session->transfer(requests);
-  if (const auto heard = hear_heartbeats(context, answers); !heard) return fail(heard.error());
+  const auto heard = context.session->network().tells_state() ? ask_states(context, answers)
+                                                              : hear_heartbeats(context, answers);
+  if (!heard) return fail(heard.error());
   report::List out;
   for (std::size_t i = 0; i < context.nodes.size(); ++i) {
     const auto mine = std::span(answers).subspan(i * kCount, kCount);
@@ -138,10 +185,11 @@ Result<report::Value> run(Context& context, const Arguments&) {
 extern const Command kStatus;
 const Command kStatus{
     .path = "status",
-    .summary = "Show the state of a drive: NMT, CiA 402, mode, fault",
+    .summary = "Show the state of a drive: NMT or AL, CiA 402, mode, fault",
     .details =
         "Reads statusword, mode, error code and error register. The NMT state comes from the heartbeat; if "
-        "the node sends one, status waits for it.",
+        "the node sends one, status waits for it. On EtherCAT the slave is asked for its AL state; in SAFE-OP and "
+        "OP the counts of process data are shown as well.",
     .parameters = {},
     .needs = Needs::node,
     .effect = Effect::reads,

@@ -14,7 +14,7 @@ _servoctl_scan() {
       *)
         case $command in
           '') command=$word ;;
-          param|fault|units|nmt|pdo|test|sync|eds) command="$command $word" ;;
+          param|fault|units|nmt|state|pdo|test|sync|eds) command="$command $word" ;;
         esac ;;
     esac
   done
@@ -78,11 +78,12 @@ _servoctl_scan() {
     return
   fi
   case $command in
-    '') source='=scan info status read write objects param backup diff verify restore clone store defaults fault enable disable quick-stop mode jog move home torque units nmt pdo test report sync watch scope monitor decode replay drives eds run sim help completion' ;;
+    '') source='=scan info status read write objects param backup diff verify restore clone store defaults fault enable disable quick-stop mode jog move home torque units nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion' ;;
     param) source='=list get set search explain' ;;
     fault) source='=show list reset clear-history' ;;
     units) source='=show learn forget' ;;
     nmt) source='=start stop preop reset reset-comm watch' ;;
+    state) source='=init preop safeop op' ;;
     pdo) source='=show map enable disable clear preset apply save watch send' ;;
     test) source='=comm io jog home all' ;;
     sync) source='=once start stop' ;;
@@ -128,7 +129,7 @@ _servoctl_scan() {
     'eds check') source='files' ;;
     'run') source='files' ;;
     'sim') source='none' ;;
-    'help') source='=scan info status read write objects param backup diff verify restore clone store defaults fault enable disable quick-stop mode jog move home torque units nmt pdo test report sync watch scope monitor decode replay drives eds run sim help completion' ;;
+    'help') source='=scan info status read write objects param backup diff verify restore clone store defaults fault enable disable quick-stop mode jog move home torque units nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion' ;;
     'completion') source='=bash zsh fish objects parameters families' ;;
   esac
   case $command in
@@ -153,6 +154,10 @@ _servoctl_scan() {
     'nmt reset') options+=' --wait' ;;
     'nmt reset-comm') options+=' --wait' ;;
     'nmt watch') options+=' --for --guard --life' ;;
+    'state init') options+=' --take-over' ;;
+    'state preop') options+=' --take-over' ;;
+    'state safeop') options+=' --take-over' ;;
+    'state op') options+=' --take-over' ;;
     'pdo map') options+=' --type --inhibit --event --cob-id --sync-start --keep --unlock' ;;
     'pdo enable') options+=' --keep --unlock' ;;
     'pdo disable') options+=' --keep --unlock' ;;

@@ -73,7 +73,7 @@ complete -c servoctl -l trace -r -F -d 'write every frame to a file (candump -L 
 complete -c servoctl -l help -s h -d 'show the help of the command'
 complete -c servoctl -n __servoctl_at -a scan -d 'Find the nodes on the bus and what they are'
 complete -c servoctl -n __servoctl_at -a info -d 'Show the identity of a node'
-complete -c servoctl -n __servoctl_at -a status -d 'Show the state of a drive: NMT, CiA 402, mode, fault'
+complete -c servoctl -n __servoctl_at -a status -d 'Show the state of a drive: NMT or AL, CiA 402, mode, fault'
 complete -c servoctl -n __servoctl_at -a read -d 'Read objects of a node'
 complete -c servoctl -n '__servoctl_in read' -x -a '(__servoctl_names objects)'
 complete -c servoctl -n '__servoctl_in read' -l type -x -a 'bool i8 i16 i24 i32 i64 u8 u16 u24 u32 u64 f32 f64 string bytes domain' -d 'data type, if the dictionary does not have it'
@@ -214,6 +214,14 @@ complete -c servoctl -n '__servoctl_at nmt' -a watch -d 'Watch whether nodes are
 complete -c servoctl -n '__servoctl_in nmt watch' -l for -x -d 'how long (default: until Ctrl-C)'
 complete -c servoctl -n '__servoctl_in nmt watch' -l guard -x -d 'use node guarding, with this guard time'
 complete -c servoctl -n '__servoctl_in nmt watch' -l life -x -d 'life time factor: guard times without answer (default 3)'
+complete -c servoctl -n '__servoctl_at state' -a init -d 'Set EtherCAT slaves to INIT: no objects, no process data'
+complete -c servoctl -n '__servoctl_in state init' -l take-over -d 'take slaves that another master has left in SAFE-OP or OP; asks first'
+complete -c servoctl -n '__servoctl_at state' -a preop -d 'Set EtherCAT slaves to PRE-OP: objects, no process data'
+complete -c servoctl -n '__servoctl_in state preop' -l take-over -d 'take slaves that another master has left in SAFE-OP or OP; asks first'
+complete -c servoctl -n '__servoctl_at state' -a safeop -d 'Set EtherCAT slaves to SAFE-OP: inputs only; holds it'
+complete -c servoctl -n '__servoctl_in state safeop' -l take-over -d 'take slaves that another master has left in SAFE-OP or OP; asks first'
+complete -c servoctl -n '__servoctl_at state' -a op -d 'Set EtherCAT slaves to OP: process data; holds it'
+complete -c servoctl -n '__servoctl_in state op' -l take-over -d 'take slaves that another master has left in SAFE-OP or OP; asks first'
 complete -c servoctl -n '__servoctl_at pdo' -a show -d 'Show what a drive sends and receives as PDOs'
 complete -c servoctl -n '__servoctl_at pdo' -a map -d 'Set what a PDO carries, and when'
 complete -c servoctl -n '__servoctl_in pdo map' -x -a '(__servoctl_names objects)'
@@ -351,13 +359,14 @@ complete -c servoctl -n '__servoctl_in run' -l frames -d 'with --dry-run: the fr
 complete -c servoctl -n '__servoctl_in run' -l check -d 'check all lines without a bus, run none'
 complete -c servoctl -n __servoctl_at -a sim -d 'Put simulated drives on a bus until Ctrl-C'
 complete -c servoctl -n __servoctl_at -a help -d 'Show the commands, or how one is used'
-complete -c servoctl -n '__servoctl_in help' -x -a 'scan info status read write objects param backup diff verify restore clone store defaults fault enable disable quick-stop mode jog move home torque units nmt pdo test report sync watch scope monitor decode replay drives eds run sim help completion'
+complete -c servoctl -n '__servoctl_in help' -x -a 'scan info status read write objects param backup diff verify restore clone store defaults fault enable disable quick-stop mode jog move home torque units nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion'
 complete -c servoctl -n __servoctl_at -a completion -d 'Print the completion script of a shell'
 complete -c servoctl -n '__servoctl_in completion' -x -a 'bash zsh fish objects parameters families'
 complete -c servoctl -n __servoctl_at -a param
 complete -c servoctl -n __servoctl_at -a fault
 complete -c servoctl -n __servoctl_at -a units
 complete -c servoctl -n __servoctl_at -a nmt
+complete -c servoctl -n __servoctl_at -a state
 complete -c servoctl -n __servoctl_at -a pdo
 complete -c servoctl -n __servoctl_at -a test
 complete -c servoctl -n __servoctl_at -a sync

@@ -20,9 +20,16 @@ Result<void> check_allowed(const command::Command& command, const command::Argum
 }
 
 Result<void> check_network(const command::Command& command, session::Session& session) {
-  if (!includes(command.needs, Needs::can) || session.can() != nullptr) return {};
-  return fail(Errc::usage, fmt::format("'{}' needs CAN, {} is not CAN", command.path, session.url()),
-              "objects, states and motions work there: `read`, `status`, `backup`, `jog`");
+  const auto refuse = [&](std::string_view kind) {
+    return fail(Errc::usage,
+                fmt::format("'{0}' needs {1}, {2} is not {1}", command.path, kind, session.url()),
+                command.elsewhere.empty()
+                    ? "objects, states and motions work there: `read`, `status`, `backup`, `jog`"
+                    : std::string(command.elsewhere));
+  };
+  if (includes(command.needs, Needs::can) && session.can() == nullptr) return refuse("CAN");
+  if (includes(command.needs, Needs::ethercat) && session.ethercat() == nullptr) return refuse("EtherCAT");
+  return {};
 }
 
 Error no_node(const command::Command& command) {

@@ -218,7 +218,8 @@ std::vector<std::string> Shell::take_notices(const drive::Profile* profile, bool
   auto* session = bus_.session();
   if (session == nullptr) return out;
   for (auto& notice : session->network().take_notices()) out.push_back(std::move(notice));
-  for (const auto& event : session->take_events()) out.push_back(show::notice_text(event, profile, chinese));
+  for (const auto& event : session->take_events())
+    out.push_back(show::notice_text(event, profile, chinese, &session->network()));
   return out;
 }
 

@@ -45,8 +45,8 @@ struct Parameter {
 };
 
 /// What must be there before the command runs; the front end sees to it, not the command. Combined with `|`.
-/// A node and CAN need a bus; `can`: frames, COB-IDs, NMT or SYNC, which not every network has.
-enum class Needs : std::uint8_t { nothing = 0, dictionary = 1, bus = 2, node = 6, can = 10 };
+/// A node and a kind of network need a bus; `can`: frames, COB-IDs, NMT or SYNC; `ethercat`: AL states.
+enum class Needs : std::uint8_t { nothing = 0, dictionary = 1, bus = 2, node = 6, can = 10, ethercat = 18 };
 constexpr Needs operator|(Needs a, Needs b) {
   return static_cast<Needs>(static_cast<std::uint8_t>(a) | static_cast<std::uint8_t>(b));
 }
@@ -84,6 +84,8 @@ struct Command {
   bool to_all = false;        ///< Node 0 stays one message to all, and is not taken for those that answer.
   bool opens_bus = false;     ///< Its words decide which end of the bus it needs: it opens it itself.
   bool of_front_end = false;  ///< It runs other command lines: the front end does it, `run` is null.
+  /// What there is instead of it on a network of another kind, for a hint; empty: nothing.
+  std::string_view elsewhere = {};
 
   /// What it does with these arguments.
   Effect effect_with(const Arguments& arguments) const {

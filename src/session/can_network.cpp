@@ -168,6 +168,13 @@ std::string CanNetwork::silence_hint(std::uint8_t node) const {
       node, start);
 }
 
+std::string CanNetwork::state_order(NodeState state) const {
+  const auto* word = state == NodeState::operational ? "start"
+                     : state == NodeState::stopped   ? "stop"
+                                                     : "enter pre-operational";
+  return fmt::format("NMT \"{}\"", word);
+}
+
 std::string CanNetwork::state_command(std::uint8_t node, NodeState state) const {
   const auto* word = state == NodeState::operational ? "start"
                      : state == NodeState::stopped   ? "stop"

@@ -68,6 +68,8 @@ class CanNetwork final : public Network {
   std::vector<std::string> take_notices() override;
   void flush_trace() override { bus_->flush_trace(); }
   /// A heartbeat says that a node is stopped; of one that sends none nobody knows.
+  std::string_view state_title() const override { return "NMT state"; }
+  std::string state_order(NodeState state) const override;
   std::string silence_hint(std::uint8_t node) const override;
   std::string state_command(std::uint8_t node, NodeState state) const override;
   CanNetwork* can() override { return this; }

@@ -101,13 +101,17 @@ Result<std::vector<EtherCatNetwork::Glance>> EtherCatNetwork::glance() {
   return out;
 }
 
+bool EtherCatNetwork::is_foreign(std::uint8_t node, const ethercat::AlStatus& al) const {
+  const auto* known = find(node);
+  return is_driven(al) && !taken_over_[node] && (known == nullptr || !known->raised);
+}
+
 /// Nothing is written to a ring that somebody else works with. What servoctl itself has taken up, or was told
 /// to take over, is its own.
 Result<void> EtherCatNetwork::check_free(const EtherCatNode& node, const std::vector<Glance>& slaves) const {
   for (std::size_t i = 0; i < slaves.size(); ++i) {
     const auto number = static_cast<std::uint8_t>(i + 1);
-    const auto* known = find(number);
-    if (!is_driven(slaves[i].al) || taken_over_[number] || (known != nullptr && known->raised)) continue;
+    if (!is_foreign(number, slaves[i].al)) continue;
     return fail(drive_error(
         Errc::refused, node.number,
         fmt::format("another master works with this ring: node {} is in {}", number,
@@ -148,31 +152,46 @@ Result<void> EtherCatNetwork::claim(const std::vector<Glance>& slaves) {
   return {};
 }
 
-Result<void> EtherCatNetwork::prepare(EtherCatNode& node) {
-  if (node.coe) return {};
+/// Numbers the slaves where that has to be done, and takes note of what this one says of itself.
+Result<EtherCatNetwork::Glance> EtherCatNetwork::find_slave(EtherCatNode& node) {
   const auto slaves = glance();
   if (!slaves) return fail(slaves.error());
   if (node.number > slaves->size()) return fail(no_answer(node.number));
-  if (const auto free = check_free(node, *slaves); !free) return free;
-  if (const auto claimed = claim(*slaves); !claimed) return claimed;
+  if (const auto free = check_free(node, *slaves); !free) return fail(free.error());
+  if (const auto claimed = claim(*slaves); !claimed) return fail(claimed.error());
   const auto& found = (*slaves)[node.number - 1U];
   hear(node, found.al, now(), true);
   node.gone = false;
   node.missed = 0;
-  if (found.al.state == AlState::init) return bring_up(node);
-  if (found.al.state == AlState::boot)
+  return found;
+}
+
+/// For what needs no mailbox.
+Result<void> EtherCatNetwork::approach(EtherCatNode& node) {
+  if (node.coe) return {};
+  const auto found = find_slave(node);
+  if (!found) return fail(found.error());
+  return {};
+}
+
+Result<void> EtherCatNetwork::prepare(EtherCatNode& node) {
+  if (node.coe) return {};
+  const auto found = find_slave(node);
+  if (!found) return fail(found.error());
+  if (found->al.state == AlState::init) return bring_up(node);
+  if (found->al.state == AlState::boot)
     return fail(drive_error(Errc::negative, node.number, "it is in BOOT and takes firmware only",
                             fmt::format("`{}`", state_command(node.number, NodeState::initialising))));
-  if (!found.mailbox.exists() || !found.mailbox.doubt().empty())
+  if (!found->mailbox.exists() || !found->mailbox.doubt().empty())
     return fail(drive_error(
         Errc::protocol, node.number,
-        found.mailbox.exists() ? fmt::format("its mailbox cannot be used: {}", found.mailbox.doubt())
-                               : "its mailbox is not set up, so its objects cannot be reached",
+        found->mailbox.exists() ? fmt::format("its mailbox cannot be used: {}", found->mailbox.doubt())
+                                : "its mailbox is not set up, so its objects cannot be reached",
         fmt::format("`{}` and `{}` set it up anew", state_command(node.number, NodeState::initialising),
                     state_command(node.number, NodeState::pre_operational))));
   // A slave takes a message with the counter of the last one, by whomever, for a repetition. One without
   // is always new.
-  open_mailbox(node, found.mailbox, 0);
+  open_mailbox(node, found->mailbox, 0);
   return {};
 }
 
@@ -209,7 +228,7 @@ Result<ethercat::SiiMailbox> EtherCatNetwork::mailbox_place(EtherCatNode& node) 
   }
   return fail(
       drive_error(Errc::negative, node.number, fmt::format("its objects cannot be reached: {}", why),
-                  "if it is a drive whose family servoctl knows, name the family with -f; `scan` shows "
+                  "if it is a drive whose family servoctl knows, name the family with -d; `scan` shows "
                   "what the slaves say of themselves"));
 }
 
@@ -256,9 +275,9 @@ Result<std::vector<EtherCatNetwork::Seen>> EtherCatNetwork::look(bool sii) {
   const auto view = wire_.ask(looking);
   if (!view) return fail(watching_.lost > 0 || !wire_.port().has_link() ? nothing_back() : view.error());
   std::vector<Seen> out;
-  for (const auto& slave : view->slaves) out.push_back({slave, {}, {}});
-  const bool foreign =
-      std::any_of(out.begin(), out.end(), [](const Seen& s) { return is_driven(s.look.al); });
+  for (const auto& slave : view->slaves)
+    out.push_back({slave, {}, {}, is_foreign(static_cast<std::uint8_t>(out.size() + 1), slave.al)});
+  const bool foreign = std::any_of(out.begin(), out.end(), [](const Seen& s) { return s.foreign; });
   if ((changed_ || view->count != count_) && !must_go_on()) {
     for (const auto& node : nodes_)
       if (node) forget_mailbox(*node, drive_error(Errc::timeout, node->number, "the ring was numbered anew"));

@@ -152,7 +152,7 @@ Result<std::vector<canopen::PdoEntry>> EtherCatExchange::side(std::uint16_t inde
         drive_error(Errc::refused, node_->number, {index, 0},
                     fmt::format("the assigned PDOs do not carry {}, and process data without it are no use",
                                 to_string(needed)),
-                    "assign PDOs that do: `pdo show` shows them; or name the drive's family with -f"));
+                    "assign PDOs that do: `pdo show` shows them; or name the drive's family with -d"));
   node_->assigned.push_back(*before);
   if (const auto done = assign({index, 1, {wanted}}); !done) return fail(done.error());
   out = entries({wanted});

@@ -45,6 +45,12 @@ NodeState node_state(AlState state) {
   return NodeState::unknown;
 }
 
+std::string_view EtherCatNetwork::state_word(NodeState state) const {
+  if (state == NodeState::bootstrap) return ethercat::name(AlState::boot);
+  const auto al = al_state(state);
+  return al ? ethercat::name(*al) : name(state);
+}
+
 EtherCatNetwork::EtherCatNetwork(std::unique_ptr<ethernet::Port> port, std::string url)
     : url_(std::move(url)), wire_(std::move(port), *this) {}
 
@@ -136,7 +142,9 @@ Result<void> EtherCatNetwork::request_state(std::uint8_t number, NodeState state
   if (*target == AlState::safeop || *target == AlState::op)
     return EtherCatExchange(*this, node).begin(*target);
   if (auto ended = end_exchange(number); !ended) return ended;
-  if (const auto ready = prepare(node); !ready) return ready;
+  // INIT is the way out of a mailbox that is of no use, and of BOOT.
+  const auto ready = *target == AlState::init ? approach(node) : prepare(node);
+  if (!ready) return ready;
   if (const auto there = go_to(node, *target); !there) return fail(there.error());
   if (*target == AlState::init)
     forget_mailbox(node, drive_error(Errc::negative, number, "it was told to enter INIT"));

@@ -57,6 +57,9 @@ class EtherCatNetwork final : public Network, private EtherCatTenant {
                                                 std::span<const ObjectAddress> objects) override;
   std::vector<std::string> take_notices() override;
   void flush_trace() override { wire_.port().flush_trace(); }
+  std::string_view state_title() const override { return "AL state"; }
+  bool is_ring() const override { return true; }
+  std::string_view state_word(NodeState state) const override;
   std::string silence_hint(std::uint8_t node) const override;
   std::string state_command(std::uint8_t node, NodeState state) const override;
   EtherCatNetwork* ethercat() override { return this; }
@@ -66,6 +69,7 @@ class EtherCatNetwork final : public Network, private EtherCatTenant {
     ethercat::SlaveLook look;
     std::optional<ethercat::SiiImage> sii;
     std::string sii_error;  ///< Why there is none.
+    bool foreign = false;   ///< Another master exchanges process data with it.
   };
   /// Looks at all slaves; changes nothing, and asks no mailbox. `sii`: reads what each says of itself, which
   /// writes to the registers of its access: not of slaves that another master works with. Numbers the nodes
@@ -130,9 +134,12 @@ class EtherCatNetwork final : public Network, private EtherCatTenant {
 
   // ethercat_bring_up.cpp
   Result<void> prepare(EtherCatNode& node);
+  Result<void> approach(EtherCatNode& node);
+  Result<Glance> find_slave(EtherCatNode& node);
   Result<void> count_slaves();
   Result<std::vector<Glance>> glance();
   Result<void> claim(const std::vector<Glance>& slaves);
+  bool is_foreign(std::uint8_t node, const ethercat::AlStatus& al) const;
   Result<void> check_free(const EtherCatNode& node, const std::vector<Glance>& slaves) const;
   Result<void> bring_up(EtherCatNode& node);
   Result<ethercat::SiiMailbox> mailbox_place(EtherCatNode& node);

@@ -101,6 +101,14 @@ bool fits(const Identity& identity, const drive::Rules& rules) {
                      [&](const IdentityMark& mark) { return ask(identity, mark) == Says::yes; });
 }
 
+bool agrees_in_numbers(const Identity& identity, const drive::Rules& rules) {
+  const auto says = [&](Says answer) {
+    return std::any_of(rules.identity.begin(), rules.identity.end(),
+                       [&](const IdentityMark& mark) { return ask(identity, mark) == answer; });
+  };
+  return says(Says::yes) && !says(Says::no);
+}
+
 bool has_marks(const drive::Rules& rules) {
   return std::any_of(rules.identity.begin(), rules.identity.end(),
                      [](const IdentityMark& mark) { return !mark.soft; });

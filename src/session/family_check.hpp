@@ -35,6 +35,9 @@ bool fits(const Identity& identity, const drive::Rules& rules);
 bool may_be(const Identity& identity, const drive::Rules& rules);
 /// Only soft marks, which hold: a family for drives of many makers.
 bool fits_as_generic(const Identity& identity, const drive::Rules& rules);
+/// Some of the marks hold, and none of the others is contradicted: for an identity that lacks 1000h and
+/// 1008h.
+bool agrees_in_numbers(const Identity& identity, const drive::Rules& rules);
 /// The family states something that other drives do not have.
 bool has_marks(const drive::Rules& rules);
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/bytes.hpp"
@@ -169,6 +170,14 @@ class Network {
   /// Whatever is kept back for a file is written to it now.
   virtual void flush_trace() {}
 
+  /// What the states of its nodes are called: `NMT state`, `AL state`.
+  virtual std::string_view state_title() const { return "state"; }
+  /// Its own word for a state: `pre-operational`, `PRE-OP`.
+  virtual std::string_view state_word(NodeState state) const { return name(state); }
+  /// What request_state() sends, in words that follow "it was sent": `NMT "stop"`, `the request for PRE-OP`.
+  virtual std::string state_order(NodeState state) const;
+  /// A node is a place on a ring, not a number of its own.
+  virtual bool is_ring() const { return false; }
   /// What to do about a node that does not answer.
   virtual std::string silence_hint(std::uint8_t node) const;
   /// The command that asks for a state of the node: `nmt start -n 3`.

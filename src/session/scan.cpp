@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
+#include <numeric>
 
 #include "canopen/node_list.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/answer.hpp"
 #include "session/can_network.hpp"
+#include "session/ethercat_network.hpp"
 #include "session/family_check.hpp"
 #include "session/identify.hpp"
 #include "session/option_scope.hpp"
@@ -19,8 +21,14 @@ constexpr std::array kNumbers{objects::kVendorId, objects::kProductCode, objects
                               objects::kSerialNumber};
 constexpr std::array kTexts{objects::kDeviceName, ObjectAddress{0x1009, 0}, ObjectAddress{0x100A, 0}};
 
+/// A node that refuses the read is there. A slave of a ring may be there and not to be asked.
+bool is_away(Session& session, const Error& error) {
+  return error.code == Errc::timeout || (session.ethercat() != nullptr && error.code != Errc::sdo_abort);
+}
+
 /// The first nodes' worth of requests asks who is there.
-Result<std::vector<Identity>> find_nodes(Session& session, std::span<const std::uint8_t> nodes) {
+Result<std::vector<Identity>> find_nodes(Session& session, std::span<const std::uint8_t> nodes,
+                                         std::vector<Error>* away) {
   std::vector<SdoRequest> requests;
   for (const auto node : nodes) requests.push_back({node, objects::kDeviceType, {}});
   const auto answers = [&] {
@@ -31,7 +39,10 @@ Result<std::vector<Identity>> find_nodes(Session& session, std::span<const std::
   for (std::size_t i = 0; i < answers.size(); ++i) {
     if (!answers[i] && (answers[i].error().code == Errc::bus || answers[i].error().code == Errc::interrupted))
       return fail(answers[i].error());
-    if (!answers[i] && answers[i].error().code == Errc::timeout) continue;
+    if (!answers[i] && is_away(session, answers[i].error())) {
+      if (away != nullptr) away->push_back(answers[i].error());
+      continue;
+    }
     Identity identity;
     identity.node = nodes[i];
     identity.device_type = u32_in(answers[i]);
@@ -42,12 +53,13 @@ Result<std::vector<Identity>> find_nodes(Session& session, std::span<const std::
 
 }  // namespace
 
-Result<std::vector<Identity>> scan(Session& session, std::span<const std::uint8_t> nodes) {
+Result<std::vector<Identity>> scan(Session& session, std::span<const std::uint8_t> nodes,
+                                   std::vector<Error>* away) {
   // Whoever looks again may have put it right.
   if (auto* can = session.can())
     for (const auto node : nodes)
       if (!can->duplicates().noticed(node).empty()) can->duplicates().forget(node);
-  auto found = find_nodes(session, nodes);
+  auto found = find_nodes(session, nodes, away);
   if (!found) return found;
   std::vector<SdoRequest> requests;
   for (const auto& identity : *found) {
@@ -76,6 +88,13 @@ Result<std::vector<Identity>> scan(Session& session, std::span<const std::uint8_
 }
 
 Result<std::vector<std::uint8_t>> nodes_present(Session& session) {
+  if (auto* ring = session.ethercat()) {
+    const auto seen = ring->look(false);
+    if (!seen) return fail(seen.error());
+    std::vector<std::uint8_t> out(seen->size());
+    std::iota(out.begin(), out.end(), std::uint8_t{1});
+    return out;
+  }
   const auto found = scan(session, canopen::every_node_id());
   if (!found) return fail(found.error());
   if (found->empty())
@@ -96,6 +115,16 @@ std::vector<Guess> guess_families(const Identity& identity, std::span<const driv
   }
   const auto rank = [](const Guess& guess) { return guess.certain ? 0 : guess.generic ? 2 : 1; };
   std::stable_sort(out.begin(), out.end(), [&](const Guess& a, const Guess& b) { return rank(a) < rank(b); });
+  return out;
+}
+
+std::vector<Guess> guess_by_sii(const Identity& identity, std::span<const drive::Family> families) {
+  std::vector<Guess> out;
+  for (const auto& family : families) {
+    const auto rules = drive::load_rules(family);
+    if (rules && rules->coe.exists() && agrees_in_numbers(identity, *rules))
+      out.push_back({family.name, false, false});
+  }
   return out;
 }
 

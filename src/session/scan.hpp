@@ -14,10 +14,12 @@ namespace servoctl::session {
 
 /// Asks all `nodes` for 1000h at once, without retries: the answer takes one timeout however many there are.
 /// A node that refuses the read is there as well. Then reads the identity of those found. Errc::bus when the
-/// bus is lost.
-Result<std::vector<Identity>> scan(Session& session, std::span<const std::uint8_t> nodes);
+/// bus is lost. Why each of the others was not asked goes to `away`, which may be null.
+Result<std::vector<Identity>> scan(Session& session, std::span<const std::uint8_t> nodes,
+                                   std::vector<Error>* away = nullptr);
 
-/// The node-IDs that answer scan(). Errc::timeout when none does, Errc::bus when the bus is lost.
+/// The node-IDs that answer scan(); on EtherCAT the positions of the slaves, of which nothing is asked.
+/// Errc::timeout when none does, Errc::bus when the bus is lost.
 Result<std::vector<std::uint8_t>> nodes_present(Session& session);
 
 /// A family whose identity rule fits a node, or whose own objects it has.
@@ -30,5 +32,9 @@ struct Guess {
 /// Families that fit, certain ones first, generic ones last. Families whose rules cannot be read are left
 /// out.
 std::vector<Guess> guess_families(const Identity& identity, std::span<const drive::Family> families);
+
+/// Families on EtherCAT whose vendor and product numbers are these: what an SII tells, which has no 1000h. None
+/// is certain.
+std::vector<Guess> guess_by_sii(const Identity& identity, std::span<const drive::Family> families);
 
 }  // namespace servoctl::session

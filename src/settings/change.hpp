@@ -37,8 +37,8 @@ Result<void> check_change(const show::Desk& desk, std::uint8_t node, const drive
 /// Asks before changes that do more than change a value: store or restore commands, node-ID, bitrate.
 Result<void> confirm_changes(show::Desk& desk, std::span<const Change> changes);
 
-/// The frames of these changes, in the order they would be sent.
-report::Value planned_frames(std::span<const Change> changes);
+/// The frames of these changes, in the order they would be sent; on EtherCAT the values.
+report::Value planned_frames(const show::Desk& desk, std::span<const Change> changes);
 
 /// What is to be done beside writing.
 struct WriteOptions {

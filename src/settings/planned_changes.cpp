@@ -15,9 +15,10 @@ void add_writes(std::span<const Change> changes, session::Rehearsal& rehearsal) 
 
 }  // namespace
 
-Value planned_frames(std::span<const Change> changes) {
+Value planned_frames(const show::Desk& desk, std::span<const Change> changes) {
   session::Rehearsal rehearsal;
   add_writes(changes, rehearsal);
+  if (!show::is_sent_as_frames(desk)) return show::planned_messages(desk, rehearsal.messages());
   report::Table table;
   table.columns = {{"node"}, {"object"}, {"name"}, {"frame"}};
   for (std::size_t i = 0; i < changes.size(); ++i)

@@ -125,7 +125,7 @@ class Restoring {
     std::vector<Change> changes;
     for (const auto& step : session::plan_writes(desk_->profile, target.present(), target.wanted()))
       changes.push_back({node_, drive::target_at(desk_->profile, step.object), {}, step.data});
-    return planned_frames(changes);
+    return planned_frames(*desk_, changes);
   }
 
   /// What the drive holds now, beside the backup: the way back when everything else fails. One that is gone

@@ -13,10 +13,19 @@ struct Words {
   const session::NodeEvent& event;
   const drive::Profile* profile;
   bool chinese;
+  const session::Network* network;
 
-  std::string operator()(const session::NodeEvent::BootUp&) const { return "boot-up"; }
+  bool is_ring() const { return network != nullptr && network->is_ring(); }
+  std::string_view word(session::NodeState state) const {
+    return network != nullptr ? network->state_word(state) : session::name(state);
+  }
+
+  std::string operator()(const session::NodeEvent::BootUp&) const {
+    return is_ring() ? "it has restarted" : "boot-up";
+  }
   std::string operator()(const session::NodeEvent::StateChange& change) const {
-    return fmt::format("NMT state is now {}", session::name(change.state));
+    return fmt::format("{} is now {}", network != nullptr ? network->state_title() : "NMT state",
+                       word(change.state));
   }
   std::string operator()(const session::NodeEvent::Gone& gone) const {
     using Sign = session::NodeEvent::Gone::Sign;
@@ -30,9 +39,12 @@ struct Words {
     return fmt::format("node guarding lost: toggle bit unchanged for {} ms", silence);
   }
   std::string operator()(const session::NodeEvent::Back& back) const {
-    return fmt::format("answers node guarding again, {}", session::name(back.state));
+    return fmt::format("{} again, {}", is_ring() ? "is on the ring" : "answers node guarding",
+                       word(back.state));
   }
   std::string operator()(const session::NodeEvent::Doubled& doubled) const {
+    if (is_ring())
+      return (chinese ? "两个从站使用同一个地址: " : "two slaves answer under its address: ") + doubled.by;
     return (chinese ? "两个节点使用同一个节点号: " : "two nodes answer under this node-ID: ") + doubled.by;
   }
   std::string operator()(const session::NodeEvent::StateError& error) const {
@@ -49,14 +61,16 @@ struct Words {
 
 }  // namespace
 
-std::string event_text(const session::NodeEvent& event, const drive::Profile* profile, bool chinese) {
-  auto out = std::visit(Words{event, profile, chinese}, event.what);
+std::string event_text(const session::NodeEvent& event, const drive::Profile* profile, bool chinese,
+                       const session::Network* network) {
+  auto out = std::visit(Words{event, profile, chinese, network}, event.what);
   if (event.times > 1) out += fmt::format("; {} times in a row", event.times);
   return out;
 }
 
-std::string notice_text(const session::NodeEvent& event, const drive::Profile* profile, bool chinese) {
-  return fmt::format("node {}: {}", event.node, event_text(event, profile, chinese));
+std::string notice_text(const session::NodeEvent& event, const drive::Profile* profile, bool chinese,
+                        const session::Network* network) {
+  return fmt::format("node {}: {}", event.node, event_text(event, profile, chinese, network));
 }
 
 }  // namespace servoctl::show

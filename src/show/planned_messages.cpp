@@ -1,5 +1,7 @@
 #include "show/planned_messages.hpp"
 
+#include "base/bytes.hpp"
+#include "base/duration.hpp"
 #include "canopen/nmt.hpp"
 #include "canopen/sdo_client.hpp"
 #include "drive/naming.hpp"
@@ -21,6 +23,38 @@ std::string name_text(const Desk& desk, const session::PlannedMessage& message) 
   return command ? std::string(canopen::name(*command)) : std::string();
 }
 
+/// What is written is what counts: how mailboxes and process data carry it is the network's.
+report::List ring_row(const Desk& desk, const session::PlannedMessage& message) {
+  const auto& network = desk.session->network();
+  report::List row{message.node};
+  if (message.write) {
+    const auto& data = *message.write->data;
+    constexpr std::size_t kLongestNumber = 8;
+    row.insert(row.end(), {object_text(message), report::text_or_null(name_text(desk, message)),
+                           report::text_or_null(message.when)});
+    if (!data.empty() && data.size() <= kLongestNumber)
+      row.emplace_back(report::Hex{load_le(data), static_cast<int>(2 * data.size())});
+    else
+      row.emplace_back(to_hex(data));
+  } else if (message.state) {
+    row.insert(
+        row.end(),
+        {network.state_title(), {}, report::text_or_null(message.when), network.state_word(*message.state)});
+  } else {
+    row.insert(row.end(),
+               {"watchdog", "without process data", {}, servoctl::to_string(message.life_sign->period)});
+  }
+  return row;
+}
+
+report::Value planned_on_ring(const Desk& desk, std::span<const session::PlannedMessage> messages) {
+  report::Table table;
+  table.columns = {{"node"}, {"object"}, {"name"}, {"when"}, {"value"}};
+  table.json_only = messages.empty();  // Notices and errors say why.
+  for (const auto& message : messages) table.rows.push_back(ring_row(desk, message));
+  return table;
+}
+
 }  // namespace
 
 std::string frame_text(const session::PlannedMessage& message) {
@@ -35,7 +69,12 @@ std::string frame_text(const session::PlannedMessage& message) {
   return frame ? can::to_string(*frame) : std::string();
 }
 
+bool is_sent_as_frames(const Desk& desk) {
+  return desk.session == nullptr || !desk.session->network().is_ring();
+}
+
 report::Value planned_messages(const Desk& desk, std::span<const session::PlannedMessage> messages) {
+  if (!is_sent_as_frames(desk)) return planned_on_ring(desk, messages);
   report::Table table;
   table.columns = {{"node"}, {"object"}, {"name"}, {"when"}, {"frame"}};
   table.json_only = messages.empty();  // Notices and errors say why.

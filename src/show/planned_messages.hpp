@@ -10,7 +10,11 @@ namespace servoctl::show {
 /// The frame that begins to send a message: `601#2B40600006000000`.
 std::string frame_text(const session::PlannedMessage& message);
 
-/// What --dry-run shows of commands that change a drive: `node object name when frame`, one row a message.
+/// Whether what is planned goes out as frames of CAN; without a network it is taken to.
+bool is_sent_as_frames(const Desk& desk);
+
+/// What --dry-run shows of commands that change a drive: `node object name when frame`, one row a message. On
+/// EtherCAT there are no such frames, and `value` says what is written.
 report::Value planned_messages(const Desk& desk, std::span<const session::PlannedMessage> messages);
 
 }  // namespace servoctl::show

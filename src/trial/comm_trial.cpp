@@ -179,7 +179,8 @@ class Communication {
     for (const auto& event : session_->take_events()) {
       const auto* emergency = std::get_if<canopen::Emergency>(&event.what);
       if (event.node == node_ && emergency != nullptr && !emergency->is_reset()) emergencies_ += event.times;
-      desk_->notices.push_back(show::notice_text(event, desk_->profile, desk_->chinese));
+      desk_->notices.push_back(
+          show::notice_text(event, desk_->profile, desk_->chinese, &desk_->session->network()));
     }
   }
 

@@ -29,15 +29,19 @@ struct Case {
   std::vector<std::string> lines;  ///< Separated by ` ;; `, run one after the other on the same bus.
 };
 
-/// The lines of a script, run on one simulated drive of the family.
-Case script_case(std::string name, const std::string& path, const std::string& family) {
+/// The lines of a script, run on one simulated drive of the family: `sv2`, or `coe:sv2` on EtherCAT.
+Case script_case(std::string name, const std::string& path, const std::string& where) {
+  constexpr std::string_view kRing = "coe:";
+  const bool ring = where.starts_with(kRing);
+  const auto family = ring ? where.substr(kRing.size()) : where;
+  const auto bus = (ring ? "coe:sim:" : "sim:") + family + "@1";
   Case out{std::move(name), {}};
   std::ifstream file(kSource / path);
   std::string line;
   while (std::getline(file, line)) {
     if (line.empty() || line.front() == '#') continue;
     if (const auto place = line.find("FAMILY"); place != std::string::npos) line.replace(place, 6, family);
-    out.lines.push_back(line + " -b sim:" + family + "@1 -d " + family + " -n 1");
+    out.lines.push_back(line + " -b " + bus + " -d " + family + " -n 1");
   }
   return out;
 }

@@ -20,27 +20,32 @@ Value cell(const Table& table, const List& row, std::string_view key) {
   return {};
 }
 
-/// The rows of all tables with a column of frames, wherever a command put them.
+bool has_column(const Table& table, std::string_view key) {
+  return std::any_of(table.columns.begin(), table.columns.end(),
+                     [&](const Table::Column& column) { return column.key == key; });
+}
+
+/// The rows of all tables with a column of frames, or of values where there are no frames, wherever a command
+/// put them.
 void find_frames(const Value& value, List node, List& out) {
   if (const auto* list = std::get_if<List>(&value.data()))
     for (const auto& element : *list) find_frames(element, node, out);
   if (const auto* record = std::get_if<Record>(&value.data())) {
-    if (const auto* frame = report::find(value, "frame")) out.push_back(List{{}, {}, {}, {}, *frame});
+    if (const auto* frame = report::find(value, "frame")) out.push_back(List{{}, {}, {}, {}, *frame, {}});
     if (const auto* number = report::find(value, "node")) node = {*number};
     for (const auto& field : *record) find_frames(field.value, node, out);
   }
   const auto* table = std::get_if<Table>(&value.data());
   if (table == nullptr) return;
-  const bool has_frames = std::any_of(table->columns.begin(), table->columns.end(),
-                                      [](const Table::Column& column) { return column.key == "frame"; });
-  if (!has_frames) return;
+  const bool has_frames = has_column(*table, "frame");
+  if (!has_frames && !(has_column(*table, "value") && has_column(*table, "when"))) return;
   for (const auto& row : table->rows) {
     auto number = cell(*table, row, "node");
     if (number.is_null() && !node.empty()) number = node.front();
     auto name = cell(*table, row, "name");
     if (name.is_null()) name = cell(*table, row, "step");
     out.push_back(List{number, cell(*table, row, "object"), name, cell(*table, row, "when"),
-                       cell(*table, row, "frame")});
+                       cell(*table, row, "frame"), has_frames ? Value() : cell(*table, row, "value")});
   }
 }
 
@@ -63,15 +68,18 @@ class Frames {
       else if (sends_something(step.words))
         frames = frames_of(step);
     }
-    if (frames.empty()) table_.rows.push_back({step.line, step.text, {}, {}, {}, {}, {}});
+    if (frames.empty()) table_.rows.push_back({step.line, step.text, {}, {}, {}, {}, {}, {}});
     for (std::size_t i = 0; i < frames.size(); ++i) {
       const auto& row = std::get<List>(frames[i].data());
       table_.rows.push_back(
-          {step.line, i == 0 ? Value(step.text) : Value(""), row[0], row[1], row[2], row[3], row[4]});
+          {step.line, i == 0 ? Value(step.text) : Value(""), row[0], row[1], row[2], row[3], row[4], row[5]});
+      has_values_ = has_values_ || !row[5].is_null();
     }
   }
 
   Outcome take_all(Settings settings) {
+    if (has_values_) table_.columns.push_back({"value"});
+    for (auto& row : table_.rows) row.resize(table_.columns.size());
     return {.command = "run",
             .settings = std::move(settings),
             .uses_bus = true,
@@ -100,6 +108,7 @@ class Frames {
   Shell* shell_;
   const std::string* file_;
   Table table_;
+  bool has_values_ = false;  ///< Some lines are for a network without such frames.
   std::vector<Error> errors_;
   std::vector<std::string> notices_;
 };
