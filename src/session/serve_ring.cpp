@@ -3,14 +3,18 @@
 #include <algorithm>
 #include <utility>
 
+#include "ethernet/frame_limits.hpp"
 #include "session/open_port.hpp"
 
 namespace servoctl::session {
 
-/// What nobody is there to take is lost.
+/// What nobody is there to take is lost. Masters leave it to the interface to fill short frames up, and a
+/// virtual one does not.
 Result<void> RingEnd::send_back(sim::EscRing& ring) {
-  while (const auto frame = ring.take_frame())
+  while (auto frame = ring.take_frame()) {
+    frame->resize(std::max(frame->size(), ethernet::kShortestFrame));
     if (auto sent = port_->send(*frame); !sent && port_->has_link()) return sent;
+  }
   return {};
 }
 

@@ -86,6 +86,16 @@ TEST_F(RingEndTest, FramesGoBackWithWhatTheSlavesHaveWritten) {
   EXPECT_EQ(wire_.back[1][28], 2);  // Both have read.
 }
 
+TEST_F(RingEndTest, AFrameThatNobodyHasFilledUpGoesBackAsLongAsAWireNeedsIt) {
+  auto frame = broadcast_read();
+  frame.resize(30);
+  wire_.coming.emplace_back(wire_.now + milliseconds(1), frame);
+  ASSERT_TRUE(serve("sv2@1"));
+  ASSERT_EQ(wire_.back.size(), 1U);
+  EXPECT_EQ(wire_.back[0].size(), 60U);
+  EXPECT_EQ(wire_.back[0][28], 1);
+}
+
 TEST_F(RingEndTest, WhatIsPlannedHappensWithoutAFrame) {
   come(milliseconds(1));
   come(seconds(6));
