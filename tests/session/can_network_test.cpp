@@ -40,6 +40,12 @@ TEST_F(CanNetworkTest, AsksForStatesByNmtAndRefusesThoseItHasNoWordFor) {
   EXPECT_EQ(bus->sent.size(), 3U);
 }
 
+TEST_F(CanNetworkTest, HasHeartbeatAndGuardingForItsNodesAndNoProcessImage) {
+  EXPECT_TRUE(session->network().carries(LifeSign::Kind::heartbeat));
+  EXPECT_TRUE(session->network().carries(LifeSign::Kind::guarding));
+  EXPECT_FALSE(session->network().carries(LifeSign::Kind::process_data));
+}
+
 TEST_F(CanNetworkTest, TellsStatesAndEventsInTheWordsOfEveryNetworkInTheOrderOfTime) {
   bus->arrive("705#00", 1ms);
   bus->arrive("085#1043080000000000", 2ms);
