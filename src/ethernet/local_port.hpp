@@ -43,6 +43,7 @@ class LocalMaster final : public Port {
 
  private:
   tl::unexpected<Error> lost() const;
+  bool is_connected() const;
 
   std::string name_;
   can::Descriptor socket_;

@@ -78,8 +78,11 @@ Result<bool> EtherCatNetwork::step(TimePoint deadline) {
 }
 
 Result<void> EtherCatNetwork::recover(TimePoint deadline) {
-  if (auto back = wire_.port().recover(deadline); !back) return back;
-  return count_slaves();
+  for (;;) {
+    if (auto back = wire_.port().recover(deadline); !back) return back;
+    auto there = count_slaves();
+    if (there || there.error().code != Errc::bus || now() >= deadline) return there;
+  }
 }
 
 void EtherCatNetwork::serve(ethercat::Ring& ring, TimePoint now) {

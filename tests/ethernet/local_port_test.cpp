@@ -173,6 +173,17 @@ TEST_F(LocalPortTest, ARingThatHangsIsToldAndNotWaitedForWithoutEnd) {
   EXPECT_NE(error.hint.find("kill -CONT " + std::to_string(ring.id())), std::string::npos) << error.hint;
 }
 
+TEST_F(LocalPortTest, ACableThatIsStillThereIsNotOpenedAnew) {
+  const Child ring(serving());
+  const auto master = join();
+  const auto began = steady_now();
+  const auto back = master->recover(began + seconds(20));
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_LT(steady_now() - began, seconds(1));
+  ASSERT_TRUE(master->send(frame_of(1, 60)));
+  EXPECT_EQ(next(*master).size(), 60U);
+}
+
 TEST_F(LocalPortTest, FramesForAProcessThatDoesNotReadAreLost) {
   const Child ring(serving());
   const auto master = join();
