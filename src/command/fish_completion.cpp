@@ -56,10 +56,14 @@ end
 
 function __servoctl_buses
     for interface in /sys/class/net/*
-        test (cat $interface/type 2>/dev/null; or echo 0) = 280; and basename $interface
+        set -l type (cat $interface/type 2>/dev/null; or echo 0)
+        test $type = 280; and basename $interface
+        test $type = 1; and not test -e $interface/phy80211; and echo coe:(basename $interface)
     end
     echo sim:
     echo local:
+    echo coe:local:
+    echo coe:sim:
 end
 
 function __servoctl_sheets

@@ -109,9 +109,12 @@ _servoctl_words() {{
     buses)
       local interface
       for interface in /sys/class/net/*; do
-        [ "$(cat "$interface/type" 2>/dev/null)" != 280 ] || printf '%s\n' "${{interface##*/}}"
+        case $(cat "$interface/type" 2>/dev/null) in
+          280) printf '%s\n' "${{interface##*/}}" ;;
+          1) [ -e "$interface/phy80211" ] || printf '%s\n' "coe:${{interface##*/}}" ;;
+        esac
       done
-      printf '%s\n' sim: local: ;;
+      printf '%s\n' sim: local: coe:local: coe:sim: ;;
   esac
 }}
 )sh",

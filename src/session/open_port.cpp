@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/text.hpp"
+#include "ethernet/interface.hpp"
 #include "ethernet/local_port.hpp"
 #include "ethernet/pcap_trace.hpp"
 #include "ethernet/raw_port.hpp"
@@ -70,6 +71,14 @@ Result<std::unique_ptr<ethernet::Port>> traced(std::string_view url, const BusOp
 bool is_pcap(const std::filesystem::path& file) {
   const auto ending = file.extension().string();
   return equals_nocase(ending, ".pcap") || equals_nocase(ending, ".pcapng");
+}
+
+std::vector<std::string> ethercat_urls() {
+  std::vector<std::string> out;
+  for (const auto& interface : ethernet::ethernet_interfaces())
+    out.push_back(std::string(kScheme) + interface);
+  for (const auto* scheme : {"local:", "sim:"}) out.push_back(std::string(kScheme) + scheme);
+  return out;
 }
 
 bool is_ethercat(std::string_view url) { return url.starts_with(kScheme); }

@@ -2,7 +2,9 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/result.hpp"
 #include "ethernet/port.hpp"
@@ -15,6 +17,9 @@ bool is_ethercat(std::string_view url);
 
 /// Whether the name is that of a trace of Ethernet frames: `.pcap` or `.pcapng`.
 bool is_pcap(const std::filesystem::path& file);
+
+/// What URLs of such wires begin with on this machine: `coe:eth0`, `coe:local:`, `coe:sim:`.
+std::vector<std::string> ethercat_urls();
 
 /// Opens a wire with an EtherCAT ring by URL, as its master: `coe:eth0`, `coe:local:NAME`,
 /// `coe:sim:sv2@1,sv2@2?state=FILE`.

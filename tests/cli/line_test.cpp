@@ -148,6 +148,7 @@ TEST_F(ShellTest, CompletesCommandsOptionsNamesAndNumbers) {
   EXPECT_TRUE(offers("drive ", "gsd600"));
   EXPECT_TRUE(offers("-d ", "gsd600"));
   EXPECT_TRUE(offers("bus ", "local:"));
+  EXPECT_TRUE(offers("bus co", "coe:local:"));
   EXPECT_TRUE(complete("eds check ", shell).files);
   EXPECT_TRUE(complete("param get zz", shell).words.empty());
 }

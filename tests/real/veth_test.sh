@@ -53,7 +53,7 @@ contains "an interface that is down" "bring it up: \`sudo ip link set veth0 up\`
 ip link set veth0 up
 contains "no link" "veth0 has no link" "$(on_veth0 scan)"
 ip link set veth1 up
-contains "a link and no drives" "frames do not come back" "$(on_veth0 scan)"
+contains "a link and no drives" "no frame comes back" "$(on_veth0 scan)"
 
 # 2. Simulated drives at the other end.
 serve sv2@1,sv2@2
@@ -78,7 +78,7 @@ first=$!
 wait_for "$work/watch" 0x
 # shellcheck disable=SC2016  # Expanded inside.
 other=$(unshare --net sh -c 'ip link add veth0 type veth peer name veth1 && ip link set veth0 up && ip link set veth1 up && "$0" scan -b coe:veth0 2>&1' "$servoctl")
-contains "another namespace is not locked" "frames do not come back" "$other"
+contains "another namespace is not locked" "no frame comes back" "$other"
 kill -9 "$first"; wait "$first" 2>/dev/null
 
 # 5. The right to send.
@@ -108,7 +108,13 @@ done
 contains "another name" "the trace of an EtherCAT bus is a .pcap or .pcapng" "$(on_veth0 scan --trace "$work/trace.log")"
 
 # 7. Cables and interfaces that go and come back.
+"$servoctl" watch 0x6041 -n 1 --for 60s -b coe:veth0 >"$work/watch" 2>&1 &
+first=$!
+wait_for "$work/watch" 0x
 ip link set veth0 down
+wait "$first"
+check "an interface that goes down ends what runs" 3 $?
+contains "with its name" "veth0 went down" "$(cat "$work/watch")"
 contains "an end that is down" "veth0 is down" "$(on_veth0 scan)"
 ip link set veth0 up
 check "the ring is still there" "1 2" "$(nodes)"

@@ -10,6 +10,7 @@
 #include "command/help_text.hpp"
 #include "command/registry.hpp"
 #include "drive/naming.hpp"
+#include "session/open_port.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -71,6 +72,7 @@ class Candidates {
   void add_buses() {
     for (const auto& interface : can::can_interfaces()) add(interface);
     for (const auto word : {"sim:", "local:"}) add(word);
+    for (const auto& url : session::ethercat_urls()) add(url);
   }
 
   Completions take() { return std::move(out_); }
