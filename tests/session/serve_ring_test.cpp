@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <deque>
 #include <filesystem>
 
@@ -23,7 +24,7 @@ struct Wire {
   TimePoint now{seconds(1)};
   bool link = true;
   bool broken = false;
-  std::size_t waits = 0;
+  std::vector<TimePoint> deadlines;  ///< Of every receive().
 };
 
 class WirePort final : public ethernet::Port {
@@ -36,7 +37,7 @@ class WirePort final : public ethernet::Port {
     return {};
   }
   Result<std::optional<ByteSpan>> receive(TimePoint deadline) override {
-    ++wire_->waits;
+    wire_->deadlines.push_back(deadline);
     if (wire_->broken) return fail(Errc::bus, "veth1 went down");
     if (wire_->coming.empty() || wire_->coming.front().first > deadline) {
       wire_->now = std::max(wire_->now, deadline);
@@ -100,7 +101,9 @@ TEST_F(RingEndTest, WhatIsPlannedHappensWithoutAFrame) {
   come(milliseconds(1));
   come(seconds(6));
   come(seconds(9));
+  const auto cut = wire_.now + seconds(5);
   ASSERT_TRUE(serve("sv2@1,sv2@2?cut=2@5s-8s"));
+  EXPECT_GE(std::count(wire_.deadlines.begin(), wire_.deadlines.end(), cut), 1);
   ASSERT_EQ(wire_.back.size(), 3U);
   EXPECT_EQ(wire_.back[0][28], 2);
   EXPECT_EQ(wire_.back[1][28], 1);
