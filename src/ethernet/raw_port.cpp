@@ -62,6 +62,7 @@ Result<Descriptor> packet_socket(const std::string& name, int index) {
 struct Opened {
   Descriptor socket;
   WireLock lock;
+  int index;
 };
 
 /// By its index, so that all names of one interface are one wire.
@@ -76,7 +77,7 @@ Result<Opened> open_interface(const std::string& name) {
   if (!socket) return fail(socket.error());
   auto lock = take_lock(name, *index);
   if (!lock) return fail(lock.error());
-  return Opened{std::move(*socket), std::move(*lock)};
+  return Opened{std::move(*socket), std::move(*lock), *index};
 }
 
 /// False when there is no link until then.
@@ -125,17 +126,20 @@ Result<std::optional<ByteSpan>> RawPort::receive(TimePoint deadline) {
 
 bool RawPort::has_link() const { return ethernet::has_link(name_); }
 
-/// An interface that was gone has another index when it is back, and so another lock.
+/// An interface that was gone has another index when it is back, and so another lock; one that was only down
+/// is held all the time.
 Result<void> RawPort::open_again() {
   const auto index = interface_index(name_);
   if (!index) return fail(index.error());
   if (end_ == End::master && !has_link()) return no_link(name_);
   auto socket = packet_socket(name_, *index);
   if (!socket) return fail(socket.error());
-  lock_.reset();
-  auto lock = take_lock(name_, *index);
-  if (!lock) return fail(lock.error());
-  lock_ = std::move(*lock);
+  if (*index != index_) {
+    auto lock = take_lock(name_, *index);
+    if (!lock) return fail(lock.error());
+    lock_ = std::move(*lock);
+    index_ = *index;
+  }
   // It takes the place of the old one, on which others may poll.
   if (::dup3(socket->get(), socket_.get(), O_CLOEXEC) < 0) return interface_cannot_open(name_, errno);
   return {};
@@ -155,7 +159,8 @@ Result<std::unique_ptr<Port>> open_raw_port(std::string_view interface_name, End
   auto opened = open_interface(name);
   if (!opened) return fail(opened.error());
   if (end == End::master && !wait_for_link(name, steady_now() + link_patience)) return no_link(name);
-  return std::make_unique<RawPort>(std::move(opened->socket), std::move(opened->lock), std::move(name), end);
+  return std::make_unique<RawPort>(std::move(opened->socket), std::move(opened->lock), std::move(name), end,
+                                   opened->index);
 }
 
 }  // namespace servoctl::ethernet

@@ -29,9 +29,13 @@ Result<std::unique_ptr<Port>> open_raw_port(std::string_view interface_name, End
 /// socketpair in tests.
 class RawPort final : public Port {
  public:
-  /// `lock` is empty where nobody else can be. `name` is that of the interface.
-  RawPort(can::Descriptor socket, std::optional<WireLock> lock, std::string name, End end)
-      : socket_(std::move(socket)), lock_(std::move(lock)), name_(std::move(name)), end_(end) {}
+  /// `lock` is empty where nobody else can be. `name` and `index` are those of the interface.
+  RawPort(can::Descriptor socket, std::optional<WireLock> lock, std::string name, End end, int index = 0)
+      : socket_(std::move(socket)),
+        lock_(std::move(lock)),
+        name_(std::move(name)),
+        end_(end),
+        index_(index) {}
 
   TimePoint now() const override { return steady_now(); }
   /// Errc::bug for a frame that is too short or too long. Errc::bus also without a link, where the driver
@@ -50,6 +54,7 @@ class RawPort final : public Port {
   std::optional<WireLock> lock_;
   std::string name_;
   End end_;
+  int index_;
   std::array<std::uint8_t, kLongestFrame> frame_{};
   TimePoint arrived_{};
 };
