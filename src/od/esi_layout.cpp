@@ -14,6 +14,7 @@ namespace servoctl::od {
 namespace {
 
 constexpr std::size_t kMostPdos = 1024;
+constexpr std::size_t kMostManagers = 64;     ///< A controller has 16 at most.
 constexpr std::size_t kMostPdoEntries = 254;  ///< Sub-indices a mapping has for them.
 
 EsiSyncManager::Use use_of(std::string_view text) {
@@ -97,7 +98,7 @@ std::int64_t nanoseconds(XmlElement element) {
 }
 
 void read_modes(XmlElement clocks, EsiLayout& out, EsiFindings& findings) {
-  for (const auto& element : clocks.children("OpMode")) {
+  for (const auto& element : clocks.children("OpMode", kMostManagers)) {
     EsiOpMode mode;
     mode.name = std::string(element.child("Name").text());
     mode.description = std::string(element.child("Desc").text());
@@ -125,9 +126,9 @@ const EsiSyncManager* EsiLayout::find(EsiSyncManager::Use use) const {
 
 EsiLayout read_esi_layout(XmlElement device, EsiFindings& findings) {
   EsiLayout out;
-  for (const auto& element : device.children("Sm"))
+  for (const auto& element : device.children("Sm", kMostManagers))
     out.sync_managers.push_back(sync_manager_of(element, findings));
-  for (const auto& element : device.children("Fmmu")) out.fmmus.emplace_back(element.text());
+  for (const auto& element : device.children("Fmmu", kMostManagers)) out.fmmus.emplace_back(element.text());
   read_pdos(device, out, findings);
   if (const auto coe = device.child("Mailbox").child("CoE")) {
     out.coe = true;

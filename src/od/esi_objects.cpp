@@ -18,6 +18,7 @@ namespace servoctl::od {
 namespace {
 
 constexpr std::size_t kMostEsiEntries = 100'000;
+constexpr std::size_t kMostItems = 1024;  ///< Beyond what sub-indices there are.
 
 struct ObjectPlace {
   std::uint16_t index = 0;
@@ -28,9 +29,7 @@ struct ObjectPlace {
 class SubInfos {
  public:
   SubInfos(XmlElement object, const std::vector<EsiMember>& members)
-      : items_(object.child("Info").children("SubItem")) {
-    constexpr std::size_t kMostItems = 1024;  // Beyond what sub-indices there are.
-    if (items_.size() > kMostItems) items_.resize(kMostItems);
+      : items_(object.child("Info").children("SubItem", kMostItems)) {
     places_.resize(members.size(), items_.size());
     const bool all_named = match_names(members);
     if (all_named || items_.size() != members.size()) return;
@@ -111,6 +110,13 @@ class ObjectReader {
   }
 
   void read_object(const ObjectPlace& place) {
+    // An object has 256 at most.
+    if (entries_left_ <= 0xFF) {
+      findings_->error(place.element, "too-many-entries",
+                       "more entries than any device has; the object is left out",
+                       "are the numbers of Elements too high?");
+      return;
+    }
     Object object;
     object.index = place.index;
     auto name = esi_text(place.element, "Name");
@@ -120,14 +126,14 @@ class ObjectReader {
     object.name = name.english;
     const auto type_name = place.element.child("Type").text();
     if (const auto composite = types_.composite(type_name); composite && !types_.plain(type_name))
-      add_members(place.element, composite, name, object);
+      add_members(place.element, composite, type_name, name, object);
     else
       add_single(place.element, type_name, std::move(name), object);
     if (!object.entries.empty()) dictionary_->add(std::move(object));
   }
 
   void add_single(XmlElement element, std::string_view type_name, EsiText name, Object& object) {
-    auto type = type_of(element.child("Type") ? element.child("Type") : element, type_name);
+    auto type = types_.demand(type_name, element.child("Type") ? element.child("Type") : element, *findings_);
     if (!type) return;
     object.code = type->type == DataType::domain ? ObjectCode::domain : ObjectCode::var;
     Entry entry;
@@ -138,8 +144,9 @@ class ObjectReader {
     finish(element, element, element.child("Info"), std::move(*type), std::move(entry), object);
   }
 
-  void add_members(XmlElement element, XmlElement composite, const EsiText& name, Object& object) {
-    const auto members = types_.members(composite, entries_left_, *findings_);
+  void add_members(XmlElement element, XmlElement composite, std::string_view type_name, const EsiText& name,
+                   Object& object) {
+    const auto& members = types_.members(type_name, *findings_);
     const SubInfos infos(element, members);
     const bool has_array =
         std::any_of(members.begin(), members.end(), [](const EsiMember& m) { return m.of_array; });
@@ -166,7 +173,7 @@ class ObjectReader {
                        "correct SubIdx");
       return;
     }
-    auto type = type_of(member.element, member.type);
+    auto type = types_.plain(member.type);
     if (!type) return;
     name_member(member, item, object_name, entry);
     if (!member.of_array) check_size(member.element, *type, entry);
@@ -191,18 +198,6 @@ class ObjectReader {
   void esi_values_of_type(XmlElement item, const EsiType& type, Entry& entry) {
     entry.type = type.type;
     esi_values(item, entry, *findings_);
-  }
-
-  std::optional<EsiType> type_of(XmlElement at, std::string_view name) {
-    auto type = types_.plain(name);
-    if (type) return type;
-    if (name.empty())
-      findings_->error(at, "missing-data-type", "there is no Type", "add Type, for example UDINT");
-    else
-      findings_->error(at, "unknown-data-type",
-                       fmt::format("the type '{}' is not defined; its object is left out", shown(name)),
-                       "define it in DataTypes, or use a base type such as UDINT");
-    return std::nullopt;
   }
 
   void check_size(XmlElement element, const EsiType& type, const Entry& entry) {
@@ -234,7 +229,6 @@ class ObjectReader {
     }
     const auto whole = size_of(entry.type);
     if (whole && type.bits != 8 * *whole) sizes_->emplace(entry.address, type.bits);
-    if (entries_left_ == 0) return;
     --entries_left_;
     const auto place = std::find_if(object.entries.begin(), object.entries.end(),
                                     [&](const Entry& e) { return e.address.sub > entry.address.sub; });

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
+#include <map>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -21,6 +22,9 @@ namespace {
 
 constexpr std::string_view kEsiHint =
     "an ESI file of an EtherCAT device (ETG.2000) begins with <EtherCATInfo>";
+
+constexpr std::size_t kMostDevices = 4096;
+constexpr std::size_t kMostListed = 20;  ///< In an error.
 
 tl::unexpected<Error> refuse_esi(std::string_view file, std::string_view why,
                                  std::string hint = std::string(kEsiHint)) {
@@ -86,7 +90,15 @@ std::string_view what_else(std::string_view root) {
   return kEsiHint;
 }
 
-EsiDevice device_of(XmlElement element, XmlElement descriptions, EsiFindings& findings) {
+/// An ESI text with its devices; their elements point into the document.
+struct OpenedEsi {
+  Findings findings;
+  std::unique_ptr<XmlDocument> document;
+  std::vector<XmlElement> devices;
+  std::map<std::string, std::string, std::less<>> groups;  ///< Their names in English.
+};
+
+EsiDevice device_of(const OpenedEsi& opened, XmlElement element, EsiFindings& findings) {
   EsiDevice out;
   const auto type = element.child("Type");
   out.type = std::string(type.text());
@@ -96,20 +108,11 @@ EsiDevice device_of(XmlElement element, XmlElement descriptions, EsiFindings& fi
   out.name = name.english.empty() ? out.type : std::move(name.english);
   out.name_zh = std::move(name.chinese);
   const auto group = element.child("GroupType").text();
-  out.group = std::string(group);
-  for (const auto& known : descriptions.child("Groups").children("Group"))
-    if (known.child("Type").text() == group)
-      if (auto words = esi_text(known, "Name"); !words.english.empty()) out.group = std::move(words.english);
+  const auto known = opened.groups.find(group);
+  out.group = known == opened.groups.end() ? std::string(group) : known->second;
   out.line = element.place().line;
   return out;
 }
-
-/// An ESI text with its devices; their elements point into the document.
-struct OpenedEsi {
-  Findings findings;
-  std::unique_ptr<XmlDocument> document;
-  std::vector<XmlElement> devices;
-};
 
 Result<OpenedEsi> open_esi(std::string_view bytes, std::string_view file) {
   OpenedEsi out;
@@ -130,7 +133,14 @@ Result<OpenedEsi> open_esi(std::string_view bytes, std::string_view file) {
     out.findings.add(Severity::warning, 1, 1, "document-type",
                      "the document type is not read; entities it defines stay as they are",
                      "remove the DOCTYPE");
-  out.devices = root.child("Descriptions").child("Devices").children("Device");
+  const auto descriptions = root.child("Descriptions");
+  for (const auto& group : descriptions.child("Groups").children("Group"))
+    if (auto words = esi_text(group, "Name"); !words.english.empty())
+      out.groups.emplace(std::string(group.child("Type").text()), std::move(words.english));
+  out.devices = descriptions.child("Devices").children("Device", kMostDevices + 1);
+  if (out.devices.size() > kMostDevices)
+    return refuse_esi(file, fmt::format("more than {} devices are in this file", kMostDevices),
+                      "use a file of fewer");
   if (out.devices.empty())
     return refuse_esi(file, "there is no Device in this file",
                       "an ESI of modules or of a group describes no device");
@@ -140,11 +150,12 @@ Result<OpenedEsi> open_esi(std::string_view bytes, std::string_view file) {
 /// Product code, and the revision where the device shares it with others: `0x000C010D:0x00010000`.
 std::string listed(const std::vector<EsiDevice>& devices) {
   std::string out;
-  for (std::size_t i = 0; i < devices.size(); ++i)
+  for (std::size_t i = 0; i < std::min(devices.size(), kMostListed); ++i)
     append(out,
            fmt::format("#{} {} (product code 0x{:08X}, revision 0x{:08X})", i + 1, shown(devices[i].name),
                        devices[i].product_code, devices[i].revision),
            "; ");
+  if (devices.size() > kMostListed) out += fmt::format("; {} more", devices.size() - kMostListed);
   return out;
 }
 
@@ -191,6 +202,26 @@ void take_device_info(XmlElement root, EsiFile& out, EsiFindings& findings) {
   out.sheet.ethercat = true;
 }
 
+/// The first Dictionary among the profiles of a device.
+void read_dictionary(XmlElement device, Dictionary& dictionary, BitSizes& sizes, EsiFindings& findings) {
+  bool has_dictionary = false;
+  for (const auto& profile : device.children("Profile")) {
+    if (const auto other = profile.child("DictionaryFile"))
+      findings.warn(
+          other, "dictionary-elsewhere",
+          fmt::format("its dictionary is in another file, '{}', which is not read", shown(other.text())),
+          "put the Dictionary into this file");
+    const auto own = profile.child("Dictionary");
+    if (!own) continue;
+    if (has_dictionary)
+      findings.warn(own, "second-dictionary", "the device has a second Dictionary; the first one is used",
+                    "join them");
+    else
+      read_esi_objects(own, dictionary, sizes, findings);
+    has_dictionary = true;
+  }
+}
+
 /// One device of a file that is open; `findings` are those of the file as a whole.
 Result<EsiFile> read_device(const OpenedEsi& opened, std::size_t number, std::string_view file) {
   Findings all = opened.findings;
@@ -200,27 +231,12 @@ Result<EsiFile> read_device(const OpenedEsi& opened, std::size_t number, std::st
   EsiFile out;
   out.number = number + 1;
   out.devices = opened.devices.size();
-  out.device = device_of(element, root.child("Descriptions"), findings);
+  out.device = device_of(opened, element, findings);
   take_device_info(root, out, findings);
   out.layout = read_esi_layout(element, findings);
   BitSizes sizes;
-  bool has_dictionary = false;
-  for (const auto& profile : element.children("Profile")) {
-    if (const auto other = profile.child("DictionaryFile"))
-      findings.warn(
-          other, "dictionary-elsewhere",
-          fmt::format("its dictionary is in another file, '{}', which is not read", shown(other.text())),
-          "put the Dictionary into this file");
-    const auto dictionary = profile.child("Dictionary");
-    if (!dictionary) continue;
-    if (has_dictionary)
-      findings.warn(dictionary, "second-dictionary",
-                    "the device has a second Dictionary; the first one is used", "join them");
-    else
-      read_esi_objects(dictionary, out.sheet.dictionary, sizes, findings);
-    has_dictionary = true;
-  }
-  has_dictionary = !out.sheet.dictionary.empty();
+  read_dictionary(element, out.sheet.dictionary, sizes, findings);
+  const bool has_dictionary = !out.sheet.dictionary.empty();
   check_esi_layout(out, sizes, has_dictionary, all);
   add_esi_pdos(out.layout, has_dictionary, out.sheet.dictionary);
   if (!has_dictionary)
@@ -247,8 +263,7 @@ Result<EsiFile> read_esi(std::string_view bytes, std::string_view file, std::str
   Findings ignored;  // read_device() tells them.
   EsiFindings findings(ignored);
   std::vector<EsiDevice> devices;
-  for (const auto& element : opened->devices)
-    devices.push_back(device_of(element, opened->document->root().child("Descriptions"), findings));
+  for (const auto& element : opened->devices) devices.push_back(device_of(*opened, element, findings));
   const auto number = choose(devices, file, device);
   if (!number) return fail(number.error());
   return read_device(*opened, *number, file);

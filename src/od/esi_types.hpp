@@ -50,13 +50,15 @@ class EsiTypes {
   /// it is none.
   std::optional<EsiType> plain(std::string_view name) const;
 
+  /// The same; that there is none is told at `at`.
+  std::optional<EsiType> demand(std::string_view name, XmlElement at, EsiFindings& findings) const;
+
   /// The type's own element, where it is made of several entries: a structure or an array; else empty.
   XmlElement composite(std::string_view name) const;
 
-  /// The entries of a composite type, each with a plain type. At most `most`; more are told and left out.
-  std::vector<EsiMember> members(XmlElement composite, std::size_t most, EsiFindings& findings) const;
-
-  static bool is_array(XmlElement composite);
+  /// The entries of a composite type, each with a plain type; others are told and left out. There is an end
+  /// to those of all types together: more are told and left out.
+  const std::vector<EsiMember>& members(std::string_view name, EsiFindings& findings);
 
  private:
   /// Which sub-indices an ArrayInfo stands for, and of what type.
@@ -66,12 +68,23 @@ class EsiTypes {
     std::string base;
   };
 
+  /// What is known of a name; found out once, however many objects are of it.
+  struct Known {
+    std::optional<EsiType> plain;
+    XmlElement composite;
+    std::optional<std::vector<EsiMember>> members;
+  };
+
   XmlElement find(std::string_view name) const;
-  std::optional<EsiType> plain(std::string_view name, int depth) const;
-  std::optional<Elements> elements_of(XmlElement data_type, EsiFindings& findings) const;
+  const Known& know(std::string_view name) const;
+  std::optional<EsiType> find_plain(std::string_view name, int depth) const;
+  std::vector<EsiMember> find_members(XmlElement composite, EsiFindings& findings) const;
+  Elements elements_of(XmlElement data_type, EsiFindings& findings) const;
   void add_item(XmlElement item, std::vector<EsiMember>& out, EsiFindings& findings) const;
 
   std::map<std::string_view, XmlElement, std::less<>> by_name_;
+  mutable std::map<std::string, Known, std::less<>> known_;
+  std::size_t members_left_ = 200'000;
 };
 
 }  // namespace servoctl::od

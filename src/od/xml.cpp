@@ -51,11 +51,10 @@ XmlElement XmlElement::child(const char* name) const {
   return {document_, node_of(node_).child(name).internal_object()};
 }
 
-std::vector<XmlElement> XmlElement::children(const char* name) const {
+std::vector<XmlElement> XmlElement::children(const char* name, std::size_t most) const {
   std::vector<XmlElement> out;
-  for (auto node = node_of(node_).first_child(); node; node = node.next_sibling())
-    if (node.type() == pugi::node_element && (name == nullptr || std::string_view(node.name()) == name))
-      out.push_back({document_, node.internal_object()});
+  for (auto node = node_of(node_).child(name); node && out.size() < most; node = node.next_sibling(name))
+    out.push_back({document_, node.internal_object()});
   return out;
 }
 

@@ -38,8 +38,8 @@ class XmlElement {
   /// The value of an attribute, without spaces around it; empty where it is not there.
   std::string_view attribute(const char* name) const;
   XmlElement child(const char* name) const;
-  /// All children of this name, in their order; of any name when it is null.
-  std::vector<XmlElement> children(const char* name = nullptr) const;
+  /// The children of this name, in their order, so many at most.
+  std::vector<XmlElement> children(const char* name, std::size_t most = static_cast<std::size_t>(-1)) const;
   XmlElement parent() const;
   TextPlace place() const;
 
