@@ -187,7 +187,8 @@ const Command kObjects{
         "Works without a bus. The pattern is part of a name in English or Chinese, an index, or an index "
         "with `*`; for a single index the meanings of its values are listed too. For a DCF, value and "
         "denotation are those of each entry (ParameterValue, Denotation). `-d FILE.xml` lists what the ESI of "
-        "an EtherCAT device describes, `-d FILE.xml#2` the second device of several. `?` marks what the manual does not "
+        "an EtherCAT device describes, `-d FILE.xml#2` the second device of several; with a node on EtherCAT, -d online or nothing "
+        "lists what the drive says of its own objects. `?` marks what the manual does not "
         "state, `!` what it states inconsistently; --json gives the line numbers.",
     .parameters = kParameters,
     .needs = Needs::dictionary,

@@ -63,7 +63,7 @@ end
 complete -c servoctl -f
 complete -c servoctl -l bus -s b -x -a '(__servoctl_buses)' -d 'bus: can0, local:NAME, sim:gsd600@1 (default $SERVOCTL_BUS)'
 complete -c servoctl -l node -s n -x -a 'all' -d 'node-ID, a list 1,3,5-8 or all (default $SERVOCTL_NODE)'
-complete -c servoctl -l drive -s d -x -a '(servoctl completion families 2>/dev/null; __servoctl_sheets)' -d 'drive family, or an .eds, .dcf or .xml file (default $SERVOCTL_DRIVE)'
+complete -c servoctl -l drive -s d -x -a '(servoctl completion families 2>/dev/null; __servoctl_sheets)' -d 'drive family, an .eds, .dcf or .xml file, or online: the drive itself (default $SERVOCTL_DRIVE)'
 complete -c servoctl -l timeout -x -d 'longest wait for one answer (default 500ms)'
 complete -c servoctl -l retries -x -d 'retries of an unanswered read (default 1); a write is never repeated'
 complete -c servoctl -l json -d 'one JSON document instead of text'

@@ -144,43 +144,6 @@ Result<void> Shell::prepare(Run& run, const command::Arguments& arguments) {
   return run.line.hold_family(run.context.nodes, run.context.profile, weight_of(command, arguments));
 }
 
-Result<void> Shell::prepare_profile(Run& run) {
-  if (run.settings.drive.empty()) return ask_for_family(run);
-  const auto loaded = profile(run.settings.drive);
-  if (!loaded) return fail(loaded.error());
-  run.context.profile = *loaded;
-  for (const auto& warning : (*loaded)->warnings) run.context.notices.push_back(warning);
-  return {};
-}
-
-/// Says which families fit the node where that can be found out; a guess is offered, never taken.
-tl::unexpected<Error> Shell::ask_for_family(Run& run) {
-  const auto families = drive::find_families(options_.drive_folders);
-  std::vector<std::string> names;
-  for (const auto& family : families) names.push_back(family.name);
-  auto hint = names.empty() ? std::string("add -d FILE.eds or -d FILE.xml")
-                            : "add -d " + one_of(names) + ", or -d with an .eds or .xml file";
-  const bool can_look =
-      includes(run.command->needs, Needs::node) && !run.settings.nodes.empty() && !run.settings.bus.empty();
-  const auto nodes = can_look ? parse_nodes(run.settings.nodes)
-                              : Result<std::vector<std::uint8_t>>(std::vector<std::uint8_t>{});
-  if (nodes && !nodes->empty() && nodes->front() != 0) {
-    if (const auto opened = open(run.settings)) {
-      auto found = session::scan(**opened, *nodes);
-      if (found && !found->empty()) {
-        session::look_for_families(**opened, *found, families);
-        std::vector<std::string> guesses;
-        for (const auto& guess : session::guess_families(found->front(), families))
-          guesses.push_back(guess.family);
-        if (!guesses.empty())
-          hint = fmt::format("its identity fits {} (a guess, not proof): if the nameplate agrees, add -d {}",
-                             one_of(guesses), guesses.front());
-      }
-    }
-  }
-  return fail(Errc::usage, fmt::format("'{}' needs the drive family", run.command->path), std::move(hint));
-}
-
 /// A command without a bus takes the nodes as they are written.
 Result<void> Shell::name_nodes(Run& run) {
   if (run.settings.nodes.empty()) return {};
@@ -201,16 +164,6 @@ Result<void> Shell::prepare_nodes(Run& run) {
   }
   run.context.nodes = std::move(*nodes);
   return {};
-}
-
-Result<const drive::Profile*> Shell::profile(const std::string& family) {
-  const auto known = profiles_.find(family);
-  if (known != profiles_.end()) return known->second.get();
-  auto loaded = drive::load_profile(family, options_.drive_folders);
-  if (!loaded) return fail(loaded.error());
-  auto& place = profiles_[family];
-  place = std::make_unique<drive::Profile>(std::move(*loaded));
-  return place.get();
 }
 
 std::vector<std::string> Shell::take_notices(const drive::Profile* profile, bool chinese) {

@@ -98,6 +98,8 @@ class Shell {
   Result<report::Value> execute(Run& run, const command::Arguments& arguments);
   Result<void> prepare(Run& run, const command::Arguments& arguments);
   Result<void> prepare_profile(Run& run);
+  Result<void> ask_drive(Run& run);
+  Result<const drive::Profile*> device_of_node(Run& run, const Error& why);
   Result<void> prepare_nodes(Run& run);
   void hear_second_node(const Run& run);
   static Result<void> name_nodes(Run& run);

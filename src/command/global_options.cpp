@@ -16,7 +16,8 @@ constexpr Parameter kGlobal[] = {
      .kind = Kind::nodes,
      .short_name = "-n"},
     {.name = "--drive",
-     .help = "drive family, or an .eds, .dcf or .xml file (default $SERVOCTL_DRIVE)",
+     .help =
+         "drive family, an .eds, .dcf or .xml file, or online: the drive itself (default $SERVOCTL_DRIVE)",
      .kind = Kind::family,
      .short_name = "-d"},
     {.name = "--timeout", .help = "longest wait for one answer (default 500ms)", .kind = Kind::duration},

@@ -8,8 +8,7 @@
 
 #include "base/file.hpp"
 #include "base/text.hpp"
-#include "drive/file_identity.hpp"
-#include "drive/standard_objects.hpp"
+#include "drive/profile_sheet.hpp"
 #include "od/data_sheet.hpp"
 
 namespace servoctl::drive {
@@ -36,66 +35,8 @@ std::optional<fs::path> own_folder() {
 /// The family whose files say what CiA 301 and CiA 402 say of every drive.
 constexpr std::string_view kGenericFamily = "cia402";
 
-/// Whether it has controlword and statusword: the numbers from 6000h on mean other things in other profiles.
-bool is_drive(const od::Dictionary& dictionary) {
-  return dictionary.find(objects::kControlword) != nullptr &&
-         dictionary.find(objects::kStatusword) != nullptr;
-}
-
-void set_marks(Rules& rules, std::vector<IdentityMark> marks) {
-  rules.identity = std::move(marks);
-  // A maker's number is his alone (CiA 301, 7.5.2.19); without one, others may answer the same.
-  rules.identity_telling =
-      std::any_of(rules.identity.begin(), rules.identity.end(),
-                  [](const IdentityMark& mark) { return mark.object == objects::kVendorId; });
-}
-
-constexpr std::string_view kOutputAssignment = "0x1C12";
-constexpr std::string_view kInputAssignment = "0x1C13";
-
-/// What an ESI says of the way to the objects, where the rules do not say it.
-void add_layout(Rules& rules, const od::EsiLayout& layout) {
-  using Use = od::EsiSyncManager::Use;
-  const auto area = [&](Use use) {
-    const auto* manager = layout.find(use);
-    return manager == nullptr ? EscArea{} : EscArea{manager->start, manager->size};
-  };
-  if (!layout.coe || rules.coe.exists()) return;
-  rules.coe.mailbox_out = area(Use::mailbox_out);
-  rules.coe.mailbox_in = area(Use::mailbox_in);
-  rules.coe.outputs = area(Use::outputs).start;
-  rules.coe.inputs = area(Use::inputs).start;
-  rules.coe.sdo_info = layout.sdo_info;
-  rules.coe.complete_access = layout.complete_access;
-  rules.pdo.assign_rpdo = kOutputAssignment;
-  rules.pdo.assign_tpdo = kInputAssignment;
-}
-
-Result<od::EdsFile> read_sheet(Profile& profile, const std::string& word) {
-  const auto text = od::read_sheet_file(word);
-  if (!text) return fail(text.error());
-  if (!od::is_xml(*text)) return od::read_eds(*text, word);
-  const auto name = od::sheet_name(word);
-  auto esi = od::read_esi(*text, name.path, name.device);
-  if (!esi) return fail(esi.error());
-  add_layout(profile.rules, esi->layout);
-  return std::move(esi->sheet);
-}
-
-/// `path` may name one of several devices of an ESI (od::sheet_name()).
 Result<void> add_dictionary(Profile& profile, const fs::path& path) {
-  auto file = read_sheet(profile, path.string());
-  if (!file) return fail(file.error());
-  if (profile.rules.identity.empty()) set_marks(profile.rules, identity_marks(*file));
-  if (is_drive(file->dictionary)) od::inherit(file->dictionary, profile.dictionary);
-  profile.dictionary = std::move(file->dictionary);
-  profile.data_sheet = path;
-  if (!file->diagnostics.empty())
-    profile.warnings.push_back(fmt::format("{0}: {1} errors, {2} warnings; `eds check {0}` lists them",
-                                           path.string(), file->error_count(), file->warning_count()));
-  if (profile.rules.name.empty()) profile.rules.name = file->device.product_name;
-  if (profile.rules.vendor.empty()) profile.rules.vendor = file->device.vendor_name;
-  return {};
+  return add_sheet(profile, path.string());
 }
 
 Result<void> add_parameters(Profile& profile, const fs::path& path) {
@@ -191,6 +132,20 @@ Result<Profile> load_parts(const Family& family, std::span<const fs::path> folde
   return profile;
 }
 
+/// What is known of any drive, under another name.
+Profile generic_profile(std::string family, std::span<const fs::path> folders) {
+  Profile profile;
+  if (auto generic = load_family(kGenericFamily, folders, 0)) profile = std::move(*generic);
+  profile.family = std::move(family);
+  profile.rules.name.clear();
+  profile.rules.vendor.clear();
+  profile.rules.name_zh.clear();
+  profile.rules.identity.clear();
+  profile.rules.identity_telling = false;
+  profile.of_file = true;
+  return profile;
+}
+
 /// A file of the user's own stands on what CiA 402 says of the objects it shares with it.
 Result<Profile> load_single_file(const fs::path& path, std::span<const fs::path> folders) {
   if (lower(path.extension().string()) == ".toml") {
@@ -199,15 +154,7 @@ Result<Profile> load_single_file(const fs::path& path, std::span<const fs::path>
     if (profile) profile->of_file = true;
     return profile;
   }
-  Profile profile;
-  if (auto generic = load_family(kGenericFamily, folders, 0)) profile = std::move(*generic);
-  profile.family = path.string();
-  profile.rules.name.clear();
-  profile.rules.vendor.clear();
-  profile.rules.name_zh.clear();
-  profile.rules.identity.clear();
-  profile.rules.identity_telling = false;
-  profile.of_file = true;
+  auto profile = generic_profile(path.string(), folders);
   const bool table = lower(path.extension().string()) == ".csv";
   const auto added = table ? add_parameters(profile, path) : add_dictionary(profile, path);
   if (!added) return fail(added.error());
@@ -325,6 +272,14 @@ Result<Profile> load_family(std::string_view family, std::span<const fs::path> f
 Result<Profile> load_profile(std::string_view family, std::span<const fs::path> folders) {
   if (names_a_file(family)) return load_single_file(fs::path(family), folders);
   return load_family(family, folders, 0);
+}
+
+Profile profile_of_sheet(od::EdsFile sheet, std::string name, std::span<const fs::path> folders) {
+  auto profile = generic_profile(std::move(name), folders);
+  take_sheet(profile, sheet);
+  if (!is_drive(profile.dictionary)) profile.faults.clear();
+  profile.build_index();
+  return profile;
 }
 
 Result<Rules> load_rules(const Family& family) {

@@ -13,6 +13,7 @@
 #include "drive/fault.hpp"
 #include "drive/rules.hpp"
 #include "od/dictionary.hpp"
+#include "od/eds.hpp"
 #include "od/parameter.hpp"
 
 namespace servoctl::drive {
@@ -65,10 +66,16 @@ struct Family {
 /// file.
 std::vector<Family> find_families(std::span<const std::filesystem::path> folders);
 
-/// Loads a family by name, or a user's own `.eds`, `.dcf`, `.xml` (of several devices one: `.xml#2`), `.csv` or
-/// `.toml` file by path (a `.toml` with the files of the same name beside it). What its parent says holds where it says nothing itself. Errc::usage
-/// for an unknown name (nearest ones offered), Errc::file for a file that cannot be used.
+/// Loads a family by name, or a user's own `.eds`, `.dcf`, `.xml` (of several devices one: `.xml#2`), `.csv`
+/// or
+/// `.toml` file by path (a `.toml` with the files of the same name beside it). What its parent says holds
+/// where it says nothing itself. Errc::usage for an unknown name (nearest ones offered), Errc::file for a
+/// file that cannot be used.
 Result<Profile> load_profile(std::string_view family, std::span<const std::filesystem::path> folders);
+
+/// What a data sheet that stands in no file says (a drive's own dictionary), on what CiA 402 says of all
+/// drives.
+Profile profile_of_sheet(od::EdsFile sheet, std::string name, std::span<const std::filesystem::path> folders);
 
 /// Only the rules of a family, for recognising drives.
 Result<Rules> load_rules(const Family& family);

@@ -27,7 +27,8 @@ constexpr std::uint8_t kValueInfo = 0x07;
 constexpr std::uint8_t kHasUnit = 0x08;
 constexpr std::uint8_t kHasValues = 0x70;  ///< Default, lowest and highest value, each as long as the entry.
 
-constexpr std::string_view kNoInfo = "many drives do not provide their dictionary: name a family with -d";
+constexpr std::string_view kNoInfo =
+    "many drives do not provide their dictionary: name a family with -d, or the ESI file of the drive, -d FILE.xml";
 
 std::string text(ByteSpan bytes) {
   // Some put zeros behind the name.

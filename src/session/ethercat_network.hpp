@@ -83,6 +83,10 @@ class EtherCatNetwork final : public Network, private EtherCatTenant {
   void take_over(std::uint8_t node) { taken_over_[node & 0x7FU] = true; }
   /// Makes it ready for transfers; null with a reason. Errors as request_state().
   Result<ethercat::CoeSlave*> mailbox_of(std::uint8_t node);
+  using Question = std::function<void(ethercat::CoeInfo&, TimePoint)>;
+  /// Asks a slave for a piece of its dictionary (SDO information): `ask` starts one question. Errors as
+  /// mailbox_of() and CoeInfo.
+  Result<ethercat::CoeInfo::Description> describe(std::uint8_t node, const Question& ask);
   /// What the image of an exchange carries; null while there is none.
   const ethercat::ProcessImage* image_of(std::uint8_t node) const;
   const ethercat::AlStatus* al_of(std::uint8_t node) const;

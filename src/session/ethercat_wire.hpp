@@ -59,6 +59,8 @@ class EtherCatWire {
   /// Makes all requests at once, in as few frames as they fit into and in their order, and waits for all of
   /// them. Errc::bus, or Errc::interrupted.
   Result<std::vector<Reply>> exchange(const std::vector<ethercat::Request>& requests);
+  /// Waits for one arrival, or a while; Errc::bus, or Errc::interrupted.
+  Result<void> go_on(TimePoint deadline);
   /// Runs one machine of ethercat/ to its end: its result.
   template <class Machine>
   auto ask(Machine& machine) -> typename decltype(machine.take_result())::value_type {
@@ -81,7 +83,6 @@ class EtherCatWire {
     ~Lease() { carrier.leave(*ring); }
   };
 
-  Result<void> go_on(TimePoint deadline);
   void settle(TimePoint now);
   Result<void> send_frames(TimePoint now);
 

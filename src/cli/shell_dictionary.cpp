@@ -1,0 +1,145 @@
+// Where the dictionary of a line comes from: a family, a file, or the drive itself.
+#include <fmt/format.h>
+#include <algorithm>
+#include <span>
+#include <utility>
+
+#include "base/text.hpp"
+#include "cli/shell.hpp"
+#include "od/data_sheet.hpp"
+#include "session/identify.hpp"
+#include "session/online_dictionary.hpp"
+#include "session/scan.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+using command::Needs;
+
+/// The drive itself, in place of a family.
+constexpr std::string_view kOnline = "online";
+constexpr std::string_view kEtherCat = "coe:";
+
+/// The one node that a line names; 0 when it names none, several or all.
+std::uint8_t one_node(const Settings& settings) {
+  const auto nodes =
+      settings.nodes.empty() ? Result<std::vector<std::uint8_t>>() : parse_nodes(settings.nodes);
+  return nodes && nodes->size() == 1 ? nodes->front() : std::uint8_t{0};
+}
+
+/// A list of objects where nothing is named but the drive: it may know them.
+bool asks_a_drive(const Settings& settings, const command::Command& command) {
+  return settings.drive.empty() && !includes(command.needs, Needs::bus) &&
+         settings.bus.starts_with(kEtherCat) && one_node(settings) != 0;
+}
+
+}  // namespace
+
+Result<void> Shell::prepare_profile(Run& run) {
+  if (equals_nocase(run.settings.drive, kOnline) || asks_a_drive(run.settings, *run.command))
+    return ask_drive(run);
+  if (run.settings.drive.empty()) return ask_for_family(run);
+  auto loaded = profile(run.settings.drive);
+  if (!loaded) loaded = device_of_node(run, loaded.error());
+  if (!loaded) return fail(loaded.error());
+  run.context.profile = *loaded;
+  for (const auto& warning : (*loaded)->warnings) run.context.notices.push_back(warning);
+  return {};
+}
+
+/// Says which families fit the node where that can be found out; a guess is offered, never taken.
+tl::unexpected<Error> Shell::ask_for_family(Run& run) {
+  const auto families = drive::find_families(options_.drive_folders);
+  std::vector<std::string> names;
+  for (const auto& family : families) names.push_back(family.name);
+  auto hint = names.empty() ? std::string("add -d FILE.eds or -d FILE.xml")
+                            : "add -d " + one_of(names) + ", or -d with an .eds or .xml file";
+  const bool can_look =
+      includes(run.command->needs, Needs::node) && !run.settings.nodes.empty() && !run.settings.bus.empty();
+  const auto nodes = can_look ? parse_nodes(run.settings.nodes)
+                              : Result<std::vector<std::uint8_t>>(std::vector<std::uint8_t>{});
+  if (nodes && !nodes->empty() && nodes->front() != 0) {
+    if (const auto opened = open(run.settings)) {
+      auto found = session::scan(**opened, *nodes);
+      if (found && !found->empty()) {
+        session::look_for_families(**opened, *found, families);
+        std::vector<std::string> guesses;
+        for (const auto& guess : session::guess_families(found->front(), families))
+          guesses.push_back(guess.family);
+        if (!guesses.empty())
+          hint = fmt::format("its identity fits {} (a guess, not proof): if the nameplate agrees, add -d {}",
+                             one_of(guesses), guesses.front());
+      }
+    }
+  }
+  return fail(Errc::usage, fmt::format("'{}' needs the drive family", run.command->path), std::move(hint));
+}
+
+/// The dictionary that the drive itself describes; asked for once, and again after a restart of the drive.
+Result<void> Shell::ask_drive(Run& run) {
+  const auto node = one_node(run.settings);
+  if (node == 0)
+    return fail(Errc::usage, "the dictionary of which drive?",
+                "name one with --node; each describes its own objects");
+  const auto opened = open(run.settings);
+  if (!opened) return fail(opened.error());
+  run.context.session = *opened;
+  const auto key =
+      fmt::format("{} {} {} {}", kOnline, (*opened)->url(), node, (*opened)->watch().boots(node));
+  if (const auto known = profiles_.find(key); known != profiles_.end()) {
+    run.context.profile = known->second.get();
+    return {};
+  }
+  auto asked = session::read_online_dictionary(**opened, node);
+  if (!asked) return fail(asked.error());
+  auto& place = profiles_[key];
+  place = std::make_unique<drive::Profile>(drive::profile_of_sheet(
+      std::move(asked->sheet), fmt::format("{}, node {}", kOnline, node), options_.drive_folders));
+  run.context.profile = place.get();
+  if (!asked->left_out.empty())
+    run.context.notices.push_back(
+        fmt::format("node {} lists {} objects or entries that it does not describe; the first: {}", node,
+                    asked->left_out.size(), asked->left_out.front()));
+  return {};
+}
+
+/// Of a file that describes several devices the one that the node is; else what was wrong.
+Result<const drive::Profile*> Shell::device_of_node(Run& run, const Error& why) {
+  const auto sheet = od::sheet_name(run.settings.drive);
+  const auto node = one_node(run.settings);
+  const bool of_several =
+      why.code == Errc::usage && lower(sheet.path).ends_with(".xml") && sheet.device.empty();
+  if (!of_several || node == 0 || !includes(run.command->needs, Needs::bus)) return fail(why);
+  const auto opened = open(run.settings);
+  if (!opened) return fail(opened.error());
+  const auto number = [&](std::uint8_t sub) -> std::optional<std::uint64_t> {
+    const auto bytes = (*opened)->upload(node, {0x1018, sub});
+    return bytes ? std::optional(load_le(*bytes)) : std::nullopt;
+  };
+  const auto product = number(2);
+  if (!product) return fail(why);
+  const auto revision = number(3);
+  for (const auto& device : {fmt::format("0x{:08X}:0x{:08X}", *product, revision.value_or(0)),
+                             fmt::format("0x{:08X}", *product)}) {
+    auto found = profile(fmt::format("{}#{}", sheet.path, device));
+    if (!found) continue;
+    run.context.notices.push_back(fmt::format("node {} is {}#{} by its identity", node, sheet.path, device));
+    return found;
+  }
+  return fail(why);
+}
+
+Result<const drive::Profile*> Shell::profile(const std::string& family) {
+  const auto known = profiles_.find(family);
+  if (known != profiles_.end()) return known->second.get();
+  if (equals_nocase(family, kOnline))
+    return fail(Errc::usage, "the dictionary of a drive is not known before it was asked",
+                "name the drive in the line itself: -d online --bus coe:… --node 1");
+  auto loaded = drive::load_profile(family, options_.drive_folders);
+  if (!loaded) return fail(loaded.error());
+  auto& place = profiles_[family];
+  place = std::make_unique<drive::Profile>(std::move(*loaded));
+  return place.get();
+}
+
+}  // namespace servoctl::cli
