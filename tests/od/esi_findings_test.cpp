@@ -121,3 +121,11 @@ TEST(EsiFindings, ValuesOfAStructureFindTheirEntryByName) {
   EXPECT_EQ(std::get<std::uint64_t>(file.sheet.dictionary.find({0x2000, 2})->default_value->value), 2U);
   EXPECT_NE(finding(file, "sub-item-without-type"), nullptr);
 }
+
+TEST(EsiFindings, DataThatIsLongerThanItsTypeIsNoValueUnlessOnlyZerosGo) {
+  const auto file = read_good(esi_objects(esi_object("#x2000", "UINT", "<DefaultData>010001</DefaultData>") +
+                                          esi_object("#x2001", "UINT", "<DefaultData>010000</DefaultData>")));
+  EXPECT_FALSE(file.sheet.dictionary.find({0x2000, 0})->default_value);
+  EXPECT_TRUE(file.sheet.dictionary.find({0x2001, 0})->default_value);
+  EXPECT_EQ(file.sheet.error_count(), 1U);
+}
