@@ -166,6 +166,8 @@ const Command kMonitor{
     .needs = Needs::can,
     .effect = Effect::reads,
     .run = run,
+    .elsewhere =
+        "`--trace FILE.pcap` writes every frame for Wireshark; what slaves tell is shown by every command",
 };
 
 }  // namespace servoctl::commands

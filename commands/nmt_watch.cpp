@@ -252,6 +252,8 @@ const Command kNmtWatch{
     .reads_without = "--guard",
     .run = run,
     .to_all = true,
+    .elsewhere =
+        "`status` asks for the AL state; a slave that changes it, is gone or back is told by every command",
 };
 
 }  // namespace servoctl::commands

@@ -149,6 +149,7 @@ const Command kPdoSend{
     .needs = Needs::node | Needs::can,
     .effect = Effect::moves,
     .run = run,
+    .elsewhere = "`state op`, then `write`: what is mapped goes out with the next cycle",
 };
 
 }  // namespace servoctl::commands

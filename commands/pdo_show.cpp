@@ -110,7 +110,8 @@ Record node_record(const Context& context, const NodePdos& mine, const std::vect
     const auto name = canopen::name(pdo.direction, pdo.number);
     const bool assigned = std::count(mine.assigned.begin(), mine.assigned.end(), pdo.mapping_index()) > 0;
     auto record = show::pdo_record(context.profile, pdo, mine.node, context.chinese);
-    auto lines = show::pdo_lines(context.profile, pdo, mine.node, context.chinese);
+    const bool has_cob_ids = context.session == nullptr || !context.session->network().is_ring();
+    auto lines = show::pdo_lines(context.profile, pdo, mine.node, context.chinese, has_cob_ids);
     if (assigned) lines.front() += ", assigned";
     List differing;
     std::string factory;

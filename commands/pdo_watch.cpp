@@ -136,6 +136,8 @@ const Command kPdoWatch{
     .needs = Needs::node | Needs::can,
     .effect = Effect::reads,
     .run = run,
+    .elsewhere =
+        "`watch` and `scope` show values over time; in SAFE-OP and OP those of mapped inputs come by process data",
 };
 
 }  // namespace servoctl::commands

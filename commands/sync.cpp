@@ -147,6 +147,7 @@ const Command kSyncOnce{
     .effect = Effect::moves,
     .family = FamilyCheck::never,
     .run = run_once,
+    .elsewhere = "process data are exchanged in cycles of their own there: `state op`",
 };
 
 extern const Command kSyncStart;
@@ -163,6 +164,7 @@ const Command kSyncStart{
     .effect = Effect::moves,
     .family = FamilyCheck::never,
     .run = run_start,
+    .elsewhere = "process data are exchanged in cycles of their own there: `state op`",
 };
 
 extern const Command kSyncStop;
@@ -177,6 +179,7 @@ const Command kSyncStop{
     .effect = Effect::none,
     .family = FamilyCheck::never,
     .run = run_stop,
+    .elsewhere = "process data are exchanged in cycles of their own there: `state op`",
 };
 
 }  // namespace servoctl::commands

@@ -41,7 +41,8 @@ const Command kTestComm{
         "Reads 1000h many times without retries, then listens to the heartbeat. Passes if no answer was lost "
         "or violated the protocol, none took longer than --longest, the heartbeat came at the period of "
         "1017h, and there was no emergency, no restart and no error report of the CAN controller. Exit code "
-        "1 if it fails. Changes nothing and moves nothing.",
+        "1 if it fails. On EtherCAT no frame may be lost instead: there is no heartbeat. Changes nothing and moves "
+        "nothing.",
     .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::reads,

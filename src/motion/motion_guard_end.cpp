@@ -28,11 +28,16 @@ void MotionGuard::put_node_back() {
   if (!std::exchange(started_, false)) return;
   if (!state_before_) {
     result_.notes.emplace_back(
-        "the node was started (NMT) and stays operational: its previous state is not known");
+        session_->network().is_ring()
+            ? "the slave was taken to OP and stays there: its previous state is not known"
+            : "the node was started (NMT) and stays operational: its previous state is not known");
     return;
   }
   const auto sent = session_->network().request_state(node_, session::NodeState::pre_operational);
-  if (!sent) note("the node could not be set back to pre-operational", sent.error());
+  if (!sent)
+    note(fmt::format("the node could not be set back to {}",
+                     session_->network().state_word(session::NodeState::pre_operational)),
+         sent.error());
 }
 
 /// Halt where there is one, target to zero, a quick stop when that does not help, then 07h and 00h.

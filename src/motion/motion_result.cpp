@@ -111,7 +111,7 @@ Value motion_result(show::Desk& desk, std::uint8_t node, const MotionPlan& plan,
                     left.starts_with("object ") ? "write it by hand" : "check the drive before using it"));
   for (const auto& note : done.end.notes) desk.notices.push_back(fmt::format("node {}: {}", node, note));
   for (const auto& event : done.events)
-    desk.notices.push_back(show::notice_text(event, desk.profile, desk.chinese));
+    desk.notices.push_back(show::notice_text(event, desk.profile, desk.chinese, &desk.session->network()));
   const double length =
       done.samples.empty() ? 0 : seconds_since(done.samples.back(), done.samples.front().time);
   Record out{{"node", node},

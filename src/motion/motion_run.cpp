@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/duration.hpp"
 #include "base/file.hpp"
 #include "base/number.hpp"
 #include "drive/standard_objects.hpp"
@@ -42,8 +43,15 @@ class Display {
 
 report::List planned_step(const show::Desk& desk, const Motion& motion,
                           const session::PlannedMessage& message) {
-  if (!message.write)
-    return {message.step, "", Value(), report::text_or_null(message.when), show::frame_text(message)};
+  const auto& network = desk.session->network();
+  const bool frames = show::is_sent_as_frames(desk);
+  const auto frame = frames ? Value(show::frame_text(message)) : Value();
+  if (!message.write && frames) return {message.step, "", Value(), report::text_or_null(message.when), frame};
+  if (message.state)
+    return {message.step, network.state_title(), network.state_word(*message.state),
+            report::text_or_null(message.when), frame};
+  if (message.life_sign)
+    return {message.step, "watchdog", servoctl::to_string(message.life_sign->period), Value(), frame};
   const auto object = message.write->object;
   const auto& data = *message.write->data;
   const auto value = motion.units().physical(object, data);
@@ -53,8 +61,7 @@ report::List planned_step(const show::Desk& desk, const Motion& motion,
     text = fmt::format("0x{:0{}X}", load_le(data), 2 * data.size());
   if (object == objects::kModeOfOperation)
     text = mode_text(*desk.profile, static_cast<std::int8_t>(load_le(data)), desk.chinese);
-  return {message.step, to_string(object), text, report::text_or_null(message.when),
-          show::frame_text(message)};
+  return {message.step, to_string(object), text, report::text_or_null(message.when), frame};
 }
 
 /// What would be sent, in order, if the drive follows.
@@ -64,7 +71,11 @@ Result<Value> planned(const show::Desk& desk, Motion& motion, const MotionPlan& 
   if (!messages) return fail(messages.error());
   report::Table steps;
   steps.columns = {{"step"}, {"object"}, {"value"}, {"when"}, {"frame"}};
-  for (const auto& message : *messages) steps.rows.push_back(planned_step(desk, motion, message));
+  if (!show::is_sent_as_frames(desk)) steps.columns.pop_back();
+  for (const auto& message : *messages) {
+    steps.rows.push_back(planned_step(desk, motion, message));
+    steps.rows.back().resize(steps.columns.size());
+  }
   return Value(Record{{"node", motion.node()},
                       {"motion", plan.summary},
                       {"watchdog", to_string(motion.watchdog()), Show::json},

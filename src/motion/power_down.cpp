@@ -96,9 +96,9 @@ DialogueStep PowerDown::next(TimePoint now) {
     case State::quick_stop: result_.quick_stop = true; return {.request = command(kQuickStopWord)};
     case State::switch_off: return {.request = command(kSwitchOffWord)};
     case State::cut: return {.request = command(kDisableVoltageWord)};
-    case State::silence_by_nmt:
+    case State::last_state:
       state_ = State::wake_again;
-      return {.state = session::NodeState::stopped, .pause = now + kRequestPause};
+      return {.state = last_state(), .pause = now + kRequestPause};
     case State::wake:
     case State::wake_again:
       enter(back_to_, now);
@@ -130,7 +130,7 @@ void PowerDown::on_answer(Result<Bytes> answer, TimePoint now) {
     case State::cutting: return on_cutting(answer, now);
     case State::holding: return on_holding(answer, now);
     case State::wake:
-    case State::silence_by_nmt:
+    case State::last_state:
     case State::wake_again:
     case State::done: return;
   }
@@ -166,8 +166,10 @@ void PowerDown::on_silence(const Error& error, TimePoint now) {
     if (cutting || plan_.aim != PowerAim::stop) enter(State::cut, now);
     return;
   }
-  result_.notes.emplace_back(
-      "it did not answer and was sent NMT \"enter pre-operational\": a stopped node does not answer");
+  const bool ring = plan_.network != nullptr && plan_.network->is_ring();
+  result_.notes.push_back(fmt::format("it did not answer and was sent {}{}",
+                                      order(session::NodeState::pre_operational),
+                                      ring ? "" : ": a stopped node does not answer"));
   back_to_ = cutting ? State::cut : State::quick_stop;
   state_ = State::wake;
 }
@@ -207,6 +209,7 @@ std::vector<PowerDownResult> take_down(session::Session& session, std::vector<Po
   std::string nodes;
   for (auto& plan : plans) {
     append(nodes, fmt::format("{}", plan.node));
+    plan.network = &session.network();
     drives.push_back(std::make_unique<PowerDown>(std::move(plan)));
     dialogues.push_back(drives.back().get());
   }

@@ -41,6 +41,8 @@ struct PowerDownPlan {
   /// this, standstill is judged by the greatest speed seen.
   std::function<std::optional<double>(ByteSpan)> speed = {};
   double standstill = 0;
+  /// Gives the words for what is sent beside controlwords; set by take_down().
+  const session::Network* network = nullptr;
   std::function<void()> on_silence = {};  ///< Called once, when the drive does not answer for the first time.
 };
 
@@ -65,7 +67,7 @@ struct PowerDownResult {
 bool is_without_power(drive::DriveState state);
 
 /// The way down of one drive; how it goes on when a drive refuses, ignores or does not answer: the next means
-/// is tried, in the end NMT. 00h is written whatever the statusword says, because a drive that has lost its
+/// is tried, in the end a request of another state. 00h is written whatever the statusword says, because a drive that has lost its
 /// power by itself may start again with what 6040h holds; 6040h is read back for the same reason.
 class PowerDown final : public Dialogue {
  public:
@@ -102,7 +104,7 @@ class PowerDown final : public Dialogue {
     cutting,
     holding,
     wake,
-    silence_by_nmt,
+    last_state,
     wake_again,
     done
   };
@@ -132,6 +134,8 @@ class PowerDown final : public Dialogue {
   session::SdoRequest command(std::uint16_t controlword) const;
   session::SdoRequest read(ObjectAddress object) const;
   std::string word() const;
+  session::NodeState last_state() const;
+  std::string order(session::NodeState state) const;
   std::optional<double> speed_in(const Result<Bytes>& answer);
 
   PowerDownPlan plan_;

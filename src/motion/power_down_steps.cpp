@@ -169,15 +169,25 @@ void PowerDown::on_holding(const Result<Bytes>& answer, TimePoint now) {
   end_cut();
 }
 
-/// In the end by NMT: some families are disabled outside of Operational, others react to "stop" by 6007h.
+/// In the end by another state (NMT on CAN): some families are disabled outside of Operational, others react
+/// to "stop" by 6007h.
 void PowerDown::cut_again(TimePoint now) {
   if (tries_ < kTries) return enter(State::cut, now);
   if ((has_seen_ && brakes(seen_)) || means_ >= kOtherMeans) return end_cut();
   back_to_ = State::cut;
-  result_.notes.emplace_back(means_ == 0
-                                 ? "it was sent NMT \"enter pre-operational\", because it did not obey"
-                                 : "it was sent NMT \"stop\", because it did not obey");
-  enter(means_++ == 0 ? State::wake : State::silence_by_nmt, now);
+  const auto state = means_ == 0 ? session::NodeState::pre_operational : last_state();
+  result_.notes.push_back(fmt::format("it was sent {}, because it did not obey", order(state)));
+  enter(means_++ == 0 ? State::wake : State::last_state, now);
+}
+
+/// In which neither objects nor process values are served.
+session::NodeState PowerDown::last_state() const {
+  const bool ring = plan_.network != nullptr && plan_.network->is_ring();
+  return ring ? session::NodeState::initialising : session::NodeState::stopped;
+}
+
+std::string PowerDown::order(session::NodeState state) const {
+  return plan_.network != nullptr ? plan_.network->state_order(state) : std::string(session::name(state));
 }
 
 std::optional<double> PowerDown::speed_in(const Result<Bytes>& answer) {

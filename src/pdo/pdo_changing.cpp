@@ -255,7 +255,8 @@ class Changing {
                {"kept", state.starts_with("written") ? settings::kept_text(kept) : Value(), Show::text}};
     List pdos;
     for (const auto& pdo : job.wanted.pdos) {
-      const auto lines = show::pdo_lines(desk_->profile, pdo, job.present.node, desk_->chinese);
+      const auto lines = show::pdo_lines(desk_->profile, pdo, job.present.node, desk_->chinese,
+                                         !desk_->session->network().is_ring());
       for (std::size_t i = 0; i < lines.size(); ++i)
         out.push_back(
             {i == 0 ? canopen::name(pdo.direction, pdo.number) : std::string(), lines[i], Show::text});

@@ -32,6 +32,9 @@ bool is_spare(const Pdo& pdo, const session::Values& values) {
 
 Result<Pdo> ScopeMapping::choose(std::span<const std::string> objects, Duration period,
                                  const std::vector<Pdo>& pdos) const {
+  if (desk_->session->network().is_ring())
+    return fail(Errc::negative, "--map changes TPDOs of CAN, this is EtherCAT",
+                "in SAFE-OP and OP what the assigned PDOs carry is taken from process data");
   Pdo out;
   for (const auto& object : objects) {
     const auto entry = parse_mapped(*desk_->profile, object);

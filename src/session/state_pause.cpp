@@ -66,7 +66,8 @@ Result<void> StatePause::leave(bool put_back) {
   if (!std::exchange(entered_, false)) return {};
   const bool known = before_ == NodeState::operational;
   if (known && put_back) return tell(*session_, node_, NodeState::operational);
-  notices_.push_back(fmt::format("node {}: it stays pre-operational, {}; `{}` starts it", node_,
+  notices_.push_back(fmt::format("node {}: it stays {}, {}; `{}` starts it", node_,
+                                 session_->network().state_word(NodeState::pre_operational),
                                  known ? "because a restore is incomplete"
                                        : "because neither heartbeat nor guarding showed its previous state",
                                  session_->network().state_command(node_, NodeState::operational)));

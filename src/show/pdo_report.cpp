@@ -110,8 +110,9 @@ Record pdo_record(const drive::Profile* profile, const Pdo& pdo, std::uint8_t no
 }
 
 std::vector<std::string> pdo_lines(const drive::Profile* profile, const Pdo& pdo, std::uint8_t node,
-                                   bool chinese) {
-  auto communication = fmt::format("no COB-ID, mapping 0x{:04X}", pdo.mapping_index());
+                                   bool chinese, bool has_cob_ids) {
+  auto communication =
+      fmt::format("{}mapping 0x{:04X}", has_cob_ids ? "no COB-ID, " : "", pdo.mapping_index());
   if (has_can_id(pdo)) {
     communication =
         fmt::format("{} {}, {} (type {})", can_id_text(pdo, node), pdo.is_valid() ? "valid" : "not valid",

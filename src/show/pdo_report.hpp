@@ -36,6 +36,6 @@ report::Record pdo_record(const drive::Profile* profile, const canopen::Pdo& pdo
 
 /// What a PDO sends or receives, and when, in lines for people: communication, mapping.
 std::vector<std::string> pdo_lines(const drive::Profile* profile, const canopen::Pdo& pdo, std::uint8_t node,
-                                   bool chinese);
+                                   bool chinese, bool has_cob_ids = true);
 
 }  // namespace servoctl::show

@@ -6,6 +6,7 @@
 #include "base/duration.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/can_network.hpp"
+#include "session/ethercat_network.hpp"
 #include "session/open_bus.hpp"
 #include "session/option_scope.hpp"
 #include "show/notice.hpp"
@@ -40,9 +41,12 @@ class Communication {
     take_notices();
     emergencies_ = reports_ = 0;
     boots_ = session_->watch().boots(node_);
+    ring_ = session_->ethercat();
+    frames_lost_ = ring_ != nullptr ? ring_->statistics().lost : 0;
     if (const auto done = read_often(); !done) return fail(done.error());
     judge_round_trips();
-    if (const auto done = judge_heartbeat(); !done) return fail(done.error());
+    if (ring_ == nullptr)
+      if (const auto done = judge_heartbeat(); !done) return fail(done.error());
     judge_bus();
     out_.seconds = seconds_of(session_->now() - begin);
     return std::move(out_);
@@ -145,9 +149,18 @@ class Communication {
         report::at_most("emergencies", say("emergency messages", "紧急报文"), emergencies_, 0));
     out_.criteria.push_back(report::at_most("restarts", say("restarts of the drive", "驱动器重启"),
                                             session_->watch().boots(node_) - boots_, 0));
+    if (ring_ != nullptr) return judge_frames();
     out_.criteria.push_back(report::at_most(
         "controller_reports", say("error reports of the CAN controller", "CAN 控制器错误报告"), reports_, 0));
     judge_controller();
+  }
+
+  void judge_frames() {
+    const auto& counted = ring_->statistics();
+    auto lost = report::at_most("lost_frames", say("lost frames", "丢失的帧"),
+                                static_cast<double>(counted.lost - frames_lost_), 0);
+    lost.note = say("a frame goes through all slaves", "每帧经过所有从站");
+    out_.criteria.push_back(std::move(lost));
   }
 
   void judge_controller() {
@@ -186,6 +199,8 @@ class Communication {
 
   show::Desk* desk_;
   session::Session* session_;
+  session::EtherCatNetwork* ring_ = nullptr;
+  std::uint64_t frames_lost_ = 0;  ///< Before the test.
   std::uint8_t node_;
   CommTrial test_;
   TestResult out_;

@@ -11,6 +11,7 @@
 #include "drive/standard_objects.hpp"
 #include "ethercat/registers.hpp"
 #include "session/scan.hpp"
+#include "show/notice.hpp"
 #include "sim/esc_cell.hpp"
 #include "tests/session/ethercat_world.hpp"
 #include "tests/show/audiences.hpp"
@@ -283,6 +284,61 @@ TEST_F(Ring, ADryRunOfAStateSendsNothing) {
     ASSERT_TRUE(command::find_command(path)->run(context, arguments)) << path;
   }
   EXPECT_EQ(ring().sent(), 0U);
+}
+
+TEST_F(Ring, ADryRunChangesNothing) {
+  open("sv2@1");
+  ASSERT_TRUE(session_->upload(1, objects::kDeviceType));
+  const auto held = [&](ObjectAddress object) { return slave().model().values().number(object); };
+  const auto mode = held(objects::kModeOfOperation);
+  const std::pair<std::string_view, Words> lines[] = {{"disable", {}},
+                                                      {"quick-stop", {}},
+                                                      {"write", {{"object", "0x6060"}, {"value", "3"}}},
+                                                      {"mode", {{"mode", "pv"}}},
+                                                      {"enable", {}},
+                                                      {"jog", {{"speed", "60rpm"}, {"--for", "1s"}}},
+                                                      {"pdo preset", {{"preset", "pv"}}},
+                                                      {"state op", {}}};
+  const auto profile = drive::load_profile("sv2", folders()).value();
+  for (const auto& [path, words] : lines) {
+    Arguments arguments;
+    for (const auto& [name, value] : words) arguments.add(name, value);
+    context = {};
+    context.session = session_.get();
+    context.profile = &profile;
+    context.nodes = {1};
+    context.dry_run = true;
+    const auto done = command::find_command(path)->run(context, arguments);
+    ASSERT_TRUE(done) << path << ": " << done.error().message;
+    EXPECT_TRUE(context.errors.empty()) << path << ": " << notices();
+    EXPECT_EQ(report::to_json(*done).find("\"frame\""), std::string::npos) << path << report::to_json(*done);
+  }
+  EXPECT_EQ(slave().state(), EscState::pre_op);
+  EXPECT_EQ(held(objects::kModeOfOperation), mode);
+  EXPECT_EQ(held(objects::kControlword), 0U);
+  EXPECT_EQ(held({0x1600, 0}), 0U);
+}
+
+TEST_F(Ring, AWayOutSpeaksOfAlStates) {
+  open("sv2@1");
+  ASSERT_TRUE(session_->upload(1, objects::kDeviceType));
+  slave().faults().mailbox_stays_full = true;
+  (void)run("disable", {1});
+  EXPECT_TRUE(notes("node 1: it did not answer and was sent the request for PRE-OP")) << notices();
+  EXPECT_FALSE(notes("NMT")) << notices();
+}
+
+TEST_F(Ring, EventsOfSlavesAreToldInTheirWords) {
+  open("sv2@1");
+  network().learn(1, rules());
+  ASSERT_TRUE(network().request_state(1, NodeState::operational));
+  (void)session_->take_events();
+  slave().plan_fall({.time = session_->now() + milliseconds(50)});
+  pass(milliseconds(500));
+  const auto events = session_->take_events();
+  ASSERT_FALSE(events.empty());
+  EXPECT_EQ(show::notice_text(events.front(), nullptr, false, &session_->network()),
+            "node 1: AL state is now SAFE-OP");
 }
 
 TEST_F(Ring, RefusesWhatIsCansAlone) {
