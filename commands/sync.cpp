@@ -147,7 +147,7 @@ const Command kSyncOnce{
     .effect = Effect::moves,
     .family = FamilyCheck::never,
     .run = run_once,
-    .elsewhere = "process data are exchanged in cycles of their own there: `state op`",
+    .elsewhere = "process data are exchanged in cycles of their own there: `help state op`",
 };
 
 extern const Command kSyncStart;
@@ -164,7 +164,7 @@ const Command kSyncStart{
     .effect = Effect::moves,
     .family = FamilyCheck::never,
     .run = run_start,
-    .elsewhere = "process data are exchanged in cycles of their own there: `state op`",
+    .elsewhere = "process data are exchanged in cycles of their own there: `help state op`",
 };
 
 extern const Command kSyncStop;
@@ -179,7 +179,7 @@ const Command kSyncStop{
     .effect = Effect::none,
     .family = FamilyCheck::never,
     .run = run_stop,
-    .elsewhere = "process data are exchanged in cycles of their own there: `state op`",
+    .elsewhere = "process data are exchanged in cycles of their own there: `help state op`",
 };
 
 }  // namespace servoctl::commands

@@ -132,7 +132,7 @@ struct CoeRules {
   std::uint16_t inputs = 0;
   std::uint16_t rpdo = 0;  ///< What is assigned for motions where 1C12h does not carry 6040h; 0: nothing.
   std::uint16_t tpdo = 0;  ///< The same for 1C13h and 6041h.
-  bool sdo_info = false;         ///< It lists and describes its objects.
+  bool sdo_info = false;   ///< It lists and describes its objects.
   bool complete_access = false;  ///< All sub-indices of an object go in one transfer.
 
   bool exists() const { return mailbox_out.size != 0 && mailbox_in.size != 0; }

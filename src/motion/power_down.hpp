@@ -67,8 +67,9 @@ struct PowerDownResult {
 bool is_without_power(drive::DriveState state);
 
 /// The way down of one drive; how it goes on when a drive refuses, ignores or does not answer: the next means
-/// is tried, in the end a request of another state. 00h is written whatever the statusword says, because a drive that has lost its
-/// power by itself may start again with what 6040h holds; 6040h is read back for the same reason.
+/// is tried, in the end a request of another state. 00h is written whatever the statusword says, because a
+/// drive that has lost its power by itself may start again with what 6040h holds; 6040h is read back for the
+/// same reason.
 class PowerDown final : public Dialogue {
  public:
   /// Longest wait for one transition; manuals name none, and a brake takes some tenths of a second.

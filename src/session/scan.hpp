@@ -33,8 +33,8 @@ struct Guess {
 /// out.
 std::vector<Guess> guess_families(const Identity& identity, std::span<const drive::Family> families);
 
-/// Families on EtherCAT whose vendor and product numbers are these: what an SII tells, which has no 1000h. None
-/// is certain.
+/// Families on EtherCAT whose vendor and product numbers are these: what an SII tells, which has no 1000h.
+/// None is certain.
 std::vector<Guess> guess_by_sii(const Identity& identity, std::span<const drive::Family> families);
 
 }  // namespace servoctl::session

@@ -45,7 +45,8 @@ TEST(OpenPort, WhatIsSimulatedHasNoOtherEnd) {
   ASSERT_FALSE(port);
   EXPECT_EQ(port.error().code, Errc::usage);
   EXPECT_EQ(port.error().message, "a simulated drive cannot be put on a bus that is simulated itself");
-  EXPECT_EQ(open_ring_port("coe:nosucheth7", BusOptions()).error().message, "there is no interface nosucheth7");
+  EXPECT_EQ(open_ring_port("coe:nosucheth7", BusOptions()).error().message,
+            "there is no interface nosucheth7");
 }
 
 TEST(OpenPort, ATraceIsAPcapOnEtherCatAndNoneOnCan) {
