@@ -151,6 +151,10 @@ void BusHolder::stop_sync() {
 
 bool BusHolder::must_go_on() const { return session_ && session_->network().must_go_on(); }
 
+bool BusHolder::holds_drives() const {
+  return must_go_on() || (session_ && session_->ethercat() != nullptr && !session_->energised().empty());
+}
+
 Duration BusHolder::serve() {
   if (!must_go_on() && !produces_sync()) return Duration::max();
   // What goes wrong is told to the next line.

@@ -50,6 +50,9 @@ class BusHolder {
   /// Nodes depend on what servoctl sends regularly: while their user is waited for it goes on, and before the
   /// program ends they are let go.
   bool must_go_on() const;
+  /// Drives are energised that cannot stay so without servoctl: they are let go before the program ends, also
+  /// when what held them has ended already.
+  bool holds_drives() const;
   /// Ends the SYNC that is produced, and says so.
   void stop_sync();
 

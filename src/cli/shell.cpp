@@ -236,7 +236,7 @@ void Shell::hold() {
 }
 
 int Shell::close(int code) {
-  if (bus_.must_go_on()) bus_.let_go();
+  if (bus_.holds_drives()) bus_.let_go();
   bus_.close();
   auto failure = bus_.take_trace_failure();
   if (!failure) failure = std::exchange(incomplete_trace_, std::nullopt);

@@ -46,7 +46,8 @@ void CoeSlave::drop_what_is_over() {
 /// One message at a time. The mailbox gives up a little before who waits for the answer does, and knows
 /// better why.
 void CoeSlave::hand_over(TimePoint now) {
-  if (mailbox_.sending()) return;
+  // What nobody waits for any more (an abort) makes room: a full mailbox is the next one's to tell.
+  if (mailbox_.sending() && !(owner_ == Owner::nobody && mailbox_.is_stuck())) return;
   if (auto message = client_.take_message()) {
     owner_ = client_.busy() ? Owner::client : Owner::nobody;
     return mailbox_.send(std::move(*message), now + client_.timeout() * 9 / 10, now);

@@ -28,6 +28,7 @@ Mailbox::Mailbox(std::uint8_t node, SlaveAddress slave, const Options& options)
 
 void Mailbox::start(TimePoint now) {
   draining_ = true;
+  full_ = false;
   free_ = false;
   answered_ = false;
   counts_ = false;
@@ -142,7 +143,8 @@ void Mailbox::on_missing(TimePoint now) {
 }
 
 void Mailbox::on_looked(ByteSpan status, TimePoint now) {
-  free_ = (status[0] & reg::kSmFull) == 0;
+  full_ = (status[0] & reg::kSmFull) != 0;
+  free_ = !full_;
   if (in_doubt_) settle_doubt(now);
   if (recovery_ != Recovery::none && recover(status, now)) return;
   if ((status[kSm1Status] & reg::kSmFull) != 0) return go(State::read, now);

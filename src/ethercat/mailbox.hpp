@@ -92,6 +92,8 @@ class Mailbox {
   }
   /// A message waits to be written, or whether it was is being found out.
   bool sending() const { return out_ || writing_; }
+  /// A message waits to be written and cannot: SM0 was full when it was looked at last.
+  bool is_stuck() const { return out_ && !writing_ && full_; }
   const Statistics& statistics() const { return statistics_; }
 
  private:
@@ -128,6 +130,7 @@ class Mailbox {
   bool under_way_ = false;  ///< It was taken, and is not answered.
   bool draining_ = true;    ///< What comes was left by somebody else.
   bool listening_ = false;
+  bool full_ = false;      ///< SM0 was full when it was looked at last.
   bool free_ = false;      ///< SM0 was empty when it was looked at last, and nothing was written since.
   bool answered_ = false;  ///< Something came since the last message was written.
   Recovery recovery_ = Recovery::none;

@@ -13,7 +13,7 @@ constexpr std::int64_t kLead = 100'000'000;  ///< ns until the first pulse.
 constexpr std::uint8_t kCyclicSync0 = 0x03;
 /// Part of a distance that is made good in one cycle, and the most of a cycle that one is moved by.
 constexpr int kGain = 4;
-constexpr int kStep = 16;
+constexpr int kClockStep = 16;
 /// Locked: no farther from the middle than this part of a cycle.
 constexpr int kNear = 8;
 
@@ -68,7 +68,7 @@ void SyncClock::measure(std::uint64_t slave_time, ProcessImage& image) {
   const auto late = phase - cycle / 2;
   distance_ = std::chrono::duration_cast<Duration>(std::chrono::nanoseconds(std::abs(late)));
   locked_ = since > 0 && std::abs(late) <= cycle / kNear;
-  const auto step = std::clamp(-late / kGain, -cycle / kStep, cycle / kStep);
+  const auto step = std::clamp(-late / kGain, -cycle / kClockStep, cycle / kClockStep);
   image.shift(std::chrono::duration_cast<Duration>(std::chrono::nanoseconds(step)));
 }
 

@@ -22,7 +22,7 @@ using std::chrono::milliseconds;
 
 constexpr std::uint16_t kEtherCat = 0x88A4;
 /// Between two looks at an interface that is down or has no link.
-constexpr Duration kPause = milliseconds(5);
+constexpr Duration kReopenPause = milliseconds(5);
 /// How long send() tries while the queue of the interface is full.
 constexpr Duration kSendLimit = milliseconds(20);
 
@@ -84,7 +84,7 @@ Result<Opened> open_interface(const std::string& name) {
 bool wait_for_link(const std::string& name, TimePoint deadline) {
   while (!has_link(name)) {
     if (steady_now() >= deadline) return false;
-    if (can::wait_or_signal(-1, 0, std::min(deadline, steady_now() + kPause)) == Wake::interrupted)
+    if (can::wait_or_signal(-1, 0, std::min(deadline, steady_now() + kReopenPause)) == Wake::interrupted)
       return false;
   }
   return true;
@@ -149,7 +149,7 @@ Result<void> RawPort::recover(TimePoint deadline) {
   for (;;) {
     auto opened = open_again();
     if (opened || now() >= deadline) return opened;
-    can::nap(std::min<Duration>(kPause, deadline - now()));
+    can::nap(std::min<Duration>(kReopenPause, deadline - now()));
   }
 }
 

@@ -32,13 +32,13 @@ struct Address {
   socklen_t size = 0;
 };
 
-Descriptor open_socket() {
+Descriptor lock_socket() {
   return Descriptor(::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
 }
 
 /// Who listens there tells its process by that alone; nobody accepts.
 ::pid_t holder(const Address& address) {
-  const auto socket = open_socket();
+  const auto socket = lock_socket();
   if (!socket || ::connect(socket.get(), address.generic(), address.size) != 0) return 0;
   return peer_process(socket.get());
 }
@@ -55,7 +55,7 @@ tl::unexpected<Error> held(const Address& address, const std::string& shown) {
 
 Result<WireLock> WireLock::take(const std::string& key, const std::string& shown) {
   const Address address(key);
-  auto socket = open_socket();
+  auto socket = lock_socket();
   if (!socket) return fail(Errc::bus, fmt::format("cannot lock {}: {}", shown, can::system_text(errno)));
   if (::bind(socket.get(), address.generic(), address.size) != 0) {
     if (errno == EADDRINUSE) return held(address, shown);

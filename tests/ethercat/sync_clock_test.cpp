@@ -38,7 +38,7 @@ class SyncClockTest : public testing::Test {
   void answer(ByteSpan sent) {
     Bytes frame(sent.begin(), sent.end());
     for (std::size_t at = 16; at + 12 <= frame.size();) {
-      const auto length = (frame[at + 6] | frame[at + 7] << 8U) & 0x7FFU;
+      const auto length = (frame[at + 6] | static_cast<unsigned>(frame[at + 7]) << 8U) & 0x7FFU;
       const bool more = (frame[at + 7] & 0x80U) != 0;
       const bool time = frame[at] == static_cast<std::uint8_t>(Command::fprd);
       if (time) {

@@ -15,7 +15,7 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-const std::filesystem::path kFolders[] = {std::filesystem::path(source_dir()) / "eds"};
+const std::filesystem::path kRingFolders[] = {std::filesystem::path(source_dir()) / "eds"};
 
 /// What a master would see, in virtual time: frames of the test go in at their times, and come back.
 struct Wire {
@@ -69,7 +69,7 @@ class RingEndTest : public testing::Test {
   void come(Duration at) { wire_.coming.emplace_back(wire_.now + at, broadcast_read()); }
   /// Until all is in, and some more waits have passed.
   Result<void> serve(std::string_view drives) {
-    auto cell = sim::build_esc_cell(drives, kFolders, wire_.now);
+    auto cell = sim::build_esc_cell(drives, kRingFolders, wire_.now);
     EXPECT_TRUE(cell) << cell.error().message;
     std::size_t idle = 0;
     RingEnd end(std::make_unique<WirePort>(wire_), [&] { return wire_.coming.empty() && ++idle > 3; });
