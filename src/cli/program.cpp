@@ -68,8 +68,7 @@ int run_lines(Shell& shell, const std::vector<std::string>& words, StandardConso
   if (is_batch(words)) return run_batch(shell, words, &std::cin);
   if (first < words.size() || asks_for_help(words)) {
     const int code = shell.run(words);
-    if (code == 0) shell.hold();
-    return code;
+    return code == 0 ? shell.hold() : code;
   }
   auto settings = settings_for_lines(shell.defaults(), words);
   if (!settings) return shell.report_error(settings.error(), false);

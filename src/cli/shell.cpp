@@ -223,16 +223,20 @@ Result<std::unique_ptr<session::RingEnd>> Shell::open_ring_end(const Settings& s
 }
 
 /// A drive that stays energised only while servoctl is there is held until the user ends it.
-void Shell::hold() {
-  if (!bus_.must_go_on()) return;
+int Shell::hold() {
+  if (!bus_.must_go_on()) return 0;
   console_->err("notice: process data go on, and the drive stays as it is: Ctrl-C ends it\n");
   auto& session = *bus_.session();
   while (!cancelled() && bus_.must_go_on()) {
     const auto stepped = session.step(session.now() + std::chrono::milliseconds(250));
     for (const auto& notice : take_notices(nullptr, false))
       console_->err("notice: " + printable(notice) + "\n");
-    if (!stepped) return;
+    if (!stepped) return report_error(stepped.error(), false);
   }
+  if (cancelled()) return 0;
+  return report_error(make_error(Errc::negative, "process data ended before you ended them",
+                                 "the lines above say why; `status` shows the state of the slave"),
+                      false);
 }
 
 int Shell::close(int code) {

@@ -70,8 +70,9 @@ class Shell {
   void let_go() { bus_.let_go(); }
   /// Closes the bus. The exit code of the program: `code`, or that of what went wrong here.
   int close(int code);
-  /// Where a drive stays energised only as long as servoctl is there: waits until the user ends it.
-  void hold();
+  /// Where a drive stays energised only as long as servoctl is there: waits until the user ends it. The exit
+  /// code: not 0 when it ended otherwise.
+  int hold();
 
   /// The family's data, loaded once. Errors as load_profile().
   Result<const drive::Profile*> profile(const std::string& family);

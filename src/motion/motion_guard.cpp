@@ -153,7 +153,20 @@ Result<void> MotionGuard::start_node() {
   }
   if (auto sent = session_->network().request_state(node_, session::NodeState::operational); !sent)
     return sent;
+  if (needs_process_data()) return wait_until_awake();
   return pause(*session_, kRequestPause);
+}
+
+/// Some drives begin to run their state machine in OP. One that stays "not ready to switch on" is refused
+/// when it is to be enabled.
+Result<void> MotionGuard::wait_until_awake() {
+  const auto end = session_->now() + Power::kPatience;
+  for (;;) {
+    const auto state = power_.state();
+    if (!state) return fail(state.error());
+    if (*state != DriveState::not_ready_to_switch_on || session_->now() >= end) return {};
+    if (auto paused = pause(*session_, kRequestPause); !paused) return paused;
+  }
 }
 
 Result<void> MotionGuard::enable() {

@@ -74,6 +74,7 @@ class MotionGuard {
   };
 
   Result<void> write(ObjectAddress object, const Bytes& data);
+  Result<void> wait_until_awake();
   void rehearse_up(const std::vector<drive::PowerStep>& path);
   void rehearse_end();
   bool stays_new(const Changed& changed) const;

@@ -48,23 +48,32 @@ class Preflight {
     items_.push_back({weight, std::string(what), std::move(text)});
   }
 
+  /// A drive that obeys process data only is not in OP yet.
+  bool sleeps() const {
+    return session_->network().carries(session::LifeSign::Kind::process_data) &&
+           session_->watch().state(node_) != session::NodeState::operational;
+  }
+
   Result<void> look_at_state() {
     Power power(*session_, units_->profile(), node_);
     const auto word = power.statusword();
     if (!word) return fail(word.error());
     const auto state = drive::decode_state(*word);
     const bool fault = state == drive::DriveState::fault || state == drive::DriveState::fault_reaction_active;
-    const bool bad =
-        fault || drive::is_energised(state) || state == drive::DriveState::not_ready_to_switch_on;
+    const bool waits = state == drive::DriveState::not_ready_to_switch_on;
+    const bool asleep = waits && sleeps();
+    const bool bad = fault || drive::is_energised(state) || (waits && !asleep);
     auto text =
         fmt::format("{} (statusword 0x{:04X})", chinese_ ? drive::name_zh(state) : drive::name(state), *word);
     if (fault) text += ": `fault show` says why, `fault reset` resets it once the cause is gone";
     if (!fault && drive::is_energised(state)) text += ": it is or may be enabled; `disable` it first";
-    add(bad ? Weight::stop : Weight::good, "state", std::move(text));
+    if (asleep)
+      text += ": outside OP some drives do not run their state machine; it is looked at again in OP";
+    add(bad ? Weight::stop : asleep ? Weight::note : Weight::good, "state", std::move(text));
     if ((*word & kWarning) != 0) add(Weight::caution, "warning", "statusword bit 7 (warning) is set");
     if ((*word & kInternalLimit) != 0)
       add(Weight::caution, "limit", "statusword bit 11: internal limit active");
-    if (power.tells(kRemote) && (*word & kRemote) == 0)
+    if (!asleep && power.tells(kRemote) && (*word & kRemote) == 0)
       add(Weight::stop, "remote", "statusword bit 9 (remote) is 0: the drive obeys its panel, not the bus");
     const auto mode = read_mode(*session_, node_);
     if (!mode) return fail(mode.error());

@@ -17,6 +17,8 @@ using ethercat::AlState;
 
 /// Emergencies that are kept of each node.
 constexpr std::size_t kKeptEmergencies = 8;
+/// Between two tries to find the slaves of a ring that was lost.
+constexpr Duration kRecoverPause = std::chrono::milliseconds(10);
 
 std::optional<AlState> al_state(NodeState state) {
   switch (state) {
@@ -82,6 +84,8 @@ Result<void> EtherCatNetwork::recover(TimePoint deadline) {
     if (auto back = wire_.port().recover(deadline); !back) return back;
     auto there = count_slaves();
     if (there || there.error().code != Errc::bus || now() >= deadline) return there;
+    // What it was lost by is told when the next frame is not taken.
+    (void)wire_.step(std::min(deadline, now() + kRecoverPause));
   }
 }
 

@@ -113,14 +113,15 @@ TEST_F(RingStateTest, ADryRunChangesNothing) {
   ASSERT_TRUE(session_->upload(1, objects::kDeviceType));
   const auto held = [&](ObjectAddress object) { return slave().model().values().number(object); };
   const auto mode = held(objects::kModeOfOperation);
-  const std::pair<std::string_view, Words> lines[] = {{"disable", {}},
-                                                      {"quick-stop", {}},
-                                                      {"write", {{"object", "0x6060"}, {"value", "3"}}},
-                                                      {"mode", {{"mode", "pv"}}},
-                                                      {"enable", {}},
-                                                      {"jog", {{"speed", "60rpm"}, {"--for", "1s"}}},
-                                                      {"pdo preset", {{"preset", "pv"}}},
-                                                      {"state op", {}}};
+  using Line = std::pair<std::string_view, std::vector<std::pair<std::string_view, std::string>>>;
+  const std::vector<Line> lines = {{"disable", {}},
+                                   {"quick-stop", {}},
+                                   {"write", {{"object", "0x6060"}, {"value", "3"}}},
+                                   {"mode", {{"mode", "pv"}}},
+                                   {"enable", {}},
+                                   {"jog", {{"speed", "60rpm"}, {"--for", "1s"}}},
+                                   {"pdo preset", {{"preset", "pv"}}},
+                                   {"state op", {}}};
   const auto profile = drive::load_profile("sv2", folders()).value();
   for (const auto& [path, words] : lines) {
     Arguments arguments;
