@@ -32,7 +32,7 @@ const std::filesystem::path kFolders[] = {std::filesystem::path(SERVOCTL_SOURCE_
 
 [[noreturn]] void serve(const std::string& url) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  auto port = session::open_ring_port(url);
+  auto port = session::open_ring_port(url, {});
   auto cell = sim::build_esc_cell("sv2@1", kFolders, steady_now());
   if (!port || !cell) ::_exit(3);
   auto& ring = cell->ring;
