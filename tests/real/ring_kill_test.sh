@@ -80,6 +80,16 @@ kill_once() {
 }
 for i in $(seq "$kills"); do kill_once "$i"; done
 
+# What is held and falls by itself is an error; what its user ends is none.
+timeout 20 "$servoctl" -b 'coe:sim:sv2@1?fall=1s' state op >"$work/out" 2>"$work/err"
+code=$?
+[ "$code" -eq 1 ] || fail "a held slave that falls: the exit code is $code: $(cat "$work/err")"
+grep -q 'synchronisation error' "$work/err" || fail "a held slave that falls: its reason is not told: $(cat "$work/err")"
+timeout --preserve-status -s INT 2 "$servoctl" -b coe:sim:sv2@1 enable --yes >"$work/out" 2>"$work/err"
+code=$?
+[ "$code" -eq 0 ] || fail "a held drive that is ended: the exit code is $code: $(cat "$work/err")"
+grep -q 'stopped and disabled' "$work/err" || fail "a held drive that is ended: $(cat "$work/err")"
+
 echo "$kills kills, $moving of them while the drive was energised, $failures failures"
 [ "$moving" -gt $((kills / 10)) ] || { echo "FAILED: too few kills met an energised drive: the test itself is broken"; exit 1; }
 [ "$failures" -eq 0 ]
