@@ -250,6 +250,8 @@ Result<ethercat::AlStatus> EtherCatNetwork::go_to(EtherCatNode& node, AlState st
   if (there) {
     hear(node, *there, now(), true);
     node.raised = node.raised && state != AlState::preop && state != AlState::init;
+    // What is driven later on is somebody else's again.
+    if (state == AlState::preop || state == AlState::init) taken_over_[node.number] = false;
   } else if (there.error().code == Errc::negative) {
     request.start_look(now());
     if (const auto found = wire_.ask(request)) node.al = *found;

@@ -17,7 +17,14 @@ Result<std::vector<EtherCatNetwork::Seen>> EtherCatNetwork::look(bool sii) {
   for (const auto& slave : view->slaves)
     out.push_back({slave, {}, {}, is_foreign(static_cast<std::uint8_t>(out.size() + 1), slave.al)});
   const bool foreign = std::any_of(out.begin(), out.end(), [](const Seen& s) { return s.foreign; });
-  if ((changed_ || view->count != count_) && !must_go_on()) {
+  // A node is another drive after it: that is for who asks what is there, not for a job that goes on.
+  for (std::size_t i = 0; numbered_ && i < out.size(); ++i) {
+    const auto station = out[i].look.station;
+    changed_ = changed_ || (station != 0 && station != station_of(static_cast<std::uint8_t>(i + 1)));
+  }
+  changed_ = changed_ || (numbered_ && view->count > count_);
+  if (changed_ && !sii) return fail(numbered_otherwise());
+  if (sii && (changed_ || view->count != count_) && !must_go_on()) {
     for (const auto& node : nodes_)
       if (node) forget_mailbox(*node, drive_error(Errc::timeout, node->number, "the ring was numbered anew"));
     changed_ = numbered_ = false;

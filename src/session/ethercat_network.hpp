@@ -72,8 +72,9 @@ class EtherCatNetwork final : public Network, private EtherCatTenant {
     bool foreign = false;   ///< Another master exchanges process data with it.
   };
   /// Looks at all slaves; changes nothing, and asks no mailbox. `sii`: reads what each says of itself, which
-  /// writes to the registers of its access: not of slaves that another master works with. Numbers the nodes
-  /// anew where the ring has changed. Errc::bus when nothing comes back, or nobody is there.
+  /// writes to the registers of its access: not of slaves that another master works with; and numbers the
+  /// nodes anew where the ring has changed. Errc::bus when nothing comes back, nobody is there, or, without
+  /// `sii`, the ring has changed since it was numbered.
   Result<std::vector<Seen>> look(bool sii);
   /// Slaves that were there when it was counted last; 0 before.
   std::size_t count() const { return present_; }

@@ -64,6 +64,10 @@ TEST_F(EtherCatTest, ARingWithAnotherMasterIsNotTouched) {
   other->network().ethercat()->take_over(2);
   EXPECT_TRUE(other->network().request_state(2, NodeState::pre_operational));
   EXPECT_EQ(slave(1).state(), sim::EscState::pre_op);
+  pass(milliseconds(300));  // The first notices that it was taken from it.
+  ASSERT_TRUE(network().request_state(2, NodeState::safe_operational));
+  EXPECT_EQ(connect()->upload(1, objects::kVendorId).error().code, Errc::refused);
+  EXPECT_TRUE(other->network().ethercat()->look(false).value()[1].foreign) << "taken over once, not for ever";
 }
 
 TEST_F(EtherCatTest, ASlaveGoesToOpAndBack) {
@@ -217,7 +221,9 @@ TEST_F(EtherCatTest, ASlaveThatTakesAnothersPlaceIsNotTakenForIt) {
   const auto answer = session_->upload(1, objects::kVendorId);
   ASSERT_FALSE(answer);
   EXPECT_EQ(answer.error().message, "coe:sim: the ring has changed since its slaves were numbered");
-  ASSERT_TRUE(network().look(false));
+  EXPECT_FALSE(network().look(false)) << "nobody has asked for new numbers";
+  EXPECT_FALSE(session_->upload(1, objects::kVendorId));
+  ASSERT_TRUE(network().look(true));
   EXPECT_TRUE(session_->upload(1, objects::kVendorId)) << "numbered anew";
 }
 
