@@ -51,6 +51,7 @@ servoctl_tests(session servoctl_session)
 servoctl_tests(motion servoctl_motion)
 servoctl_tests(settings servoctl_settings)
 servoctl_tests(traffic servoctl_traffic)
+servoctl_tests(cabinet servoctl_cabinet)
 servoctl_tests(commands servoctl_commands)
 servoctl_tests(cli servoctl_cli)
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "base/number.hpp"
@@ -12,22 +11,6 @@
 
 namespace servoctl::drive {
 namespace {
-
-/// Splits `60rpm` and `1.5 rev/s`; empty when the text does not begin with a number or nothing follows it.
-struct NumberWithUnit {
-  double number = 0;
-  std::string_view unit;
-};
-std::optional<NumberWithUnit> split_unit(std::string_view text) {
-  NumberWithUnit out;
-  const bool plus = !text.empty() && text.front() == '+';
-  if (plus && text.size() > 1 && text[1] == '-') return std::nullopt;
-  const auto* begin = text.data() + (plus ? 1 : 0);
-  const auto [stop, error] = std::from_chars(begin, text.data() + text.size(), out.number);
-  if (error != std::errc{} || !std::isfinite(out.number)) return std::nullopt;
-  out.unit = trim(text.substr(static_cast<std::size_t>(stop - text.data())));
-  return out.unit.empty() ? std::nullopt : std::optional(out);
-}
 
 /// A step is met when the value lies within a thousandth of it: numbers with many digits are rounded on
 /// paper.

@@ -19,6 +19,7 @@
 
 #include "base/object_address.hpp"
 #include "base/result.hpp"
+#include "base/text.hpp"
 
 /// Reads TOML tables whose every key is known. Each get() answers whether the node was of its kind.
 namespace servoctl::drive {
@@ -104,14 +105,19 @@ class TableReader {
 
   using Handler = std::function<bool(const toml::node&)>;
   using Handlers = std::map<std::string_view, Handler>;
+  /// How the value of a key is written, for the hint where it is not.
+  using Forms = std::map<std::string_view, std::string_view>;
 
   /// Every key must be one of these; a handler answers whether it could use the value.
-  Result<void> read(const Handlers& handlers) const {
+  Result<void> read(const Handlers& handlers, const Forms& forms = {}) const {
     for (const auto& [key, node] : *table_) {
       const auto handler = handlers.find(std::string_view(key.str()));
-      if (handler == handlers.end()) return fail_at(node, fmt::format("unknown key '{}'", key.str()));
-      if (!handler->second(node))
-        return fail_at(node, fmt::format("the value of '{}' is of the wrong kind", key.str()));
+      if (handler == handlers.end()) return unknown(key, handlers);
+      if (handler->second(node)) continue;
+      auto error = fail_at(node, fmt::format("the value of '{}' is of the wrong kind", key.str())).value();
+      if (const auto form = forms.find(handler->first); form != forms.end())
+        error.hint = fmt::format("write {}", form->second);
+      return fail(std::move(error));
     }
     return {};
   }
@@ -124,6 +130,15 @@ class TableReader {
   std::string_view file() const { return file_; }
 
  private:
+  tl::unexpected<Error> unknown(const toml::key& key, const Handlers& handlers) const {
+    const auto at = key.source().begin;
+    auto error = file_error(file_, at.line, at.column, fmt::format("unknown key '{}'", key.str()));
+    std::vector<std::string> known;
+    for (const auto& handler : handlers) known.emplace_back(handler.first);
+    error.hint = did_you_mean(key.str(), known);
+    return fail(std::move(error));
+  }
+
   const toml::table* table_;
   std::string_view file_;
 };

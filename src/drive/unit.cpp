@@ -1,6 +1,8 @@
 #include "drive/unit.hpp"
 
 #include <array>
+#include <charconv>
+#include <cmath>
 #include <cstdint>
 
 #include "base/text.hpp"
@@ -91,6 +93,17 @@ std::optional<double> conversion(std::string_view from, std::string_view to) {
   const auto* wanted = find_unit(to);
   if (given == nullptr || wanted == nullptr || given->dimension != wanted->dimension) return std::nullopt;
   return given->factor / wanted->factor;
+}
+
+std::optional<NumberWithUnit> split_unit(std::string_view text) {
+  NumberWithUnit out;
+  const bool plus = !text.empty() && text.front() == '+';
+  if (plus && text.size() > 1 && text[1] == '-') return std::nullopt;
+  const auto* begin = text.data() + (plus ? 1 : 0);
+  const auto [stop, error] = std::from_chars(begin, text.data() + text.size(), out.number);
+  if (error != std::errc{} || !std::isfinite(out.number)) return std::nullopt;
+  out.unit = trim(text.substr(static_cast<std::size_t>(stop - text.data())));
+  return out.unit.empty() ? std::nullopt : std::optional(out);
 }
 
 std::string_view familiar_unit(std::string_view unit) {

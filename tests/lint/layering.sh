@@ -22,9 +22,10 @@ declare -A may=(
   [pdo]="base can canopen od drive sim session report show settings"
   [traffic]="base can canopen od drive sim session report show"
   [trial]="base can canopen od drive sim session report show motion settings pdo traffic"
-  [command]="base can canopen od drive sim session report show motion settings pdo traffic trial"
-  [commands]="base can canopen od drive sim session report show motion settings pdo traffic trial command"
-  [cli]="base can canopen od drive sim session report show motion settings pdo traffic trial command commands"
+  [cabinet]="base can canopen od drive sim session report show motion settings pdo"
+  [command]="base can canopen od drive sim session report show motion settings pdo traffic trial cabinet"
+  [commands]="base can canopen od drive sim session report show motion settings pdo traffic trial cabinet command"
+  [cli]="base can canopen od drive sim session report show motion settings pdo traffic trial cabinet command commands"
   [main.cpp]="cli"
 )
 checked=0

@@ -1,0 +1,45 @@
+#include "cabinet/name_pattern.hpp"
+
+#include <fmt/format.h>
+#include <cctype>
+
+#include "base/number.hpp"
+#include "base/text.hpp"
+#include "base/utf8.hpp"
+
+namespace servoctl::cabinet {
+
+bool is_name(std::string_view name) {
+  if (name.empty() || !is_utf8(name) || equals_nocase(name, "all")) return false;
+  const auto first = static_cast<unsigned char>(name.front());
+  if (first < 0x80 && std::isalpha(first) == 0) return false;
+  for (std::string_view rest = name; !rest.empty();) {
+    const auto c = decode_utf8(rest);
+    if (!c.value || is_hidden_or_control(*c.value)) return false;
+    const bool plain = *c.value >= 0x80 || std::isalnum(static_cast<int>(*c.value)) != 0;
+    if (!plain && *c.value != '_' && *c.value != '-') return false;
+    if (*c.value == 0x3000 || *c.value == 0xA0) return false;  // Spaces beyond ASCII.
+    rest.remove_prefix(c.size);
+  }
+  return true;
+}
+
+Result<std::vector<std::string>> expand_name(const std::string& pattern) {
+  const auto open = pattern.find('{');
+  if (open == std::string::npos) return std::vector{pattern};
+  const auto close = pattern.find('}', open);
+  const auto inside = close == std::string::npos ? std::string() : pattern.substr(open + 1, close - open - 1);
+  const auto ends = split(std::string_view(inside), '-');
+  const auto first = ends.size() == 2 ? parse_digits(ends[0], 10) : std::nullopt;
+  const auto last = ends.size() == 2 ? parse_digits(ends[1], 10) : std::nullopt;
+  if (!first || !last || *last < *first || *last - *first > 126)
+    return fail(Errc::file,
+                fmt::format("'{}': write a rising range in the braces, as feeder{{1-40}}", pattern));
+  std::vector<std::string> out;
+  for (auto i = *first; i <= *last; ++i)
+    out.push_back(
+        fmt::format("{}{:0{}}{}", pattern.substr(0, open), i, ends[0].size(), pattern.substr(close + 1)));
+  return out;
+}
+
+}  // namespace servoctl::cabinet
