@@ -166,6 +166,7 @@ const Command kMonitor{
     .needs = Needs::can,
     .effect = Effect::reads,
     .run = run,
+    .goes_on = true,
     .elsewhere =
         "`--trace FILE.pcap` writes every frame for Wireshark; what slaves tell is shown by every command",
 };

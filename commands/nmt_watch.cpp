@@ -252,6 +252,7 @@ const Command kNmtWatch{
     .reads_without = "--guard",
     .run = run,
     .to_all = true,
+    .goes_on = true,
     .elsewhere =
         "`status` asks for the AL state; a slave that changes it, is gone or back is told by every command",
 };

@@ -136,6 +136,7 @@ const Command kPdoWatch{
     .needs = Needs::node | Needs::can,
     .effect = Effect::reads,
     .run = run,
+    .goes_on = true,
     .elsewhere =
         "`watch` and `scope` show values over time; in SAFE-OP and OP those of mapped inputs come by process data",
 };

@@ -21,6 +21,7 @@ extern const Command kParamSet;
 extern const Command kParamSearch;
 extern const Command kParamExplain;
 extern const Command kBackup;
+extern const Command kCabinetCheck;
 extern const Command kDiff;
 extern const Command kVerify;
 extern const Command kRestore;
@@ -107,6 +108,7 @@ constexpr Named kNamed[] = {
     {"param search", &commands::kParamSearch},
     {"param explain", &commands::kParamExplain},
     {"backup", &commands::kBackup},
+    {"cabinet check", &commands::kCabinetCheck},
     {"diff", &commands::kDiff},
     {"verify", &commands::kVerify},
     {"restore", &commands::kRestore},

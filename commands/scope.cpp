@@ -224,6 +224,7 @@ const Command kScope{
     .needs = Needs::node,
     .effect = Effect::reads,
     .run = run,
+    .goes_on = true,
 };
 
 }  // namespace servoctl::commands

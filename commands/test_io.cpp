@@ -47,6 +47,7 @@ const Command kTestIo{
     .effect = Effect::reads,
     .family = FamilyCheck::always,
     .run = run,
+    .goes_on = true,
 };
 
 }  // namespace servoctl::commands

@@ -170,6 +170,7 @@ const Command kWatch{
     .needs = Needs::node,
     .effect = Effect::reads,
     .run = run,
+    .goes_on = true,
 };
 
 }  // namespace servoctl::commands

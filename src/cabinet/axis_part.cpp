@@ -90,6 +90,7 @@ bool read_limits(const toml::node& node, Limits& out, std::string_view file, std
                                {"window", into(out.window)},
                                {"following_error", into(out.following_error)}});
   if (!done) inner = done.error();
+  out.at = place_of(node);
   return done.has_value();
 }
 
@@ -140,8 +141,9 @@ Result<void> read_parameters(const toml::node& node, std::string_view file, std:
       return reader.fail_at(value, fmt::format("'{}' and '{}' are the same", twice->name, key.str()));
     out.push_back({std::string(key.str()), std::move(*text), at});
   }
-  std::stable_sort(out.begin(), out.end(),
-                   [](const Setting& a, const Setting& b) { return a.at.line < b.at.line; });
+  std::stable_sort(out.begin(), out.end(), [](const Setting& a, const Setting& b) {
+    return std::pair(a.at.line, a.at.column) < std::pair(b.at.line, b.at.column);
+  });
   return {};
 }
 
@@ -214,6 +216,7 @@ void fill_from(AxisPart& part, const AxisPart& defaults) {
   take(part.gear, defaults.gear);
   if (!part.per_turn) part.per_turn_at = defaults.per_turn_at;
   take(part.per_turn, defaults.per_turn);
+  if (part.limits.at.line == 0) part.limits.at = defaults.limits.at;
   take(part.limits.speed, defaults.limits.speed);
   take(part.limits.torque, defaults.limits.torque);
   take(part.limits.window, defaults.limits.window);

@@ -43,6 +43,7 @@ struct Limits {
   std::string torque;           ///< `--max-torque`
   std::string window;           ///< `--window`
   std::string following_error;  ///< `--max-following-error`
+  Place at;                     ///< Of the last table that says one of them.
 };
 
 /// The PDOs that a drive is to have; at most one of the three is said.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/printable.hpp"
+#include "base/signal_wait.hpp"
 #include "base/text.hpp"
 #include "can/descriptor.hpp"
 #include "can/socketcan.hpp"
@@ -39,18 +40,38 @@ Error no_bus() {
 
 Result<session::Session*> BusHolder::open(const Settings& settings) {
   if (settings.bus.empty()) return fail(no_bus());
-  if (session_ == nullptr ||
-      session::canonical_url(session_->url()) != session::canonical_url(settings.bus) ||
-      bus_options_.trace != settings.trace) {
-    if (session_) stop_and_disable();
+  const auto url = session::canonical_url(settings.bus);
+  const bool traces_anew = bus_options_.trace != settings.trace;
+  const bool is_open = open_.count(url) != 0;
+  if (traces_anew || (!settings.of_cabinet && (!is_open || open_.size() > 1))) {
+    stop_and_disable();
     stop_sync();
     drop();
-    bus_options_.trace = settings.trace;
-    if (auto done = connect(settings.bus); !done) return fail(done.error());
   }
+  if (!open_.empty() && !settings.trace.empty() && open_.count(url) == 0)
+    return fail(Errc::usage, "--trace records one bus, and this line needs several",
+                "name the axes of one bus");
+  bus_options_.trace = settings.trace;
+  names_[url] = settings.names;
+  if (const auto found = open_.find(url); found != open_.end())
+    session_ = found->second.get();
+  else if (auto done = connect(settings.bus); !done)
+    return fail(done.error());
   session_->options().timeout = settings.timeout;
   session_->options().retries = settings.retries;
-  return session_.get();
+  return session_;
+}
+
+std::vector<session::Session*> BusHolder::sessions() const {
+  std::vector<session::Session*> out;
+  for (const auto& [url, session] : open_) out.push_back(session.get());
+  return out;
+}
+
+const show::AxisNames& BusHolder::names(const session::Session& session) const {
+  static const show::AxisNames kNone;
+  const auto found = names_.find(session::canonical_url(session.url()));
+  return found == names_.end() ? kNone : found->second;
 }
 
 Result<std::unique_ptr<session::RingEnd>> BusHolder::open_ring_end(const Settings& settings) {
@@ -62,12 +83,14 @@ Result<void> BusHolder::connect(const std::string& url) {
   auto network = session::open_network(url, bus_options_);
   if (!network) return fail(network.error());
   auto session = std::make_unique<session::Session>(std::move(*network), url, options_);
+  session->options().beside = [this] { return serve_beside(); };
   // Boot-ups of drives that are simulated in this process are no news.
   if (auto heard = session->listen(); !heard) return heard;
   (void)session->take_events();
   if (auto left = left_energised_.extract(session::canonical_url(url)))
     session->energised() = std::move(left.mapped());
-  session_ = std::move(session);
+  session_ = session.get();
+  open_[session::canonical_url(url)] = std::move(session);
   return {};
 }
 
@@ -80,39 +103,42 @@ void BusHolder::on_trace_failed(const Error& error) {
 
 std::optional<Error> BusHolder::take_trace_failure() {
   flushing_ = true;
-  if (session_) session_->network().flush_trace();
+  for (auto* session : sessions()) session->network().flush_trace();
   flushing_ = false;
   return std::exchange(trace_failure_, std::nullopt);
 }
 
-/// Closes the bus; what is still energised stays known.
+/// Closes the buses; what is still energised stays known.
 void BusHolder::drop() {
-  if (session_ && !session_->energised().empty())
-    left_energised_.insert_or_assign(session::canonical_url(session_->url()),
-                                     std::move(session_->energised()));
-  flushing_ = true;  // What the trace could not take to the last is told by who takes its failure.
-  session_.reset();
-  flushing_ = false;
+  for (auto* session : sessions()) drop(*session);
 }
 
-void BusHolder::lose() {
-  if (!session_) return;
-  for (const auto node : session_->energised().nodes()) warn(node, session_->url() + " was lost");
-  if (produces_sync())
-    console_->err(fmt::format("notice: SYNC is no longer produced: {} was lost\n", session_->url()));
-  drop();
+void BusHolder::drop(session::Session& session) {
+  const auto url = session::canonical_url(session.url());
+  if (!session.energised().empty()) left_energised_.insert_or_assign(url, std::move(session.energised()));
+  flushing_ = true;  // What the trace could not take to the last is told by who takes its failure.
+  open_.erase(url);
+  flushing_ = false;
+  session_ = open_.empty() ? nullptr : open_.begin()->second.get();
+}
+
+void BusHolder::lose(session::Session& session) {
+  for (const auto node : session.energised().nodes()) warn(names(session), node, session.url() + " was lost");
+  if (produces_sync(session))
+    console_->err(fmt::format("notice: SYNC is no longer produced: {} was lost\n", session.url()));
+  drop(session);
 }
 
 void BusHolder::let_go() {
   // Taken out only when its bus is there again: what is known to be energised stays protected.
   std::map<std::string, std::set<std::uint8_t>> left;
   for (const auto& [url, nodes] : left_energised_) left[url] = nodes.nodes();
-  if (session_) stop_and_disable();
+  stop_and_disable();
   stop_sync();
   if (!left.empty()) drop();
   for (const auto& [url, nodes] : left) {
     if (const auto back = connect_again(url, nodes); !back) {
-      for (const auto node : nodes) warn(node, back.error().message);
+      for (const auto node : nodes) warn(names_[url], node, back.error().message);
       continue;
     }
     stop_and_disable();
@@ -138,41 +164,91 @@ Result<void> BusHolder::connect_again(const std::string& url, const std::set<std
 }
 
 bool BusHolder::produces_sync() const {
-  return session_ && session_->can() != nullptr && session_->can()->sync() != nullptr;
+  const auto all = sessions();
+  return std::any_of(all.begin(), all.end(), [](auto* session) { return produces_sync(*session); });
+}
+
+bool BusHolder::produces_sync(session::Session& session) {
+  return session.can() != nullptr && session.can()->sync() != nullptr;
 }
 
 void BusHolder::stop_sync() {
-  if (!produces_sync()) return;
-  const auto count = session_->can()->sync()->rhythm.count();
-  for (const auto& warning : traffic::end_sync(*session_).warnings)
-    console_->err("warning: " + warning + "\n");
-  console_->err(fmt::format("notice: SYNC is no longer produced on {}, after {}\n", session_->url(), count));
+  for (auto* session : sessions()) {
+    if (!produces_sync(*session)) continue;
+    const auto count = session->can()->sync()->rhythm.count();
+    for (const auto& warning : traffic::end_sync(*session).warnings)
+      console_->err("warning: " + warning + "\n");
+    console_->err(fmt::format("notice: SYNC is no longer produced on {}, after {}\n", session->url(), count));
+  }
 }
 
-bool BusHolder::must_go_on() const { return session_ && session_->network().must_go_on(); }
+bool BusHolder::must_go_on() const {
+  const auto all = sessions();
+  return std::any_of(all.begin(), all.end(), [](auto* session) { return session->network().must_go_on(); });
+}
 
 bool BusHolder::holds_drives() const {
-  return must_go_on() || (session_ && session_->ethercat() != nullptr && !session_->energised().empty());
+  const auto all = sessions();
+  return must_go_on() || std::any_of(all.begin(), all.end(), [](auto* session) {
+           return session->ethercat() != nullptr && !session->energised().empty();
+         });
 }
 
 Duration BusHolder::serve() {
   if (!must_go_on() && !produces_sync()) return Duration::max();
-  // What goes wrong is told to the next line.
-  (void)session_->listen();
-  return std::max(Duration::zero(), session_->next_event() - session_->now());
+  auto out = Duration::max();
+  for (auto* session : sessions()) {
+    // What goes wrong is told to the next line.
+    (void)session->listen();
+    if (const auto next = session->next_event(); next != kNever)
+      out = std::min(out, std::max(Duration::zero(), next - session->now()));
+  }
+  return out;
+}
+
+Duration BusHolder::serve_beside() {
+  if (open_.size() < 2 || serving_beside_) return Duration::max();
+  serving_beside_ = true;
+  auto out = Duration::max();
+  for (auto* session : sessions()) {
+    if (session == session_ || !(session->network().must_go_on() || produces_sync(*session))) continue;
+    (void)session->listen();
+    out = std::min(out, std::max(Duration::zero(), session->next_event() - session->now()));
+  }
+  serving_beside_ = false;
+  return out;
+}
+
+bool BusHolder::wait_for(pollfd& wanted, Duration longest, const std::function<void(const Error&)>& lost) {
+  std::vector<pollfd> fds{wanted};
+  std::optional<Duration> left;
+  for (auto* session : sessions()) {
+    fds.push_back({session->network().poll_fd(), POLLIN, 0});
+    if (const auto next = session->next_event(); next != kNever)
+      left = std::clamp<Duration>(next - session->now(), Duration::zero(), left.value_or(longest));
+  }
+  if (wait_or_signal(fds, left) < 0) return false;
+  for (auto* session : sessions())
+    if (const auto heard = session->listen(); !heard && heard.error().code == Errc::bus) {
+      lost(heard.error());
+      lose(*session);
+    }
+  wanted.revents = fds.front().revents;
+  return true;
 }
 
 void BusHolder::stop_and_disable() {
-  for (const auto& [node, done] : motion::de_energise(*session_)) {
-    if (done)
-      console_->err("notice: " + motion::disabled_notice(node) + "\n");
-    else
-      warn(node, done.error().message);
-  }
+  for (auto* session : sessions())
+    for (const auto& [node, done] : motion::de_energise(*session)) {
+      if (done)
+        console_->err("notice: " + names(*session).in(motion::disabled_notice(node)) + "\n");
+      else
+        warn(names(*session), node, done.error().message);
+    }
 }
 
-void BusHolder::warn(std::uint8_t node, std::string_view why) {
-  console_->err("error: " + motion::power_warning(node, why) + "\n");
+void BusHolder::warn(const show::AxisNames& names, std::uint8_t node, std::string_view why) {
+  console_->err("error: " + names.in(motion::power_warning(node, why)) + "\n");
 }
 
 }  // namespace servoctl::cli

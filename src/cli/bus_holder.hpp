@@ -1,11 +1,15 @@
 #pragma once
 
+#include <poll.h>
+
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "cli/settings.hpp"
 #include "cli/terminal/console.hpp"
@@ -18,8 +22,9 @@ class RingEnd;
 
 namespace servoctl::cli {
 
-/// The bus of a front end: opened when a line needs it and kept for the next one. It knows the drives that
-/// were left energised, over a bus that was lost too, and lets none of them go without a word.
+/// The bus of a front end: opened when a line needs it and kept for the next one; those of a cabinet all stay
+/// open. It knows the drives that were left energised, over a bus that was lost too, and lets none of them go
+/// without a word.
 class BusHolder {
  public:
   /// `session_options` hold for every bus that is opened, `bus_options.trace` is that of the settings.
@@ -32,14 +37,22 @@ class BusHolder {
   BusHolder& operator=(const BusHolder&) = delete;
   ~BusHolder() { console_->set_service({}); }
 
-  /// The session on the bus of the settings; another bus that is open is let go first. Errors as open_bus(),
-  /// Errc::usage when the settings name no bus.
+  /// The session on the bus of the settings. Another bus that is open is let go first, unless the settings
+  /// are those of a cabinet's axes. Errors as open_bus(), Errc::usage when the settings name no bus.
   Result<session::Session*> open(const Settings& settings);
   /// The slaves' end of the bus of the settings, beside whatever bus is open; errors as
   /// session::open_ring_end().
   Result<std::unique_ptr<session::RingEnd>> open_ring_end(const Settings& settings);
-  /// The bus as it is open now; null when none is.
-  session::Session* session() { return session_.get(); }
+  /// The bus that was used last; null when none is open.
+  session::Session* session() { return session_; }
+  /// All that are open.
+  std::vector<session::Session*> sessions() const;
+  /// What the nodes of the session's bus are called.
+  const show::AxisNames& names(const session::Session& session) const;
+
+  /// Waits for what `wanted` asks of its descriptor, at most so long, while all buses are served. False after
+  /// a signal. `lost` is told of each bus that is lost, and gone then.
+  bool wait_for(pollfd& wanted, Duration longest, const std::function<void(const Error&)>& lost);
 
   /// What kept the trace from being written since the last call; what is left for it is written first.
   std::optional<Error> take_trace_failure();
@@ -47,6 +60,7 @@ class BusHolder {
   void close() { drop(); }
 
   bool produces_sync() const;
+  static bool produces_sync(session::Session& session);
   /// Nodes depend on what servoctl sends regularly: while their user is waited for it goes on, and before the
   /// program ends they are let go.
   bool must_go_on() const;
@@ -56,28 +70,34 @@ class BusHolder {
   /// Ends the SYNC that is produced, and says so.
   void stop_sync();
 
-  /// The interface is gone. What was energised over it is told now, and is still known when the same bus is
-  /// opened again.
-  void lose();
+  /// The interface of the bus is gone. What was energised over it is told now, and is still known when the
+  /// same bus is opened again.
+  void lose(session::Session& session);
   /// Stops and disables the drives that were left energised, and says so; a lost bus is opened again for it.
   void let_go();
 
  private:
   /// Does what is due on the bus while the user is waited for; the answer is how long it has time.
   Duration serve();
+  /// Serves the buses that cannot wait while another is used.
+  Duration serve_beside();
   Result<void> connect(const std::string& url);
   Result<void> connect_again(const std::string& url, const std::set<std::uint8_t>& nodes);
   void stop_and_disable();
   void drop();
+  void drop(session::Session& session);
   void on_trace_failed(const Error& error);
-  void warn(std::uint8_t node, std::string_view why);
+  void warn(const show::AxisNames& names, std::uint8_t node, std::string_view why);
 
   Console* console_;
   session::BusOptions bus_options_;
   session::Options options_;
   std::optional<Error> trace_failure_;  ///< Outlives the bus, which may tell of it at its very end.
   bool flushing_ = false;
-  std::unique_ptr<session::Session> session_;
+  bool serving_beside_ = false;
+  std::map<std::string, std::unique_ptr<session::Session>> open_;  ///< By canonical_url().
+  session::Session* session_ = nullptr;                            ///< Of them that was used last.
+  std::map<std::string, show::AxisNames> names_;                   ///< By canonical_url().
   std::map<std::string, session::EnergisedNodes> left_energised_;  ///< By canonical_url() of one not open.
 };
 

@@ -18,7 +18,7 @@ RunningLine::RunningLine(Shell& shell, const Settings& settings, command::Contex
 Result<void> RunningLine::confirm(std::string_view question) {
   if (settings_->yes) return {};
   auto& console = shell_->console();
-  const auto shown = printable(question);
+  const auto shown = printable(settings_->names.in(question));
   if (!console.can_ask())
     return fail(Errc::refused, fmt::format("confirmation needed: {}", shown), "add --yes to confirm");
   if (console.ask(shown)) return {};
@@ -26,17 +26,23 @@ Result<void> RunningLine::confirm(std::string_view question) {
 }
 
 void RunningLine::emit(const report::Record& sample, std::string_view line) {
-  if (settings_->samples)
+  const auto& names = settings_->names;
+  if (settings_->samples && names.empty()) {
     shell_->console().out(report::to_json(sample) + "\n");
-  else if (!settings_->json && !line.empty())
-    shell_->console().out(printable(line) + "\n");
+  } else if (settings_->samples) {
+    auto named = sample;
+    names.put_into(named);
+    shell_->console().out(report::to_json(named) + "\n");
+  } else if (!settings_->json && !line.empty()) {
+    shell_->console().out(printable(names.empty() ? std::string(line) : names.in(line)) + "\n");
+  }
 }
 
 void RunningLine::write(std::string_view lines) { shell_->console().out(lines); }
 
 void RunningLine::tell(std::string_view text) {
   shell_->end_progress();
-  shell_->console().err(text);
+  shell_->console().err(settings_->names.in(text));
 }
 
 bool RunningLine::is_gone() const { return shell_->console().output_lost(); }
@@ -45,6 +51,18 @@ Result<session::Session*> RunningLine::open_bus() {
   const auto opened = shell_->open(*settings_);
   if (opened) context_->session = *opened;
   return opened;
+}
+
+Result<const cabinet::Cabinet*> RunningLine::cabinet() {
+  auto found = shell_->cabinet(*settings_);
+  if (found && *found == nullptr)
+    return fail(Errc::usage, "there is no cabinet file",
+                "name one with --cabinet, or go to its folder; `cabinet init` makes one");
+  return found;
+}
+
+Result<session::Session*> RunningLine::open_bus(const cabinet::Cabinet& cabinet, const cabinet::Bus& bus) {
+  return shell_->open(on_bus(cabinet, *settings_, bus).settings);
 }
 
 Result<std::unique_ptr<session::RingEnd>> RunningLine::open_ring_end() {

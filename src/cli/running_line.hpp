@@ -28,6 +28,8 @@ class RunningLine final : public show::Audience, public command::FrontEnd {
   bool is_gone() const override;
 
   Result<session::Session*> open_bus() override;
+  Result<const cabinet::Cabinet*> cabinet() override;
+  Result<session::Session*> open_bus(const cabinet::Cabinet& cabinet, const cabinet::Bus& bus) override;
   std::string_view bus_url() const override { return settings_->bus; }
   Result<std::unique_ptr<session::RingEnd>> open_ring_end() override;
   Result<void> hold_family(std::span<const std::uint8_t> nodes, const drive::Profile* profile,

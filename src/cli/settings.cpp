@@ -24,6 +24,7 @@ Settings settings_from_environment() {
   out.bus = variable("SERVOCTL_BUS");
   out.nodes = variable("SERVOCTL_NODE");
   out.drive = variable("SERVOCTL_DRIVE");
+  out.cabinet = variable("SERVOCTL_CABINET");
   const auto language = variable("SERVOCTL_LANG");
   out.chinese = language.empty() ? variable("LANG").starts_with("zh") : language == "zh";
   return out;
@@ -64,6 +65,7 @@ Result<Settings> apply_options(Settings base, const command::Arguments& argument
   base.force_family = base.force_family || arguments.has("--force-family");
   base.read_only = base.read_only || arguments.has("--read-only");
   base.dry_run = base.dry_run || arguments.has("--dry-run");
+  if (arguments.has("--cabinet")) base.cabinet = std::string(arguments.text("--cabinet"));
   if (arguments.has("--trace")) base.trace = std::string(arguments.text("--trace"));
   return base;
 }

@@ -9,6 +9,7 @@
 #include "base/result.hpp"
 #include "base/time.hpp"
 #include "command/command.hpp"
+#include "show/axis_names.hpp"
 
 namespace servoctl::cli {
 
@@ -28,9 +29,13 @@ struct Settings {
   bool read_only = false;
   bool dry_run = false;
   std::filesystem::path trace;
+  std::filesystem::path cabinet;  ///< That was named; empty: the one found from the current folder.
+  bool of_cabinet = false;        ///< Bus, nodes and family are those of axes: other buses stay open.
+  show::AxisNames names;          ///< Of the nodes of the bus.
 };
 
-/// Defaults from $SERVOCTL_BUS, $SERVOCTL_NODE, $SERVOCTL_DRIVE and $SERVOCTL_LANG (or a Chinese $LANG).
+/// Defaults from $SERVOCTL_BUS, $SERVOCTL_NODE, $SERVOCTL_DRIVE, $SERVOCTL_CABINET and $SERVOCTL_LANG (or a
+/// Chinese $LANG).
 Settings settings_from_environment();
 
 /// `base` with the global options of one line on top. Errc::usage for a value that is none.

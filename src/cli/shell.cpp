@@ -87,14 +87,11 @@ Outcome Shell::perform(const std::vector<std::string>& words) {
   auto settings = options_.defaults;
   settings.json = settings.json || wants_json(words);
   if (asks_for_help(words)) return help(words, std::move(settings));
-  auto parsed = parse_line(words);
+  auto parsed = parse_line(name_axes(words, match));
   if (!parsed) return failed(parsed.error(), std::move(settings), path);
   auto applied = apply_options(options_.defaults, parsed->arguments);
   if (!applied) return failed(applied.error(), std::move(settings), path);
-  Run run(*this, *parsed->command, std::move(*applied));
-  const auto result = execute(run, parsed->arguments);
-  progress_.end();
-  return finish(run, result);
+  return perform_parsed(*parsed, *applied);
 }
 
 /// Help is text for a person, whatever form results have.
@@ -122,6 +119,8 @@ Result<Value> Shell::execute(Run& run, const command::Arguments& arguments) {
   context.state_folder = options_.state_folder;
   context.keeps_samples = run.settings.json && !run.settings.samples;
   context.wants_records = run.settings.samples;
+  for (const auto* axis : run.axes)
+    if (axis->load) context.loads.emplace(axis->node, *axis->load);
   return run.command->run(context, arguments);
 }
 
@@ -168,11 +167,14 @@ Result<void> Shell::prepare_nodes(Run& run) {
 
 std::vector<std::string> Shell::take_notices(const drive::Profile* profile, bool chinese) {
   std::vector<std::string> out;
-  auto* session = bus_.session();
-  if (session == nullptr) return out;
-  for (auto& notice : session->network().take_notices()) out.push_back(std::move(notice));
-  for (const auto& event : session->take_events())
-    out.push_back(show::notice_text(event, profile, chinese, &session->network()));
+  for (auto* session : bus_.sessions()) {
+    const auto& names = bus_.names(*session);
+    for (const auto& notice : session->network().take_notices()) out.push_back(names.in(notice));
+    // The family of the line says nothing of another bus.
+    const auto* family = session == bus_.session() ? profile : nullptr;
+    for (const auto& event : session->take_events())
+      out.push_back(names.in(show::notice_text(event, family, chinese, &session->network())));
+  }
   return out;
 }
 
@@ -207,12 +209,20 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
     }
   }
   // A lost interface does not come back by itself: the next line opens it again.
-  if (!errors.empty() && errors.front().code == Errc::bus) bus_.lose();
+  if (!errors.empty() && errors.front().code == Errc::bus) lose_bus();
   auto words = errors.empty() ? std::string() : show::abort_words(run.context, errors.front());
+  const auto& names = run.settings.names;
+  for (auto& error : errors) {
+    error.message = names.in(error.message);
+    error.hint = names.in(error.hint);
+  }
+  for (auto& notice : run.context.notices) notice = names.in(notice);
+  auto value = result ? *result : Value();
+  names.put_into(value);
   return {.command = std::string(run.command->path),
-          .settings = std::move(run.settings),
+          .settings = run.settings,
           .uses_bus = includes(run.command->needs, Needs::bus) || run.context.session != nullptr,
-          .result = result ? *result : Value(),
+          .result = std::move(value),
           .errors = std::move(errors),
           .notices = std::move(run.context.notices),
           .abort_words = std::move(words)};

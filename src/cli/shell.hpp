@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cli/admission.hpp"
+#include "cli/axis_lines.hpp"
 #include "cli/bus_holder.hpp"
 #include "cli/outcome.hpp"
 #include "cli/parse.hpp"
@@ -42,7 +43,8 @@ class Shell {
   /// Runs one command line; the answer is the exit code.
   int run(const std::vector<std::string>& words);
 
-  /// Runs one command line and shows nothing but the samples of a command that goes on.
+  /// Runs one command line and shows nothing but the samples of a command that goes on. A line that names
+  /// axes of several buses or families is run for one after the other, and has one outcome.
   Outcome perform(const std::vector<std::string>& words);
 
   /// Shows an error as `run` would; for front ends that fail before a command is known.
@@ -57,8 +59,14 @@ class Shell {
   Settings& defaults() { return options_.defaults; }
   /// The bus as it is open now; null when none is.
   session::Session* session() { return bus_.session(); }
-  /// As BusHolder::lose().
-  void lose_bus() { bus_.lose(); }
+  /// As BusHolder::lose(), of the bus that was used last.
+  void lose_bus() {
+    if (auto* session = bus_.session()) bus_.lose(*session);
+  }
+  /// As BusHolder::wait_for().
+  bool wait_for(pollfd& wanted, Duration longest, const std::function<void(const Error&)>& lost) {
+    return bus_.wait_for(wanted, longest, lost);
+  }
   /// Whether other lines follow, so that what a line begins may go on behind it; the answer is what held
   /// before.
   bool stay_open(bool stays) { return std::exchange(stays_open_, stays); }
@@ -74,6 +82,9 @@ class Shell {
   /// code: not 0 when it ended otherwise.
   int hold();
 
+  /// As CabinetHolder::get().
+  Result<const cabinet::Cabinet*> cabinet(const Settings& settings) { return cabinet_.get(settings); }
+
   /// The family's data, loaded once. Errors as load_profile().
   Result<const drive::Profile*> profile(const std::string& family);
   /// As BusHolder::open().
@@ -87,15 +98,23 @@ class Shell {
 
  private:
   struct Run {
-    Run(Shell& shell, const command::Command& of, Settings as)
-        : command(&of), settings(std::move(as)), line(shell, settings, context) {}
+    Run(Shell& shell, const command::Command& of, LinePart part)
+        : command(&of),
+          settings(std::move(part.settings)),
+          axes(std::move(part.axes)),
+          line(shell, settings, context) {}
     const command::Command* command;
     Settings settings;
+    std::vector<const cabinet::Axis*> axes;  ///< That the nodes are; empty where they are just nodes.
     command::Context context;
     RunningLine line;
   };
 
   session::Options session_options();
+  Outcome perform_parsed(const ParsedLine& line, const Settings& settings);
+  Outcome perform_part(const ParsedLine& line, LinePart part);
+  Result<std::vector<LinePart>> parts_of_line(const ParsedLine& line, const Settings& settings);
+  std::vector<std::string> name_axes(std::vector<std::string> words, const CommandMatch& match);
   Result<report::Value> execute(Run& run, const command::Arguments& arguments);
   Result<void> prepare(Run& run, const command::Arguments& arguments);
   Result<void> prepare_profile(Run& run);
@@ -116,6 +135,7 @@ class Shell {
   bool stays_open_ = false;
   std::optional<Error> incomplete_trace_;  ///< Told as a notice of a line; the exit code comes at the end.
   std::map<std::string, std::unique_ptr<drive::Profile>> profiles_;
+  CabinetHolder cabinet_;
 };
 
 }  // namespace servoctl::cli

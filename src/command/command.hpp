@@ -84,6 +84,7 @@ struct Command {
   bool to_all = false;        ///< Node 0 stays one message to all, and is not taken for those that answer.
   bool opens_bus = false;     ///< Its words decide which end of the bus it needs: it opens it itself.
   bool of_front_end = false;  ///< It runs other command lines: the front end does it, `run` is null.
+  bool goes_on = false;       ///< It shows what comes until it is ended: one bus and family at a time.
   /// What there is instead of it on a network of another kind, for a hint; empty: nothing.
   std::string_view elsewhere = {};
 

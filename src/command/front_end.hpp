@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "cabinet/cabinet.hpp"
 #include "command/keys.hpp"
 #include "drive/profile.hpp"
 #include "session/session.hpp"
@@ -22,6 +23,11 @@ class FrontEnd : public settings::LineReader {
  public:
   /// Opens the bus of the line; the context has its session then.
   virtual Result<session::Session*> open_bus() = 0;
+  /// The cabinet file of the line: `--cabinet`, $SERVOCTL_CABINET, or `cabinet.toml` in the current folder or
+  /// above. Errc::usage where there is none, else as read_cabinet().
+  virtual Result<const cabinet::Cabinet*> cabinet() = 0;
+  /// Opens a bus of the cabinet, and keeps those that are open; errors as open_network().
+  virtual Result<session::Session*> open_bus(const cabinet::Cabinet& cabinet, const cabinet::Bus& bus) = 0;
   /// The URL of the bus of the line; empty when it names none.
   virtual std::string_view bus_url() const = 0;
   /// Opens the slaves' end of the bus of the line, which is one with EtherCAT; errors as

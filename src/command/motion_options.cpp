@@ -50,6 +50,7 @@ Result<motion::MotionRequest> motion_request(const Context& context, const Argum
   if (!node) return fail(node.error());
   auto options = motion_options(context, arguments);
   if (!options) return fail(options.error());
+  if (const auto load = context.loads.find(*node); load != context.loads.end()) options->load = load->second;
   return motion::MotionRequest{*node, std::move(*options), std::string(arguments.text("--csv")),
                                arguments.has("--plot")};
 }

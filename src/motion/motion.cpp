@@ -38,7 +38,7 @@ Motion::Motion(session::Session& session, const drive::Profile& profile, std::ui
 Result<void> Motion::prepare() {
   if (const auto alive = power_.statusword(); !alive) return fail(alive.error());
   units_ = std::make_unique<MotionUnits>(*session_, *profile_, node_, options_.turn, options_.encoder,
-                                         options_.learned);
+                                         options_.learned, options_.load);
   monitor_ = std::make_unique<MotionMonitor>(*session_, *units_, node_);
   if (const auto done = read_limits(); !done) return done;
   speed_cap_ = find_speed_cap();

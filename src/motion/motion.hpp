@@ -22,6 +22,7 @@ struct MotionOptions {
   std::optional<std::uint8_t> producer;  ///< servoctl's own node-ID for the watchdog.
   std::optional<double> turn;            ///< Increments in one turn, where the drive does not tell.
   std::optional<double> learned;         ///< What MotionUnits knows by that name.
+  std::optional<drive::LoadUnit> load;   ///< What the load moves, where the user has said it.
   std::optional<double> encoder;         ///< Encoder counts in one turn, where the drive does not tell.
   std::string speed_limit;               ///< Of 60FFh.
   std::string acceleration;              ///< Of 6083h.

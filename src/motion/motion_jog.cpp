@@ -175,7 +175,7 @@ Result<MotionPlan> plan_jog(Motion& motion, const Jog& jog) {
     if (!way) return fail(way.error());
     plan.way = *way;
   }
-  plan.summary = fmt::format("turn at {} {} {}", number_text(speed.value), speed.unit, until_text(jog));
+  plan.summary = fmt::format("turn at {} {}", motion.units().words(speed.value, speed.unit), until_text(jog));
   plan.moving = {{objects::kTargetVelocity, plan.command},
                  {objects::kTargetVelocity, Bytes(plan.command.size(), 0)}};
   motion.set_standstill(speed.value);

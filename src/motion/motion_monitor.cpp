@@ -165,6 +165,15 @@ Result<void> MotionMonitor::check_limits(const MotionSample& sample) const {
   return {};
 }
 
+/// The same quantity of the load, where somebody said what that moves.
+std::optional<Series> MotionMonitor::of_load(const Series& motor) const {
+  const auto unit = units_->of_load(0, motor.unit);
+  if (!unit) return std::nullopt;
+  Series out{motor.name + " of the load", unit->unit, motor.seconds, {}};
+  for (const auto value : motor.values) out.values.push_back(units_->of_load(value, motor.unit)->value);
+  return out;
+}
+
 std::vector<Series> MotionMonitor::series() const {
   std::vector<Series> out;
   for (const auto signal : kEverySignal) {
@@ -174,7 +183,10 @@ std::vector<Series> MotionMonitor::series() const {
       one.seconds.push_back(std::chrono::duration<double>(sample.time - samples_.front().time).count());
       one.values.push_back(*sample[signal]);
     }
-    if (!one.values.empty()) out.push_back(std::move(one));
+    if (one.values.empty()) continue;
+    auto load = of_load(one);
+    out.push_back(std::move(one));
+    if (load) out.push_back(std::move(*load));
   }
   return out;
 }

@@ -77,6 +77,7 @@ class MotionMonitor {
   std::vector<Series> series() const;
 
  private:
+  std::optional<Series> of_load(const Series& motor) const;
   void follow_zero(const MotionSample& sample);
   std::vector<Result<Bytes>> look(std::span<const ObjectAddress> objects);
   Result<void> check_events();

@@ -203,8 +203,8 @@ Result<MotionPlan> plan_move(Motion& motion, const Move& move) {
   if (motion.rules().handshake)
     for (const auto word : {kEnabled, kNewSetpoint, kEnabled})
       plan.moving.emplace_back(objects::kControlword, store_le(word, 2));
-  plan.summary = fmt::format("go {} {} to {} {} at {} {}", number_text(plan.way), plan.unit,
-                             number_text(plan.value), plan.unit, number_text(plan.speed), fast->unit);
+  plan.summary = fmt::format("go {} to {} at {}", units.words(plan.way, plan.unit),
+                             units.words(plan.value, plan.unit), units.words(plan.speed, fast->unit));
   motion.set_standstill(plan.speed);
   motion.supervise_overspeed(plan.speed);
   return plan;

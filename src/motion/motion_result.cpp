@@ -160,8 +160,10 @@ std::string sample_line(const MotionSample& sample, TimePoint begin, const Motio
   for (const auto signal : kEverySignal) {
     const auto value = sample[signal];
     if (!value) continue;
-    const auto text = fmt::format("{}{} {}", kShort[static_cast<std::size_t>(signal)], number_text(*value),
-                                  units.unit(object_of(signal)));
+    const auto unit = units.unit(object_of(signal));
+    const auto shown = units.of_load(*value, unit).value_or(Physical{*value, unit});
+    const auto text = fmt::format("{}{} {}", kShort[static_cast<std::size_t>(signal)],
+                                  number_text(shown.value), shown.unit);
     out += "  " + pad_left(text, 15);
   }
   return out;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/number.hpp"
 #include "session/measure.hpp"
 
 namespace servoctl::motion {
@@ -23,8 +24,8 @@ constexpr double kMostSteps = 9.0e15;
 
 MotionUnits::MotionUnits(session::Session& session, const drive::Profile& profile, std::uint8_t node,
                          std::optional<double> turn, std::optional<double> encoder,
-                         std::optional<double> learned)
-    : profile_(&profile), node_(node) {
+                         std::optional<double> learned, std::optional<drive::LoadUnit> load)
+    : profile_(&profile), node_(node), load_(std::move(load)) {
   const session::MeasureQuestion questions[] = {{node, drive::Measure::increments_per_turn, learned},
                                                 {node, drive::Measure::pulses_per_turn},
                                                 {node, drive::Measure::rated_torque}};
@@ -63,7 +64,7 @@ Error MotionUnits::unknown_turn(ObjectAddress object, Error error) const {
 
 Result<Setpoint> MotionUnits::parse(ObjectAddress object, std::string_view text) const {
   const auto what = meaning(object);
-  const auto quantity = drive::nearest_quantity(what, text);
+  const auto quantity = drive::nearest_quantity(what, for_motor(text));
   if (!quantity) return fail(unknown_turn(object, quantity.error()));
   auto data = od::encode(what.type, quantity->value);
   if (!data) return fail(data.error());
@@ -81,10 +82,11 @@ std::optional<Physical> MotionUnits::physical(ObjectAddress object, ByteSpan byt
 
 Result<Physical> MotionUnits::parse_physical(ObjectAddress object, std::string_view text) const {
   auto what = meaning(object);
-  auto value = drive::parse_quantity(what, text);
+  const auto motor = for_motor(text);
+  auto value = drive::parse_quantity(what, motor);
   if (!value && what.encoding == od::Encoding::plain && od::is_integer(what.type)) {
     what.type = od::DataType::f64;
-    if (auto between = drive::parse_quantity(what, text)) value = std::move(between);
+    if (auto between = drive::parse_quantity(what, motor)) value = std::move(between);
   }
   if (!value) return fail(unknown_turn(object, value.error()));
   return physical_of(what, *value);
@@ -118,6 +120,23 @@ std::string MotionUnits::unit(ObjectAddress object) const {
   const auto size = what.type_known ? od::size_of(what.type).value_or(4) : 4;
   const auto zero = physical(object, Bytes(size, 0));
   return zero ? zero->unit : std::string();
+}
+
+std::string MotionUnits::for_motor(std::string_view text) const {
+  const auto turned = load_ ? drive::in_revolutions(*load_, text) : std::nullopt;
+  return turned.value_or(std::string(text));
+}
+
+std::optional<Physical> MotionUnits::of_load(double value, std::string_view unit) const {
+  const auto load = load_ ? drive::of_load(*load_, value, unit) : std::nullopt;
+  return load ? std::optional(Physical{load->value, load->unit}) : std::nullopt;
+}
+
+std::string MotionUnits::words(double value, std::string_view unit) const {
+  auto out = fmt::format("{} {}", number_text(value), unit);
+  if (const auto load = of_load(value, unit))
+    out += fmt::format(" ({} {})", number_text(load->value), load->unit);
+  return out;
 }
 
 std::optional<ObjectAddress> MotionUnits::object(std::string_view name) const {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "drive/load_unit.hpp"
 #include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/session.hpp"
@@ -29,10 +30,11 @@ class MotionUnits {
  public:
   /// `turn`: increments in one turn of the motor, `encoder`: counts of its encoder, where the user tells them
   /// and the drive does not. `learned`: the number that no object tells, measured earlier
-  /// (drive::Quotient::learned).
+  /// (drive::Quotient::learned). `load`: what the load moves, where the user says it: its units are read, and
+  /// told beside the motor's.
   MotionUnits(session::Session& session, const drive::Profile& profile, std::uint8_t node,
               std::optional<double> turn, std::optional<double> encoder = {},
-              std::optional<double> learned = {});
+              std::optional<double> learned = {}, std::optional<drive::LoadUnit> load = {});
 
   bool has(ObjectAddress object) const;
   drive::Meaning meaning(ObjectAddress object) const;
@@ -48,6 +50,11 @@ class MotionUnits {
   std::optional<Bytes> bytes(ObjectAddress object, double value) const;
   std::string unit(ObjectAddress object) const;
 
+  /// The same in the unit of the load; empty where nobody said what it moves, or the unit is none of motion.
+  std::optional<Physical> of_load(double value, std::string_view unit) const;
+  /// `7200 deg`, and what the load does by it: `7200 deg (40 mm)`.
+  std::string words(double value, std::string_view unit) const;
+
   /// Increments in one turn of the motor, by whoever told it; empty when nobody has.
   std::optional<double> turn() const;
   /// Whether they come from the number that was measured earlier.
@@ -61,6 +68,8 @@ class MotionUnits {
   std::uint8_t node() const { return node_; }
 
  private:
+  /// What the user wrote of the load, as it is for the motor.
+  std::string for_motor(std::string_view text) const;
   /// The error, with what to do where nobody has told how many counts a turn has.
   Error unknown_turn(ObjectAddress object, Error error) const;
 
@@ -68,6 +77,7 @@ class MotionUnits {
   std::uint8_t node_;
   std::map<drive::Measure, double> measures_;
   const drive::Quotient* turn_way_ = nullptr;
+  std::optional<drive::LoadUnit> load_;
 };
 
 }  // namespace servoctl::motion

@@ -49,6 +49,8 @@ Result<bool> Session::step(TimePoint deadline) {
     // A stale time ends the wait too early at most, and saves asking the clock once an arrival.
     deadline = std::min(deadline, received_at_ + kCancelSlice);
   }
+  if (options_.beside)
+    if (const auto free = options_.beside(); free < deadline - now()) deadline = now() + free;
   auto stepped = network_->step(deadline);
   received_at_ = network_->stepped_at();
   return stepped;

@@ -41,6 +41,9 @@ struct Options {
   std::function<bool()> cancelled;  ///< Asked in every wait; may be empty.
   /// Told, a line at a time, what a way out does while the bus is lost; may be empty.
   std::function<void(std::string_view line)> tell;
+  /// Asked in every wait: serves the other networks of this process that cannot wait, and answers how long
+  /// they have time then; may be empty.
+  std::function<Duration()> beside;
   /// What tells this process from others that start at the same time: see claim_producer().
   std::uint64_t claim_seed = 0;
   /// Held while a drive is energised: a signal must not end the process at once then. May be null.

@@ -2,11 +2,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/result.hpp"
+#include "drive/load_unit.hpp"
 #include "drive/profile.hpp"
 #include "session/session.hpp"
 #include "show/audience.hpp"
@@ -19,6 +21,8 @@ struct Desk {
   session::Session* session = nullptr;      ///< Set when the command needs a bus.
   const drive::Profile* profile = nullptr;  ///< Set when a family was named, or is needed.
   std::vector<std::uint8_t> nodes;          ///< That are meant; 0 stands for all.
+  /// What the loads of nodes move, where somebody said it: `20mm` means something there.
+  std::map<std::uint8_t, drive::LoadUnit> loads;
   bool chinese = false;                     ///< Names in Chinese where there are any.
   bool dry_run = false;                     ///< Show what would be sent, send nothing.
   bool keeps_samples = false;               ///< `--json`: the result carries what emit() was given.

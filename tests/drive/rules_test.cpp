@@ -111,8 +111,8 @@ void expect_refused(const char* text, const char* message) {
 }
 
 TEST(Rules, WithAMisspeltKeyAreRefusedBecauseTheRuleWouldSilentlyNotHold) {
-  expect_refused("format = 1\nfamliy = \"x\"\n", "x.toml:2:10: unknown key 'famliy'");
-  expect_refused("format = 1\n[sdo]\nsegmentd = false\n", "x.toml:3:12: unknown key 'segmentd'");
+  expect_refused("format = 1\nfamliy = \"x\"\n", "x.toml:2:1: unknown key 'famliy'");
+  expect_refused("format = 1\n[sdo]\nsegmentd = false\n", "x.toml:3:1: unknown key 'segmentd'");
 }
 
 TEST(Rules, WithAValueOfTheWrongKindAreRefusedWithItsPlace) {

@@ -81,7 +81,7 @@ std::string Prompt::prompt_text() const {
   const auto& settings = shell_->defaults();
   std::string out = "servoctl";
   if (!settings.bus.empty()) out += " " + settings.bus.substr(0, settings.bus.find('?'));
-  if (!settings.nodes.empty()) out += " node " + settings.nodes;
+  if (!settings.nodes.empty()) out += (parse_nodes(settings.nodes) ? " node " : " ") + settings.nodes;
   if (!settings.drive.empty()) out += " " + settings.drive;
   return printable(out) + "> ";
 }
@@ -128,22 +128,15 @@ int Prompt::run() {
 
 /// True when a key waits; frames and timers of the bus are served meanwhile.
 bool Prompt::wait_for_key() {
-  auto* session = shell_->session();
-  pollfd fds[2] = {{STDIN_FILENO, POLLIN, 0},
-                   {session == nullptr ? -1 : session->network().poll_fd(), POLLIN, 0}};
-  if (held_) fds[0] = {STDOUT_FILENO, POLLOUT, 0};
-  std::optional<Duration> left;
-  if (session != nullptr && session->next_event() != kNever)
-    left = std::clamp<Duration>(session->next_event() - session->now(), Duration::zero(), kLongestWait);
-  if (wait_or_signal(fds, left) < 0) return false;
-  if (session != nullptr)
-    if (const auto heard = session->listen(); !heard && heard.error().code == Errc::bus) {
-      console_->wipe_line();
-      shell_->report_error(heard.error(), false);
-      shell_->lose_bus();
-      rl_forced_update_display();
-    }
-  const bool key = fds[0].revents != 0;
+  pollfd wanted{STDIN_FILENO, POLLIN, 0};
+  if (held_) wanted = {STDOUT_FILENO, POLLOUT, 0};
+  const auto lost = [this](const Error& error) {
+    console_->wipe_line();
+    shell_->report_error(error, false);
+    rl_forced_update_display();
+  };
+  if (!shell_->wait_for(wanted, kLongestWait, lost)) return false;
+  const bool key = wanted.revents != 0;
   held_ = key && !terminal_takes();
   return key && !held_;
 }

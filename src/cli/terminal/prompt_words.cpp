@@ -15,10 +15,22 @@ const PromptWord* find_word(std::span<const PromptWord> all, const std::vector<s
   return found == all.end() ? nullptr : &*found;
 }
 
+/// Numbers, or axes of the cabinet.
+Result<void> check_nodes(Shell& shell, const Settings& settings, const std::string& nodes) {
+  const auto numbers = parse_nodes(nodes);
+  if (numbers) return {};
+  const auto cabinet = names_axes(nodes) ? shell.cabinet(settings) : Result<const cabinet::Cabinet*>(nullptr);
+  if (!cabinet) return fail(cabinet.error());
+  if (*cabinet == nullptr) return fail(numbers.error());
+  const auto axes = (*cabinet)->select(nodes);
+  if (!axes) return fail(axes.error());
+  return {};
+}
+
 }  // namespace
 
 std::vector<PromptWord> prompt_words() {
-  return {{"use", "NODE", "use this node, list or `all` for the following lines"},
+  return {{"use", "NODE", "use this node or axis, list or `all` for the following lines"},
           {"drive", "FAMILY", "use this drive family for the following lines"},
           {"bus", "URL", "switch to this bus"},
           {"exit", "", "leave (also quit, or Ctrl-D)"}};
@@ -41,7 +53,7 @@ Result<Settings> chosen(Shell& shell, Settings defaults, const std::vector<std::
     return fail(Errc::usage, fmt::format("'{}' takes one argument", word->name),
                 fmt::format("{} {}: {}", word->name, word->argument, word->help));
   if (word->name == "use") {
-    if (const auto parsed = parse_nodes(words[1]); !parsed) return fail(parsed.error());
+    if (const auto known = check_nodes(shell, defaults, words[1]); !known) return fail(known.error());
     defaults.nodes = words[1];
   } else if (word->name == "drive") {
     if (const auto loaded = shell.profile(words[1]); !loaded) return fail(loaded.error());

@@ -1,0 +1,80 @@
+#include "cabinet/cabinet_check.hpp"
+
+#include <fmt/format.h>
+
+#include "base/text.hpp"
+#include "command/command.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using namespace command;
+using report::Value;
+
+constexpr Parameter kParameters[] = {
+    {.name = "file", .help = "the cabinet file (default: as --cabinet)", .kind = Kind::file},
+};
+
+std::string load_text(const cabinet::Axis& axis) {
+  return axis.load ? fmt::format("{:.6g} {}/rev", axis.load->per_rev, axis.load->unit) : std::string();
+}
+
+Value pdos_of(const cabinet::Axis& axis) {
+  const auto& pdos = axis.pdos;
+  if (!pdos.preset.empty()) return pdos.preset;
+  if (!pdos.file.empty()) return pdos.file.filename().string();
+  return pdos.recipes.empty() ? Value() : Value(fmt::format("{} PDOs", pdos.recipes.size()));
+}
+
+report::Table table_of(const cabinet::Cabinet& cabinet) {
+  report::Table out;
+  out.columns = {{"axis"},
+                 {"bus"},
+                 {"node"},
+                 {"family"},
+                 {"load"},
+                 {"pdos"},
+                 {"heartbeat_ms", "heartbeat ms"},
+                 {"parameters"},
+                 {"groups", {}, report::Show::json}};
+  for (const auto& axis : cabinet.axes) {
+    report::List groups(axis.groups.begin(), axis.groups.end());
+    const auto ms =
+        axis.heartbeat ? Value(std::chrono::duration_cast<std::chrono::milliseconds>(*axis.heartbeat).count())
+                       : Value();
+    out.rows.push_back({axis.name, axis.bus, axis.node, axis.family, report::text_or_null(load_text(axis)),
+                        pdos_of(axis), ms, axis.parameters.size(), std::move(groups)});
+  }
+  return out;
+}
+
+Result<Value> run(Context& context, const Arguments& arguments) {
+  const auto file = arguments.text("file");
+  auto given = file.empty() ? Result<cabinet::Cabinet>() : cabinet::read_cabinet(std::string(file));
+  if (!given) return fail(given.error());
+  const auto found = file.empty() ? context.front_end->cabinet() : Result<const cabinet::Cabinet*>(&*given);
+  if (!found) return fail(found.error());
+  auto errors = cabinet::check_cabinet(
+      **found, [&](const std::string& family) { return context.front_end->family(family); });
+  for (auto& error : errors) context.errors.push_back(std::move(error));
+  return Value(table_of(**found));
+}
+
+}  // namespace
+
+extern const Command kCabinetCheck;
+const Command kCabinetCheck{
+    .path = "cabinet check",
+    .summary = "Check a cabinet file without a bus",
+    .details =
+        "Reads cabinet.toml and holds every axis against the data of its family: names and values of "
+        "parameters with their units and limits, two values for one object, PDOs, heartbeat, units of "
+        "limits. Every fault has file, line and column, and one that many axes share is told once. Shows "
+        "what each axis is. Nothing is sent.",
+    .parameters = kParameters,
+    .needs = Needs::nothing,
+    .effect = Effect::none,
+    .run = run,
+};
+
+}  // namespace servoctl::commands

@@ -1,0 +1,182 @@
+#include "cabinet/cabinet_check.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "base/text.hpp"
+#include "drive/drive_settings.hpp"
+#include "drive/naming.hpp"
+#include "drive/unit.hpp"
+#include "pdo/pdo_changing.hpp"
+#include "pdo/pdo_recipes.hpp"
+#include "settings/change.hpp"
+#include "settings/comparison.hpp"
+
+namespace servoctl::cabinet {
+namespace {
+
+constexpr ObjectAddress kHeartbeatTime{0x1017, 0};
+
+/// Everything that can be said of one axis without its drive.
+class AxisCheck {
+ public:
+  AxisCheck(const Cabinet& cabinet, const Axis& axis, const drive::Profile& profile)
+      : cabinet_(&cabinet), axis_(&axis), profile_(&profile) {
+    desk_.profile = &profile;
+  }
+
+  std::vector<Error> run() {
+    for (const auto& setting : axis_->parameters) check_setting(setting);
+    check_heartbeat();
+    check_pdos();
+    check_limits();
+    return std::move(errors_);
+  }
+
+ private:
+  void check_setting(const Setting& setting) {
+    const auto target = drive::resolve(profile_, setting.name);
+    if (!target) return add(setting.at, target.error());
+    const auto twice = places_.emplace(target->address, &setting);
+    if (!twice.second)
+      return add(setting.at, make_error(Errc::file, fmt::format("{} is {} as well, in line {}", setting.name,
+                                                                twice.first->second->name,
+                                                                twice.first->second->at.line)));
+    if (settings::is_address(profile_, target->address))
+      return add(setting.at,
+                 make_error(Errc::file, fmt::format("{} is node-ID or bitrate of the drive", setting.name),
+                            "`node` and `bitrate` say them; they are not written as parameters"));
+    if (const auto reason = no_setting(*target); !reason.empty())
+      return add(setting.at, make_error(Errc::file, fmt::format("{} is no setting: {}", setting.name, reason),
+                                        "`param explain` tells more"));
+    if (const auto fits = settings::check_change(desk_, axis_->node, *target, setting.value, {}); !fits)
+      add(setting.at, with_name(setting, fits.error()));
+  }
+
+  /// Why the object is nothing that a drive keeps; empty where it is.
+  std::string_view no_setting(const drive::Target& target) {
+    if (left_out_.empty())
+      for (const auto& setting : drive::settings_of(*profile_))
+        left_out_.emplace(setting.entry->address, setting.left_out);
+    const auto found = left_out_.find(target.address);
+    return found == left_out_.end() ? std::string_view() : found->second;
+  }
+
+  static Error with_name(const Setting& setting, Error error) {
+    if (error.message.find(setting.name) == std::string::npos)
+      error.message = fmt::format("{}: {}", setting.name, error.message);
+    return error;
+  }
+
+  void check_heartbeat() {
+    if (!axis_->heartbeat) return;
+    const auto target = drive::target_at(profile_, kHeartbeatTime);
+    if (target.entry == nullptr)
+      return add(axis_->heartbeat_at,
+                 make_error(Errc::file, fmt::format("{} has no heartbeat (1017h)", profile_->family)));
+    const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(*axis_->heartbeat).count();
+    if (const auto fits = settings::check_change(desk_, axis_->node, target, std::to_string(ms), {}); !fits)
+      add(axis_->heartbeat_at, fits.error());
+    if (const auto twice = places_.find(kHeartbeatTime); twice != places_.end())
+      add(twice->second->at, make_error(Errc::file, fmt::format("'heartbeat' in line {} says 1017h as well",
+                                                                axis_->heartbeat_at.line)));
+  }
+
+  void check_pdos() {
+    const auto& pdos = axis_->pdos;
+    if (!pdos.preset.empty()) {
+      std::vector<std::string> names;
+      for (const auto& preset : profile_->rules.pdo.presets) names.push_back(preset.name);
+      if (std::none_of(names.begin(), names.end(),
+                       [&](const auto& name) { return equals_nocase(name, pdos.preset); }))
+        add(pdos.at,
+            make_error(Errc::file, fmt::format("{} has no PDO preset '{}'", profile_->family, pdos.preset),
+                       names.empty() ? "it has none" : "it has " + one_of(names)));
+    }
+    if (pdos.file.empty()) return check_recipes(pdos.recipes);
+    const auto file = pdo::read_pdo_file(pdos.file);
+    if (!file) return add(pdos.at, file.error());
+    if (!file->family.empty() && file->family != profile_->family)
+      return add(pdos.at, make_error(Errc::file, fmt::format("{} is of {}, not of {}", pdos.file.string(),
+                                                             file->family, profile_->family)));
+    check_recipes(file->pdos);
+  }
+
+  void check_recipes(const std::vector<drive::PdoRecipe>& recipes) {
+    for (const auto& recipe : recipes) {
+      if (!recipe.map) continue;
+      for (const auto& word : *recipe.map)
+        if (const auto entry = pdo::parse_mapped(*profile_, word); !entry) {
+          auto error = entry.error();
+          error.message = fmt::format("{}: {}", recipe.pdo, error.message);
+          add({recipe.line == 0 || !axis_->pdos.file.empty() ? axis_->pdos.at.line : recipe.line,
+               axis_->pdos.at.column},
+              error);
+        }
+    }
+  }
+
+  void check_limits() {
+    const auto& limits = axis_->limits;
+    check_limit("speed", limits.speed, {"rpm", "inc/s", "pps"});
+    check_limit("torque", limits.torque, {"%", "Nm", "A"});
+    check_limit("window", limits.window, {"deg", "inc"});
+    check_limit("following_error", limits.following_error, {"deg", "inc"});
+  }
+
+  void check_limit(std::string_view name, const std::string& text,
+                   std::initializer_list<std::string_view> units) {
+    if (text.empty()) return;
+    const auto motor = axis_->load ? drive::in_revolutions(*axis_->load, text) : std::nullopt;
+    const auto said = motor.value_or(text);
+    const auto number = drive::split_unit(said);
+    const bool fits =
+        number && number->number > 0 && std::any_of(units.begin(), units.end(), [&](std::string_view unit) {
+          return drive::conversion(number->unit, unit).has_value();
+        });
+    if (fits) return;
+    auto known = std::string(fmt::format("{}", fmt::join(units, ", ")));
+    if (axis_->load && name != "torque") known += ", " + axis_->load->unit + (name == "speed" ? "/s" : "");
+    add(axis_->limits.at, make_error(Errc::file, fmt::format("limits: {} = \"{}\" is no limit", name, text),
+                                     fmt::format("a number above 0 in {}", known)));
+  }
+
+  void add(Place at, const Error& error) {
+    errors_.push_back(cabinet_error(*cabinet_, *axis_, at, error.message, error.hint));
+  }
+
+  const Cabinet* cabinet_;
+  const Axis* axis_;
+  const drive::Profile* profile_;
+  show::Desk desk_;
+  std::map<ObjectAddress, const Setting*> places_;
+  std::map<ObjectAddress, std::string_view> left_out_;
+  std::vector<Error> errors_;
+};
+
+}  // namespace
+
+std::vector<Error> check_axis(const Cabinet& cabinet, const Axis& axis, const LoadProfile& load) {
+  const auto profile = load(axis.family);
+  if (profile) return AxisCheck(cabinet, axis, **profile).run();
+  return {cabinet_error(cabinet, axis, axis.at, profile.error().message, profile.error().hint)};
+}
+
+std::vector<Error> check_cabinet(const Cabinet& cabinet, const LoadProfile& load) {
+  std::vector<Error> out;
+  std::set<std::string> told;
+  for (const auto& axis : cabinet.axes)
+    for (auto& error : check_axis(cabinet, axis, load)) {
+      // Forty axes that share a line share its faults.
+      const auto name = fmt::format("axis {}: ", axis.name);
+      const auto at = error.message.find(name);
+      auto fault = error.message;
+      if (at != std::string::npos) fault.erase(at, name.size());
+      if (told.insert(std::move(fault)).second) out.push_back(std::move(error));
+    }
+  return out;
+}
+
+}  // namespace servoctl::cabinet

@@ -1,0 +1,173 @@
+#include "cli/axis_lines.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "base/text.hpp"
+#include "session/open_bus.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+using cabinet::Axis;
+using cabinet::Cabinet;
+using command::Needs;
+
+std::string numbers_of(const std::vector<const Axis*>& axes) {
+  std::string out;
+  for (const auto* axis : axes) append(out, std::to_string(axis->node), ",");
+  return out;
+}
+
+/// Of all axes of the bus: notices speak of those too that the line does not name.
+show::AxisNames names_on(const Cabinet& cabinet, std::string_view bus) {
+  std::map<std::uint8_t, std::string> out;
+  for (const auto& axis : cabinet.axes)
+    if (axis.bus == bus) out.emplace(axis.node, axis.name);
+  return show::AxisNames(std::move(out));
+}
+
+/// What is typed beside the name of an axis must not say otherwise than the file.
+Result<void> check_typed(const Cabinet& cabinet, const Axis& axis, const command::Arguments& arguments) {
+  const auto file = cabinet.file.filename().string();
+  const auto& bus = *cabinet.bus(axis.bus);
+  const auto typed_bus = arguments.text("--bus");
+  if (!typed_bus.empty() && typed_bus != bus.name &&
+      session::canonical_url(std::string(typed_bus)) != session::canonical_url(bus.url))
+    return fail(
+        Errc::usage,
+        fmt::format("{} is on bus {} ({}) by {}, not on {}", axis.name, bus.name, bus.url, file, typed_bus),
+        "leave --bus out, or change the file");
+  const auto typed_drive = arguments.text("--drive");
+  if (!typed_drive.empty() && typed_drive != axis.family)
+    return fail(Errc::usage, fmt::format("{} is {} by {}, not {}", axis.name, axis.family, file, typed_drive),
+                "leave --drive out, or change the file");
+  return {};
+}
+
+/// Axes of one bus and family go together; those that come first in the file go first.
+Result<std::vector<LinePart>> parts_by_axis(const Cabinet& cabinet, const std::vector<const Axis*>& axes,
+                                            const command::Arguments& arguments, const Settings& settings) {
+  std::vector<LinePart> out;
+  for (const auto* axis : axes) {
+    if (const auto fits = check_typed(cabinet, *axis, arguments); !fits) return fail(fits.error());
+    const auto same = std::find_if(out.begin(), out.end(), [&](const LinePart& part) {
+      return part.axes.front()->bus == axis->bus && part.axes.front()->family == axis->family;
+    });
+    if (same != out.end()) {
+      same->axes.push_back(axis);
+      continue;
+    }
+    out.push_back(on_bus(cabinet, settings, *cabinet.bus(axis->bus)));
+    out.back().axes.push_back(axis);
+    out.back().settings.drive = axis->family;
+  }
+  for (auto& part : out) part.settings.nodes = numbers_of(part.axes);
+  return out;
+}
+
+/// Numbers on one bus: those that are axes are what the file says.
+Result<std::vector<LinePart>> parts_by_number(const Cabinet& cabinet, const cabinet::Bus& bus,
+                                              const command::Arguments& arguments, const Settings& settings) {
+  const bool numbers = !settings.nodes.empty() && !equals_nocase(settings.nodes, "all");
+  const auto nodes = numbers ? parse_nodes(settings.nodes) : Result<std::vector<std::uint8_t>>();
+  if (!nodes) return fail(nodes.error());
+  std::vector<const Axis*> axes;
+  for (const auto node : *nodes)
+    if (const auto* axis = cabinet.at(bus.name, node)) axes.push_back(axis);
+  if (!axes.empty() && axes.size() == nodes->size()) return parts_by_axis(cabinet, axes, arguments, settings);
+  return std::vector{on_bus(cabinet, settings, bus)};
+}
+
+}  // namespace
+
+Result<const Cabinet*> CabinetHolder::get(const Settings& settings) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  auto file = settings.cabinet;
+  if (file.empty()) file = cabinet::find_cabinet(fs::current_path(error));
+  if (file.empty()) {
+    cabinet_.reset();
+    return nullptr;
+  }
+  const auto written = fs::last_write_time(file, error);
+  const auto size = error ? 0 : fs::file_size(file, error);
+  if (cabinet_ && file == file_ && !error && written == written_ && size == size_) return &*cabinet_;
+  auto read = cabinet::read_cabinet(file);
+  if (!read) return fail(read.error());
+  cabinet_ = std::move(*read);
+  file_ = std::move(file);
+  written_ = written;
+  size_ = size;
+  return &*cabinet_;
+}
+
+LinePart on_bus(const Cabinet& cabinet, const Settings& settings, const cabinet::Bus& bus) {
+  LinePart out{settings, {}};
+  out.settings.bus = bus.url;
+  out.settings.of_cabinet = true;
+  out.settings.names = names_on(cabinet, bus.name);
+  return out;
+}
+
+bool names_axes(const std::string& nodes) {
+  return !nodes.empty() && !parse_nodes(nodes) && std::any_of(nodes.begin(), nodes.end(), [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return byte >= 0x80 || std::isalpha(byte) != 0;
+  });
+}
+
+std::vector<std::string> with_axis_option(std::vector<std::string> words, const command::Command& command,
+                                          std::size_t after, const Cabinet& cabinet) {
+  if (!includes(command.needs, Needs::node) || after >= words.size()) return words;
+  for (const auto& word : words)
+    if (word == "-n" || word.starts_with("--node")) return words;
+  const auto parts = split(std::string_view(words[after]), ',');
+  if (parts.empty() ||
+      !std::all_of(parts.begin(), parts.end(), [&](auto part) { return cabinet.knows(part); }))
+    return words;
+  words.insert(words.begin() + static_cast<std::ptrdiff_t>(after), "-n");
+  return words;
+}
+
+Result<std::vector<LinePart>> parts_of(const Cabinet& cabinet, const command::Command& command,
+                                       const command::Arguments& arguments, const Settings& settings) {
+  if (names_axes(settings.nodes)) {
+    const auto axes = cabinet.select(settings.nodes);
+    if (!axes) return fail(axes.error());
+    return parts_by_axis(cabinet, *axes, arguments, settings);
+  }
+  if (const auto* bus = cabinet.bus(settings.bus)) return parts_by_number(cabinet, *bus, arguments, settings);
+  if (!settings.bus.empty() || !includes(command.needs, Needs::bus)) return std::vector<LinePart>();
+  if (equals_nocase(settings.nodes, "all") && includes(command.needs, Needs::node) && !command.to_all) {
+    const auto axes = cabinet.select("all");
+    if (!axes) return fail(axes.error());
+    return parts_by_axis(cabinet, *axes, arguments, settings);
+  }
+  if (cabinet.buses.size() == 1) return parts_by_number(cabinet, cabinet.buses.front(), arguments, settings);
+  std::vector<LinePart> out;
+  for (const auto& bus : cabinet.buses) out.push_back(on_bus(cabinet, settings, bus));
+  const bool looks = command.effect <= command::Effect::reads && settings.nodes.empty();
+  if (looks) return out;
+  std::vector<std::string> names;
+  for (const auto& bus : cabinet.buses) names.push_back("--bus " + bus.name);
+  return fail(Errc::usage,
+              fmt::format("which bus? {} has {}", cabinet.file.filename().string(), cabinet.buses.size()),
+              "add " + one_of(names) + ", or name the axes");
+}
+
+void add_axis_options(const Axis& axis, const command::Command& command, command::Arguments& arguments) {
+  const auto add = [&](std::string_view option, const std::string& value) {
+    const auto takes = std::any_of(command.parameters.begin(), command.parameters.end(),
+                                   [&](const command::Parameter& p) { return p.name == option; });
+    if (takes && !value.empty() && !arguments.has(option)) arguments.add(option, value);
+  };
+  add("--turn", axis.turn ? std::to_string(*axis.turn) : "");
+  add("--encoder", axis.encoder ? std::to_string(*axis.encoder) : "");
+  add("--limit", axis.limits.speed);
+  add("--max-torque", axis.limits.torque);
+  add("--window", axis.limits.window);
+  add("--max-following-error", axis.limits.following_error);
+}
+
+}  // namespace servoctl::cli

@@ -1,0 +1,154 @@
+// Lines that name axes of a cabinet: which buses and families they concern, and one outcome of all.
+#include <fmt/format.h>
+#include <algorithm>
+#include <variant>
+
+#include "base/text.hpp"
+#include "can/socketcan.hpp"
+#include "cli/shell.hpp"
+#include "session/open_bus.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+using cabinet::Cabinet;
+using command::Effect;
+using command::Needs;
+using report::List;
+using report::Table;
+using report::Value;
+
+/// A word without a colon that is no interface may be the name of a bus in the cabinet.
+bool may_name_bus(const std::string& bus) {
+  return !bus.empty() && bus.find(':') == std::string::npos && !session::link_of(bus);
+}
+
+/// What is shown while it runs, and what moves, is of one bus and family.
+Result<void> check_several(const command::Command& command, const command::Arguments& arguments,
+                           const std::vector<LinePart>& parts) {
+  if (parts.size() < 2) return {};
+  if (!command.goes_on && command.effect_with(arguments) != Effect::moves) return {};
+  std::string first;
+  for (const auto* axis : parts.front().axes) append(first, axis->name, ",");
+  return fail(Errc::usage,
+              fmt::format("'{}' is for axes of one bus and one family at a time; these are of {}",
+                          command.path, parts.size()),
+              first.empty() ? "name the bus: --bus " + parts.front().settings.bus : "such as -n " + first);
+}
+
+/// Where nothing but the bus tells rows apart.
+void put_bus_into(Value& value, const std::string& bus) {
+  if (auto* record = std::get_if<report::Record>(&value.data()))
+    record->insert(record->begin(), {"bus", bus});
+  if (auto* list = std::get_if<List>(&value.data()))
+    for (auto& one : *list) put_bus_into(one, bus);
+  if (auto* table = std::get_if<Table>(&value.data())) {
+    table->columns.insert(table->columns.begin(), {"bus"});
+    for (auto& row : table->rows) row.insert(row.begin(), bus);
+  }
+}
+
+/// The columns of both, those of the first before those that only the second has.
+void add_rows(Table& to, const Table& from) {
+  std::vector<std::size_t> places;
+  for (const auto& column : from.columns) {
+    auto at = std::find_if(to.columns.begin(), to.columns.end(),
+                           [&](const Table::Column& known) { return known.key == column.key; });
+    if (at == to.columns.end()) {
+      for (auto& row : to.rows) row.emplace_back();
+      to.columns.push_back(column);
+      at = to.columns.end() - 1;
+    }
+    places.push_back(static_cast<std::size_t>(at - to.columns.begin()));
+  }
+  for (const auto& row : from.rows) {
+    List cells(to.columns.size());
+    for (std::size_t i = 0; i < row.size(); ++i) cells[places[i]] = row[i];
+    to.rows.push_back(std::move(cells));
+  }
+  to.below.insert(to.below.end(), from.below.begin(), from.below.end());
+}
+
+/// Tables become one, everything else a list.
+Value joined(Value all, Value more) {
+  if (all.is_null()) return more;
+  if (more.is_null()) return all;
+  auto* table = std::get_if<Table>(&all.data());
+  const auto* rows = std::get_if<Table>(&more.data());
+  if (table != nullptr && rows != nullptr) {
+    add_rows(*table, *rows);
+    return all;
+  }
+  List list;
+  for (auto* one : {&all, &more}) {
+    if (auto* inner = std::get_if<List>(&one->data()))
+      std::move(inner->begin(), inner->end(), std::back_inserter(list));
+    else
+      list.push_back(std::move(*one));
+  }
+  return list;
+}
+
+void add_outcome(Outcome& all, Outcome part) {
+  all.result = joined(std::move(all.result), std::move(part.result));
+  if (all.errors.empty()) all.abort_words = std::move(part.abort_words);
+  std::move(part.errors.begin(), part.errors.end(), std::back_inserter(all.errors));
+  std::move(part.notices.begin(), part.notices.end(), std::back_inserter(all.notices));
+  if (("," + all.settings.bus + ",").find("," + part.settings.bus + ",") == std::string::npos)
+    append(all.settings.bus, part.settings.bus, ",");
+}
+
+}  // namespace
+
+std::vector<std::string> Shell::name_axes(std::vector<std::string> words, const CommandMatch& match) {
+  if (match.command == nullptr || !includes(match.command->needs, Needs::node)) return words;
+  const auto after = match.first + match.used;
+  if (after >= words.size() || words[after].starts_with("-")) return words;
+  // A file that cannot be used is told when an axis is needed; the word may be no axis.
+  const auto known = cabinet_.get(options_.defaults);
+  if (!known || *known == nullptr) return words;
+  return with_axis_option(std::move(words), *match.command, after, **known);
+}
+
+Result<std::vector<LinePart>> Shell::parts_of_line(const ParsedLine& line, const Settings& settings) {
+  const auto& command = *line.command;
+  const bool needs_bus = includes(command.needs, Needs::bus) && settings.bus.empty();
+  if (!names_axes(settings.nodes) && !needs_bus && !may_name_bus(settings.bus))
+    return std::vector<LinePart>();
+  const auto known = cabinet_.get(settings);
+  if (!known) return fail(known.error());
+  if (*known == nullptr) return std::vector<LinePart>();
+  auto parts = parts_of(**known, command, line.arguments, settings);
+  if (parts)
+    if (const auto good = check_several(command, line.arguments, *parts); !good) return fail(good.error());
+  return parts;
+}
+
+Outcome Shell::perform_parsed(const ParsedLine& line, const Settings& settings) {
+  auto parts = parts_of_line(line, settings);
+  if (!parts) return failed(parts.error(), settings, line.command->path);
+  if (parts->empty()) return perform_part(line, {settings, {}});
+  std::optional<Outcome> all;
+  for (auto& part : *parts) {
+    const bool of_bus = part.axes.empty() && parts->size() > 1;
+    auto outcome = perform_part(line, std::move(part));
+    if (of_bus) put_bus_into(outcome.result, outcome.settings.bus);
+    if (all)
+      add_outcome(*all, std::move(outcome));
+    else
+      all = std::move(outcome);
+    if (cancelled()) break;
+  }
+  return std::move(*all);
+}
+
+Outcome Shell::perform_part(const ParsedLine& line, LinePart part) {
+  auto arguments = line.arguments;
+  if (part.axes.size() == 1) add_axis_options(*part.axes.front(), *line.command, arguments);
+  Run run(*this, *line.command, std::move(part));
+  const auto result = execute(run, arguments);
+  progress_.end();
+  return finish(run, result);
+}
+
+}  // namespace servoctl::cli
