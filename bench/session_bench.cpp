@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "session/interleave.hpp"
 #include "session/scan.hpp"
 #include "sim/cell.hpp"
 
@@ -33,6 +34,21 @@ void read_all_parameters_of_nodes(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(requests.size()));
 }
 BENCHMARK(read_all_parameters_of_nodes)->Arg(1)->Arg(8)->Unit(benchmark::kMillisecond);
+
+/// A job a node, each reading one object after the other: two changes of the thread an object.
+void read_one_object_each_side_by_side(benchmark::State& state) {
+  auto session = open("gsd600@1,gsd600@2,gsd600@3,gsd600@4,gsd600@5,gsd600@6,gsd600@7,gsd600@8");
+  constexpr int kReads = 1000;
+  std::vector<session::Job> jobs;
+  for (std::int64_t node = 1; node <= state.range(0); ++node)
+    jobs.emplace_back([&session, node] {
+      for (int i = 0; i < kReads; ++i)
+        benchmark::DoNotOptimize(session.upload(static_cast<std::uint8_t>(node), {0x6041, 0}));
+    });
+  for (auto _ : state) session::Interleave(session, jobs).run();
+  state.SetItemsProcessed(state.iterations() * state.range(0) * kReads);
+}
+BENCHMARK(read_one_object_each_side_by_side)->Arg(1)->Arg(8)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void scan_127_nodes(benchmark::State& state) {
   auto session = open("gsd600@1");

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "session/can_network.hpp"
+#include "session/interleave.hpp"
 #include "session/transfer_run.hpp"
 
 namespace servoctl::session {
@@ -42,24 +43,33 @@ Result<void> Session::download(std::uint8_t node, ObjectAddress object, Bytes da
   return {};
 }
 
-Result<bool> Session::step(TimePoint deadline) {
+Result<bool> Session::step(TimePoint deadline) { return step(deadline, {}); }
+
+Result<bool> Session::step(TimePoint deadline, const std::function<bool()>& concerns) {
   if (options_.cancelled) {
     // A signal that comes after this question ends the wait below at once: see wait_or_signal().
     if (options_.cancelled()) return fail(Errc::interrupted, "interrupted");
-    // A stale time ends the wait too early at most, and saves asking the clock once an arrival.
-    deadline = std::min(deadline, received_at_ + kCancelSlice);
   }
+  // What does not wait keeps nobody from going on.
+  if (interleave_ != nullptr && interleave_->in_job() && deadline > received_at_)
+    return interleave_->park(deadline, concerns);
+  // A stale time ends the wait too early at most, and saves asking the clock once an arrival.
+  return step_network(options_.cancelled ? std::min(deadline, received_at_ + kCancelSlice) : deadline);
+}
+
+Result<bool> Session::step_network(TimePoint deadline) {
   if (options_.beside)
     if (const auto free = options_.beside(); free < deadline - now()) deadline = now() + free;
   auto stepped = network_->step(deadline);
   received_at_ = network_->stepped_at();
+  if (interleave_ != nullptr && stepped && *stepped) interleave_->taken_in_ |= interleave_->in_job();
   return stepped;
 }
 
 Result<bool> Session::wait(const std::function<bool()>& done, TimePoint deadline) {
   while (!done()) {
     if (now() >= deadline) return false;
-    if (const auto stepped = step(deadline); !stepped) return fail(stepped.error());
+    if (const auto stepped = step(deadline, done); !stepped) return fail(stepped.error());
   }
   return true;
 }

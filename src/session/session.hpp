@@ -26,6 +26,8 @@ class Bus;
 
 namespace servoctl::session {
 
+class Interleave;
+
 /// One SDO transfer: a read, or a write when `data` is set.
 struct SdoRequest {
   std::uint8_t node = 0;
@@ -78,6 +80,9 @@ class Session {
   /// Takes in one arrival, or lets the deadline pass; true when something arrived. Errc::interrupted when
   /// cancelled, else as Network::step().
   Result<bool> step(TimePoint deadline);
+  /// The same, for who waits beside others (Interleave): an arrival ends it only where `concerns` says that
+  /// it is about the caller. It is asked by who steps, and steps nothing itself.
+  Result<bool> step(TimePoint deadline, const std::function<bool()>& concerns);
   /// When what step() took in last arrived.
   TimePoint received_at() const { return received_at_; }
   /// Takes in whatever has arrived, without waiting.
@@ -119,7 +124,11 @@ class Session {
   void give_back(std::uint8_t node, std::unique_ptr<ObjectChannel> channel);
 
  private:
+  friend class Interleave;
+  Result<bool> step_network(TimePoint deadline);
+
   std::unique_ptr<Network> network_;
+  Interleave* interleave_ = nullptr;  ///< Whose jobs run on it now; null: none.
   TimePoint opened_at_;
   std::string url_;
   Options options_;

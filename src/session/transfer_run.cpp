@@ -32,6 +32,10 @@ TransferRun::TransferRun(Session& session, std::span<const SdoRequest> requests)
 
 std::vector<Result<Bytes>> TransferRun::run() {
   for (auto& channel : channels_) start(channel);
+  const std::function<bool()> stirred = [this] {
+    return std::any_of(channels_.begin(), channels_.end(),
+                       [](const Lane& channel) { return channel.objects->stirred(); });
+  };
   for (;;) {
     TimePoint next = kNever;
     for (auto& channel : channels_) {
@@ -39,7 +43,7 @@ std::vector<Result<Bytes>> TransferRun::run() {
       next = std::min(next, channel.deadline);
     }
     if (open_ == 0) return give_back();
-    const auto stepped = session_->step(next);
+    const auto stepped = session_->step(next, stirred);
     if (!stepped) {
       fail_all(stepped.error());
       return give_back();
