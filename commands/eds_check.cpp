@@ -1,9 +1,8 @@
 #include <fmt/format.h>
 #include <algorithm>
-#include <array>
-#include <iostream>
 
 #include "base/pdo_index.hpp"
+#include "base/standard_input.hpp"
 #include "base/text.hpp"
 #include "command/command.hpp"
 #include "od/data_sheet.hpp"
@@ -26,23 +25,12 @@ constexpr Parameter kParameters[] = {
 
 constexpr std::string_view kStandardInput = "-";
 
-/// Standard input to its end, or as much as is too much.
-std::string standard_input() {
-  std::string out;
-  std::array<char, 65536> chunk{};
-  while (std::cin && out.size() <= od::kMostEsiBytes) {
-    std::cin.read(chunk.data(), static_cast<std::streamsize>(chunk.size()));
-    out.append(chunk.data(), static_cast<std::size_t>(std::cin.gcount()));
-  }
-  return out;
-}
-
 Result<std::string> text_of(const Context& context, const std::string& path) {
   if (path != kStandardInput) return od::read_sheet_file(path);
   if (context.stays_open)
     return fail(Errc::usage, "standard input contains the command lines, and no file for this one",
                 "name a file");
-  return standard_input();
+  return StandardInput().take_rest(od::kMostEsiBytes);
 }
 
 report::Table findings_of(const od::EdsFile& file) {

@@ -10,11 +10,6 @@
 namespace servoctl {
 namespace {
 
-Duration left_until(TimePoint deadline) {
-  const auto now = steady_now();
-  return deadline > now ? deadline - now : Duration::zero();
-}
-
 // A signal handler can reach nothing else.
 std::atomic<unsigned> g_noted{0};
 std::atomic<unsigned> g_answered{0};

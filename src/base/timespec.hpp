@@ -6,6 +6,12 @@
 
 namespace servoctl {
 
+/// On the clock of real transports; none when it is over.
+inline Duration left_until(TimePoint deadline) {
+  const auto now = steady_now();
+  return deadline > now ? deadline - now : Duration::zero();
+}
+
 /// For ppoll() and its like; `time` is not negative.
 inline timespec to_timespec(Duration time) {
   const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(time);

@@ -18,11 +18,6 @@ Descriptor::~Descriptor() {
 
 namespace {
 
-Duration left_until(TimePoint deadline) {
-  const auto start = steady_now();
-  return deadline > start ? deadline - start : Duration::zero();
-}
-
 Wake wake(int count) {
   if (count > 0) return Wake::ready;
   return count == 0 ? Wake::elapsed : Wake::interrupted;

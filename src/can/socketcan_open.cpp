@@ -11,9 +11,11 @@
 #include <algorithm>
 #include <cerrno>
 #include <filesystem>
-#include <fstream>
 #include <system_error>
 
+#include "base/file.hpp"
+#include "base/number.hpp"
+#include "base/text.hpp"
 #include "can/socketcan.hpp"
 #include "can/socketcan_error.hpp"
 
@@ -22,11 +24,16 @@ namespace {
 
 constexpr const char* kNetwork = "/sys/class/net";
 
+/// What the kernel says in a file of one line; empty where it does not.
+std::optional<std::uint64_t> number_in(const std::filesystem::path& file) {
+  constexpr std::uintmax_t kMostBytes = 64;
+  const auto text = read_file(file, kMostBytes);
+  return text ? parse_digits(trim(*text), 10) : std::nullopt;
+}
+
 /// A controller that is bus-off has no carrier; what is sent then is dropped without an error.
 bool has_carrier(const std::string& name) {
-  int carrier = 1;
-  std::ifstream file(fmt::format("{}/{}/carrier", kNetwork, name));
-  return !(file >> carrier) || carrier != 0;
+  return number_in(fmt::format("{}/{}/carrier", kNetwork, name)) != 0U;
 }
 
 /// Finds the interface and makes sure that it can be used.
@@ -113,9 +120,7 @@ std::vector<std::string> can_interfaces() {
   std::error_code error;
   for (std::filesystem::directory_iterator entry(kNetwork, error), end; !error && entry != end;
        entry.increment(error)) {
-    int type = 0;
-    std::ifstream(entry->path() / "type") >> type;
-    if (type == ARPHRD_CAN) names.push_back(entry->path().filename());
+    if (number_in(entry->path() / "type") == unsigned{ARPHRD_CAN}) names.push_back(entry->path().filename());
   }
   std::sort(names.begin(), names.end());
   return names;

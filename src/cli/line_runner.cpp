@@ -14,7 +14,7 @@ int LineRunner::run(std::string_view line) {
   if (exit_) return 0;
   if (const auto outcome = choose(*shell_, *words))
     return outcome->errors.empty() ? 0 : show(shell_->console(), *outcome);
-  return is_batch(*words) ? run_batch(*shell_, *words, nullptr) : shell_->run(*words);
+  return is_batch(*words) ? run_batch(*shell_, *words, {}) : shell_->run(*words);
 }
 
 }  // namespace servoctl::cli

@@ -3,13 +3,15 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <exception>
-#include <iostream>
 
 #include "base/printable.hpp"
+#include "base/standard_input.hpp"
 #include "cli/batch/batch_command.hpp"
 #include "cli/batch/input_lines.hpp"
 #include "cli/line_runner.hpp"
@@ -36,12 +38,11 @@ void open_standard_descriptors() {
 
 /// Lines from a pipe or file: stops at the first that fails, whose exit code is the answer.
 int run_pipe(Shell& shell) {
-  // A buffer of its own tells what it holds; that of stdio, which it would share, does not.
-  std::ios::sync_with_stdio(false);
+  StandardInput input;
   LineRunner runner(shell);
   std::string line;
   int code = 0;
-  while (code == 0 && !runner.wants_exit() && next_line(shell, line)) code = runner.run(line);
+  while (code == 0 && !runner.wants_exit() && next_line(shell, input, line)) code = runner.run(line);
   if (code == 0 && interrupted()) code = exit_code(Errc::interrupted);
   if (code != 0) shell.let_go();
   return code;
@@ -62,10 +63,13 @@ std::vector<std::string> as_run(std::vector<std::string> words, std::size_t at) 
   return words;
 }
 
+std::string standard_text() { return StandardInput().take_rest(); }
+
 int run_lines(Shell& shell, const std::vector<std::string>& words, StandardConsole& console) {
   const auto first = match_command(words).first;
-  if (first < words.size() && words[first] == "-") return run_batch(shell, as_run(words, first), &std::cin);
-  if (is_batch(words)) return run_batch(shell, words, &std::cin);
+  if (first < words.size() && words[first] == "-")
+    return run_batch(shell, as_run(words, first), standard_text);
+  if (is_batch(words)) return run_batch(shell, words, standard_text);
   if (first < words.size() || asks_for_help(words)) {
     const int code = shell.run(words);
     return code == 0 ? shell.hold() : code;
@@ -111,12 +115,15 @@ int run_program(const std::vector<std::string>& words) {
     console.finish();
     // A reader that has closed the pipe has seen enough.
     if (console.write_error() == 0 || console.write_error() == EPIPE) return code;
-    std::cerr << "error: cannot write the output (" << std::strerror(console.write_error())
-              << "); the output is incomplete\n  hint: what the command did on the bus stays done\n";
+    fmt::print(stderr,
+               "error: cannot write the output ({}); the output is incomplete\n"
+               "  hint: what the command did on the bus stays done\n",
+               std::strerror(console.write_error()));
     return code != 0 ? code : exit_code(Errc::file);
   } catch (const std::exception& e) {
-    std::cerr << "error: servoctl failed: " << printable(e.what())
-              << "\n  hint: this is a bug; please report it with the command line\n";
+    fmt::print(stderr,
+               "error: servoctl failed: {}\n  hint: this is a bug; please report it with the command line\n",
+               printable(e.what()));
     return exit_code(Errc::bug);
   }
 }

@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 
 #include "cli/batch/batch_command.hpp"
 #include "cli/line_runner.hpp"
@@ -33,9 +32,8 @@ class BatchTest : public testing::Test {
   int run(const std::string& text, Words more = {}) {
     console.out_text.clear();
     console.err_text.clear();
-    std::istringstream input(text);
     more.insert(more.begin(), {"run", "-"});
-    return run_batch(shell, more, &input);
+    return run_batch(shell, more, [&] { return text; });
   }
 
   bool told(std::string_view text) const { return console.err_text.find(text) != std::string::npos; }

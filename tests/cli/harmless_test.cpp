@@ -162,7 +162,7 @@ class Harmless : public testing::TestWithParam<std::string> {
     int code = 0;
     {
       Shell shell(console, std::move(options));
-      code = is_batch(words) ? run_batch(shell, words, nullptr) : shell.run(words);
+      code = is_batch(words) ? run_batch(shell, words, {}) : shell.run(words);
     }
     frames.clear();
     std::ifstream trace(dir_ / "trace.log");

@@ -31,11 +31,10 @@ class KeepDefaults {
   Settings defaults_;
 };
 
-Result<std::string> read_batch(const std::string& file, std::istream* input) {
+Result<std::string> read_batch(const std::string& file, const StandardText& input) {
   if (file != "-") return read_file(file, kMostBytes);
-  if (input == nullptr)
-    return fail(Errc::usage, "standard input already supplies these lines", "name a file");
-  return std::string(std::istreambuf_iterator<char>(*input), {});
+  if (!input) return fail(Errc::usage, "standard input already supplies these lines", "name a file");
+  return input();
 }
 
 Result<Variables> variables_of(const command::Arguments& arguments) {
@@ -84,7 +83,7 @@ std::vector<Error> errors_before_run(Shell& shell, std::span<const Step> steps, 
   return errors;
 }
 
-int run_file(Shell& shell, const command::Arguments& arguments, std::istream* input) {
+int run_file(Shell& shell, const command::Arguments& arguments, const StandardText& input) {
   const auto settings = shell.defaults();
   const std::string file(arguments.text("file"));
   const auto report = [&](const Error& error) {
@@ -119,7 +118,7 @@ bool is_batch(const std::vector<std::string>& words) {
   return match.command != nullptr && match.command->path == kPath && !asks_for_help(words);
 }
 
-int run_batch(Shell& shell, const std::vector<std::string>& words, std::istream* input) {
+int run_batch(Shell& shell, const std::vector<std::string>& words, const StandardText& input) {
   const auto parsed = parse_line(words);
   // The shell tells what is wrong with the line.
   if (!parsed) return shell.run(words);

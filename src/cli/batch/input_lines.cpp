@@ -3,8 +3,6 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include <iostream>
-
 #include "cli/terminal/signals.hpp"
 
 namespace servoctl::cli {
@@ -24,9 +22,13 @@ bool wait_for_input(Shell& shell) {
 
 }  // namespace
 
-bool next_line(Shell& shell, std::string& line) {
-  if (std::cin.rdbuf()->in_avail() == 0 && !wait_for_input(shell)) return false;
-  return !interrupted() && static_cast<bool>(std::getline(std::cin, line));
+bool next_line(Shell& shell, StandardInput& input, std::string& line) {
+  bool more = true;
+  while (!input.take_line(line)) {
+    if (!more || !wait_for_input(shell)) return false;
+    more = input.read_more();
+  }
+  return !interrupted();
 }
 
 }  // namespace servoctl::cli

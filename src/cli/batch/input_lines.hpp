@@ -2,12 +2,13 @@
 
 #include <string>
 
+#include "base/standard_input.hpp"
 #include "cli/shell.hpp"
 
 namespace servoctl::cli {
 
-/// The next line of standard input, which is no terminal. While none is there the bus is served: what it
+/// The next line of an input that is no terminal. While none is there the bus is served: what it
 /// produces goes on, and nobody who sends waits for us. False at the end of the input, and after a signal.
-bool next_line(Shell& shell, std::string& line);
+bool next_line(Shell& shell, StandardInput& input, std::string& line);
 
 }  // namespace servoctl::cli
