@@ -151,7 +151,7 @@ Result<std::vector<std::unique_ptr<pdo::ScopeMapping>>> map_objects(Context& con
     if (mapped) continue;
     if (mapped.error().code == Errc::interrupted) return fail(mapped.error());
     context.notices.push_back(
-        fmt::format("node {}: read by SDO, not mapped: {}{}", node, mapped.error().message,
+        fmt::format("read by SDO, not mapped: {}{}", pdo::reason_naming(node, mapped.error()),
                     mapped.error().hint.empty() ? "" : " (" + mapped.error().hint + ")"));
   }
   return out;

@@ -110,7 +110,7 @@ Result<void> FamilyGate::hold_one(const session::Identity& identity, const drive
   const std::string_view forced = refuses ? "; continuing because of --force-family" : "";
   notices_->push_back(
       contradicted
-          ? fmt::format("node {} is not a {}: {}{}", node, profile.family, verdict.why, forced)
+          ? fmt::format("node {}: not a {}: {}{}", node, profile.family, verdict.why, forced)
           : fmt::format("node {}: nothing proves that it is a {}: {}", node, profile.family, verdict.why));
   return {};
 }

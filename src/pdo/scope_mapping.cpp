@@ -30,6 +30,10 @@ bool is_spare(const Pdo& pdo, const session::Values& values) {
 
 }  // namespace
 
+std::string reason_naming(std::uint8_t node, const Error& error) {
+  return error.node ? error.message : fmt::format("node {}: {}", node, error.message);
+}
+
 Result<Pdo> ScopeMapping::choose(std::span<const std::string> objects, Duration period,
                                  const std::vector<Pdo>& pdos) const {
   if (desk_->session->network().is_ring())
@@ -145,9 +149,10 @@ void ScopeMapping::end() {
   changed_ = false;
   if (done) return record_.settle();
   auto error = done.error();
+  error.message =
+      fmt::format("{} could not be restored: {}; still changed, or not readable: {}",
+                  canopen::name(pdo_.direction, pdo_.number), reason_naming(node_, error), astray());
   error.node = node_;
-  error.message = fmt::format("node {}: {} could not be restored: {}; still changed, or not readable: {}",
-                              node_, canopen::name(pdo_.direction, pdo_.number), error.message, astray());
   error.hint = fmt::format("`pdo show -n {}` shows it; a restart of the drive loads the stored one", node_);
   desk_->errors.push_back(std::move(error));
 }

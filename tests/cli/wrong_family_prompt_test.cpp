@@ -39,7 +39,7 @@ TEST_F(WrongFamilyPrompt, TellsAReadWhatIsKnown) {
   EXPECT_FALSE(told("is no"));
   EXPECT_EQ(run("write 0x6060 1 -n 1 -d gsd600"), 8);
   EXPECT_EQ(run("read 0x6041 -n 1 -d gsd600"), 0);
-  EXPECT_TRUE(told("node 1 is not a gsd600")) << console.err_text;
+  EXPECT_TRUE(told("notice: node 1: not a gsd600")) << console.err_text;
   EXPECT_EQ(run("disable -n 1 -d gsd600"), 0) << console.err_text;
 }
 

@@ -143,7 +143,7 @@ TEST_F(WrongFamily, IsRefusedInADryRunToo) {
 
 TEST_F(WrongFamily, GoesOnWhenItIsForcedAndSaysSo) {
   EXPECT_EQ(run("write 0x6060 1", "da200", "gsd600", "--force-family"), 0) << said;
-  EXPECT_NE(said.find("node 1 is not a gsd600"), std::string::npos) << said;
+  EXPECT_NE(said.find("notice: node 1: not a gsd600"), std::string::npos) << said;
   EXPECT_EQ(written.size(), 1U);
   EXPECT_EQ(run("write 0x6060 1", "da200", "gsd600", "--yes"), 8) << said;
 }

@@ -108,7 +108,8 @@ TEST_F(Sampling, AnEnergisedDriveOfAnUnknownFamilyIsLeftAlone) {
   const auto generic = drive::load_profile("cia402", folders).value();
   const auto* family = std::exchange(context.profile, &generic);
   ASSERT_TRUE(run("scope", {{"object", "0x6064"}, {"--map", "true"}, {"--for", "20ms"}}));
-  EXPECT_TRUE(is_noticed("not mapped: node 1: it is energised"));
+  EXPECT_TRUE(is_noticed("read by SDO, not mapped: node 1: it is energised"));
+  EXPECT_FALSE(is_noticed("node 1: read")) << "the node is named once";
   EXPECT_EQ(drive().power_state(), drive::DriveState::operation_enabled);
   EXPECT_EQ(drive().nmt_state(), canopen::NmtState::operational);
   context.profile = family;
@@ -122,7 +123,7 @@ TEST_F(Sampling, WhatCouldNotBePutBackIsAnError) {
   bus->on_receive = [&](can::Frame&) { drive().wire_faults().silent |= session->now() > end; };
   (void)run("scope", {{"object", "0x6064"}, {"--map", "true"}, {"--for", "100ms"}});
   const bool told = std::any_of(context.errors.begin(), context.errors.end(), [](const Error& error) {
-    return error.message.find("TPDO2 could not be restored") != std::string::npos &&
+    return error.message.find("TPDO2 could not be restored: node 1") == 0 &&
            error.message.find("0x1A01:1") != std::string::npos;
   });
   EXPECT_TRUE(told);
