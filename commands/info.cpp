@@ -30,10 +30,11 @@ Value optional_number(const Result<Bytes>& bytes) {
 /// Bits of 6502h in the abbreviations of CiA 402-2.
 Value modes_text(const Result<Bytes>& bytes) {
   if (!bytes || bytes->size() != 4) return {};
-  static constexpr std::string_view kNames[] = {"pp", "vl", "pv", "pt", "", "hm", "ip", "csp", "csv", "cst"};
   report::List out;
-  for (std::size_t bit = 0; bit < std::size(kNames); ++bit)
-    if ((load_le(*bytes) >> bit & 1U) != 0 && !kNames[bit].empty()) out.emplace_back(kNames[bit]);
+  for (std::int8_t mode = 1; mode <= 10; ++mode)
+    if (const auto name = drive::mode_abbreviation(mode);
+        (load_le(*bytes) >> (mode - 1) & 1U) != 0 && !name.empty())
+      out.emplace_back(name);
   return out;
 }
 

@@ -1,3 +1,4 @@
+#include "base/text.hpp"
 #include "command/command.hpp"
 #include "command/transfer_option.hpp"
 #include "command/type_option.hpp"
@@ -12,7 +13,7 @@ using namespace command;
 
 constexpr Parameter kParameters[] = {
     {.name = "object",
-     .help = "0x6041, 6099h.1, statusword, Pn0202",
+     .help = "0x6041, 6099h.1, statusword, Pn0202; 0x1018: a record; '0x60*'",
      .kind = Kind::object,
      .required = true,
      .many = true},
@@ -31,11 +32,66 @@ Result<drive::Target> readable_target(const Context& context, std::uint8_t node,
   return target;
 }
 
+bool is_pattern(std::string_view word) { return word.find('*') != std::string_view::npos; }
+
+/// The entries of the dictionary that can be read and fit.
+template <class Fits>
+std::vector<drive::Target> readable_entries(const Context& context, std::uint8_t node, const Fits& fits) {
+  std::vector<drive::Target> out;
+  for (const auto& object : context.profile->dictionary.objects())
+    for (const auto& entry : object.entries) {
+      if (!fits(object, entry)) continue;
+      const auto target = drive::target_at(context.profile, entry.address);
+      if (od::readable(drive::meaning(target, node).access)) out.push_back(target);
+    }
+  return out;
+}
+
+Result<std::vector<drive::Target>> fitting_targets(const Context& context, std::uint8_t node,
+                                                   const std::string& pattern) {
+  if (context.profile == nullptr)
+    return fail(Errc::usage, "a pattern needs the object dictionary: '" + pattern + "'", "add -d FAMILY");
+  auto out = readable_entries(context, node, [&](const od::Object& object, const od::Entry& entry) {
+    return show::fits(pattern, to_string(entry.address)) || show::fits(pattern, entry.name) ||
+           show::fits(pattern, drive::entry_name(object, entry));
+  });
+  if (out.empty())
+    return fail(Errc::usage, "no object that can be read fits '" + pattern + "'",
+                "`objects '" + pattern + "'` lists what fits");
+  return out;
+}
+
+/// The record or array that an index without sub-index stands for; null for everything else.
+const od::Object* whole_record(const Context& context, std::string_view word) {
+  const auto address = parse_object_address(word);
+  const bool has_sub =
+      word.find_first_of(".:") != std::string_view::npos || lower(word).find("sub") != std::string::npos;
+  if (context.profile == nullptr || !address || has_sub) return nullptr;
+  const auto* object = context.profile->dictionary.object(address->index);
+  const bool several =
+      object != nullptr && (object->code == od::ObjectCode::record || object->code == od::ObjectCode::array);
+  return several ? object : nullptr;
+}
+
+/// What a word stands for: one object, the entries of a record, or what fits a pattern.
+Result<std::vector<drive::Target>> targets_of(const Context& context, std::uint8_t node,
+                                              const std::string& word) {
+  if (is_pattern(word)) return fitting_targets(context, node, word);
+  if (const auto* record = whole_record(context, word)) {
+    auto out = readable_entries(
+        context, node, [&](const od::Object& object, const od::Entry&) { return &object == record; });
+    if (!out.empty()) return out;
+  }
+  auto target = readable_target(context, node, word);
+  if (!target) return fail(target.error());
+  return std::vector{std::move(*target)};
+}
+
 Result<void> check(Context& context, const Arguments& arguments) {
   if (const auto type = parse_type_option(arguments); !type) return fail(type.error());
   for (const auto node : context.nodes)
     for (const auto& word : arguments.all("object"))
-      if (const auto target = readable_target(context, node, word); !target) return fail(target.error());
+      if (const auto targets = targets_of(context, node, word); !targets) return fail(targets.error());
   return {};
 }
 
@@ -61,12 +117,15 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   std::vector<session::SdoRequest> requests;
   for (const auto node : context.nodes) {
     for (const auto& word : arguments.all("object")) {
-      const auto target = readable_target(context, node, word);
-      if (!target) return fail(target.error());
-      readings.push_back({node, *target, *type, Bytes{}});
-      const auto fixed_size = show::size_of(readings.back());
-      const bool large = drive::meaning(*target, node).type == od::DataType::domain;
-      requests.push_back({node, target->address, {}, read_transfer(context, arguments, large), fixed_size});
+      const auto targets = targets_of(context, node, word);
+      if (!targets) return fail(targets.error());
+      const bool many = is_pattern(word) || targets->size() > 1;
+      for (const auto& target : *targets) {
+        readings.push_back({.node = node, .target = target, .type = *type, .one_of_many = many});
+        const auto fixed_size = show::size_of(readings.back());
+        const bool large = drive::meaning(target, node).type == od::DataType::domain;
+        requests.push_back({node, target.address, {}, read_transfer(context, arguments, large), fixed_size});
+      }
     }
   }
   auto answers = context.session->transfer(requests);
@@ -82,7 +141,9 @@ const Command kRead{
     .summary = "Read objects of a node",
     .details =
         "Without --drive only addresses are accepted, and the value is shown as an unsigned number of its "
-        "length. Index and sub-index are hexadecimal. With --to the bytes of one object of any size go to a "
+        "length. Index and sub-index are hexadecimal. With a dictionary the index of a record or an array alone "
+        "reads all of it, and a pattern ('0x60*', '*velocity*') every object that fits; what the drive refuses of "
+        "them is shown with its abort, and what cannot be read is left out. With --to the bytes of one object of any size go to a "
         "file; block transfer is tried first where the drive may support it.",
     .parameters = kParameters,
     .needs = Needs::node,

@@ -5,6 +5,8 @@
 
 #include "canopen/node_list.hpp"
 #include "command/command.hpp"
+#include "drive/standard_objects.hpp"
+#include "session/answer.hpp"
 #include "session/identify.hpp"
 #include "session/ring_scan.hpp"
 #include "show/identity.hpp"
@@ -14,6 +16,10 @@ namespace servoctl::commands {
 namespace {
 
 using namespace command;
+
+constexpr Parameter kParameters[] = {
+    {.name = "--long", .help = "on CAN: the identity in numbers, instead of the state", .kind = Kind::flag},
+};
 
 /// A ring is looked at as a whole; those that were named are shown.
 Result<report::Value> run_ring(Context& context, session::EtherCatNetwork& network) {
@@ -34,7 +40,24 @@ Result<report::Value> run_ring(Context& context, session::EtherCatNetwork& netwo
   return report::Value(show::ring_table(*ring, nodes, drive::find_families(context.drive_folders)));
 }
 
-Result<report::Value> run(Context& context, const Arguments&) {
+/// Of those found, all at the same time; what a node refuses, or no longer answers, it does not tell.
+std::vector<show::Condition> conditions_of(session::Session& session,
+                                           std::span<const session::Identity> nodes) {
+  std::vector<session::SdoRequest> requests;
+  for (const auto& node : nodes)
+    for (const auto object : {objects::kStatusword, objects::kErrorCode})
+      requests.push_back({.node = node.node, .object = object, .size = 2});
+  const auto answers = session.transfer(requests);
+  const auto word = [&](std::size_t i) -> std::optional<std::uint16_t> {
+    const auto number = session::number_in(answers[i], 2);
+    return number ? std::optional(static_cast<std::uint16_t>(*number)) : std::nullopt;
+  };
+  std::vector<show::Condition> out;
+  for (std::size_t i = 0; i < answers.size(); i += 2) out.push_back({word(i), word(i + 1)});
+  return out;
+}
+
+Result<report::Value> run(Context& context, const Arguments& arguments) {
   if (auto* ring = context.session->ethercat()) return run_ring(context, *ring);
   auto nodes = context.nodes_typed ? context.nodes : std::vector<std::uint8_t>();
   if (nodes.empty() || nodes.front() == 0) nodes = canopen::every_node_id();
@@ -48,7 +71,8 @@ Result<report::Value> run(Context& context, const Arguments&) {
   }
   const auto families = drive::find_families(context.drive_folders);
   session::look_for_families(*context.session, *found, families);
-  return report::Value(show::identity_table(*found, families));
+  return report::Value(show::identity_table(context, *found, conditions_of(*context.session, *found),
+                                            families, arguments.has("--long")));
 }
 
 }  // namespace
@@ -56,17 +80,19 @@ Result<report::Value> run(Context& context, const Arguments&) {
 extern const Command kScan;
 const Command kScan{
     .path = "scan",
-    .summary = "Find the nodes on the bus and what they are",
+    .summary = "Find the nodes on the bus: what they are, and how",
     .details =
         "Reads object 1000h of nodes 1 to 127, or of the --node in the line itself, all at the same time: "
         "the scan takes one timeout however many there are. Families are identified by the identity and, "
         "where that is not enough, by reading two or three objects that only they have; `?` marks an "
         "unproven guess. cia402 fits every drive of that profile: it is listed where nothing else fits, and "
-        "always by `info` and in JSON. On EtherCAT, shows the ring: for each position (its node number) the "
+        "always by `info` and in JSON. The state is that of the drive by its statusword, the NMT state that of the "
+        "heartbeat where one came meanwhile; --long shows the numbers of the identity instead, JSON has "
+        "both. On EtherCAT, shows the ring: for each position (its node number) the "
         "addresses, identity by the SII, AL state, ports with a link and, as notices, every error counter that "
         "is not 0. Nothing is changed there: no state is entered, and a ring that another master works with is "
         "only looked at.",
-    .parameters = {},
+    .parameters = kParameters,
     .needs = Needs::bus,
     .effect = Effect::reads,
     .run = run,

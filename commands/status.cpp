@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "base/text.hpp"
 #include "canopen/emergency.hpp"
 #include "command/command.hpp"
 #include "drive/cia402.hpp"
@@ -18,9 +19,16 @@ namespace {
 
 using namespace command;
 
+using report::List;
 using report::Record;
 using report::Show;
 using report::Value;
+
+constexpr Parameter kParameters[] = {
+    {.name = "--long",
+     .help = "every bit of the statusword, and more, in several lines a node",
+     .kind = Kind::flag},
+};
 
 constexpr ObjectAddress kObjects[] = {objects::kStatusword, objects::kModeDisplay, objects::kErrorCode,
                                       objects::kErrorRegister, objects::kProducerHeartbeat};
@@ -156,7 +164,55 @@ Record one(Context& context, std::uint8_t node, std::span<const Result<Bytes>> a
   return out;
 }
 
-Result<report::Value> run(Context& context, const Arguments&) {
+Value fault_cell(const Context& context, const Result<Bytes>& answer) {
+  const auto code = session::number_in(answer);
+  if (!code) return {};
+  if (*code == 0) return "none";
+  constexpr std::size_t kWords = 30;
+  const auto words = show::fault_words(context.profile, context.chinese, static_cast<std::uint16_t>(*code));
+  return fmt::format("0x{:04X} {}", *code, clip(words, kWords));
+}
+
+Value mode_cell(const Result<Bytes>& answer) {
+  const auto number = session::number_in(answer);
+  if (!number) return {};
+  const auto mode = static_cast<std::int8_t>(*number);
+  const auto name = drive::mode_abbreviation(mode);
+  return name.empty() ? fmt::format("{}", mode) : fmt::format("{} {}", mode, name);
+}
+
+/// `pre-operational`, `SAFE-OP`; nothing where it was not heard.
+Value network_cell(const Context& context, std::uint8_t node) {
+  if (const auto* ring = context.session->ethercat()) {
+    const auto* al = ring->al_of(node);
+    return al == nullptr ? Value() : Value(show::al_text(*al));
+  }
+  const auto nmt = context.session->watch().state(node);
+  return nmt ? Value(session::name(*nmt)) : Value();
+}
+
+/// One line a node; JSON has the records of the long form.
+report::Table overview(const Context& context) {
+  report::Table table;
+  table.columns = {{"node"},
+                   {"network", context.session->ethercat() != nullptr ? "AL" : "NMT"},
+                   {"state"},
+                   {"mode"},
+                   {"fault"}};
+  return table;
+}
+
+List overview_row(const Context& context, std::uint8_t node, std::span<const Result<Bytes>> answers) {
+  Value state;
+  if (const auto word = session::number_in(answers[0])) {
+    const auto decoded = drive::decode_state(static_cast<std::uint16_t>(*word));
+    state = context.chinese ? drive::name_zh(decoded) : drive::name(decoded);
+  }
+  return {node, network_cell(context, node), std::move(state), mode_cell(answers[1]),
+          fault_cell(context, answers[2])};
+}
+
+Result<report::Value> run(Context& context, const Arguments& arguments) {
   std::vector<session::SdoRequest> requests;
   for (const auto node : context.nodes)
     for (std::size_t i = 0; i < kCount; ++i)
@@ -165,18 +221,22 @@ Result<report::Value> run(Context& context, const Arguments&) {
   const auto heard = context.session->network().tells_state() ? ask_states(context, answers)
                                                               : hear_heartbeats(context, answers);
   if (!heard) return fail(heard.error());
-  report::List out;
+  auto out = overview(context);
   for (std::size_t i = 0; i < context.nodes.size(); ++i) {
     const auto mine = std::span(answers).subspan(i * kCount, kCount);
     const bool refused = !mine[0] && mine[0].error().code == Errc::sdo_abort;
     if (refused)
       context.notices.push_back(
           fmt::format("node {} has no statusword: it is not a CiA 402 drive", context.nodes[i]));
-    if (!mine[0] && !refused)
+    if (!mine[0] && !refused) {
       context.errors.push_back(mine[0].error());
-    else
-      out.emplace_back(one(context, context.nodes[i], mine));
+      continue;
+    }
+    out.documents.emplace_back(one(context, context.nodes[i], mine));
+    out.rows.push_back(overview_row(context, context.nodes[i], mine));
   }
+  out.json_only = out.rows.empty();
+  if (arguments.has("--long")) return report::Value(std::move(out.documents));
   return report::Value(std::move(out));
 }
 
@@ -185,12 +245,14 @@ Result<report::Value> run(Context& context, const Arguments&) {
 extern const Command kStatus;
 const Command kStatus{
     .path = "status",
-    .summary = "Show the state of a drive: NMT or AL, CiA 402, mode, fault",
+    .summary = "Show the state of drives, one line each: NMT or AL, CiA 402, mode, fault",
     .details =
-        "Reads statusword, mode, error code and error register. The NMT state comes from the heartbeat; if "
+        "Reads statusword, mode, error code and error register. A mode is shown by its number and its "
+        "abbreviation in CiA 402. --long shows the statusword with its bits, the error register and the fault in "
+        "full; JSON always has all of it. The NMT state comes from the heartbeat; if "
         "the node sends one, status waits for it. On EtherCAT the slave is asked for its AL state; in SAFE-OP and "
-        "OP the counts of process data are shown as well.",
-    .parameters = {},
+        "OP --long shows the counts of process data as well.",
+    .parameters = kParameters,
     .needs = Needs::node,
     .effect = Effect::reads,
     .run = run,

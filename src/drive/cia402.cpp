@@ -1,4 +1,6 @@
 #include "drive/cia402.hpp"
+
+#include <iterator>
 #include "base/text.hpp"
 
 #include <fmt/format.h>
@@ -134,6 +136,11 @@ std::string device_kind(std::uint32_t device_type) {
   for (std::size_t i = 0; i < std::size(kKinds); ++i)
     if ((device_type >> (16 + i) & 1U) != 0) append(out, fmt::format("{}", kKinds[i]), " and ");
   return "CiA 402, " + (out.empty() ? std::string("kind of drive not stated") : out);
+}
+
+std::string_view mode_abbreviation(std::int8_t mode) {
+  constexpr std::string_view kNames[] = {"", "pp", "vl", "pv", "pt", "", "hm", "ip", "csp", "csv", "cst"};
+  return mode > 0 && static_cast<std::size_t>(mode) < std::size(kNames) ? kNames[mode] : std::string_view();
 }
 
 }  // namespace servoctl::drive

@@ -53,6 +53,10 @@ DriveState next_state(DriveState state, ControlCommand command);
 /// 12 and 13 depend on the mode of operation (0 when unknown).
 std::vector<std::string> statusword_bits(std::uint16_t statusword, std::int8_t mode);
 
+/// A mode of operation as CiA 402-2 abbreviates it (object 6502h): `pp`, `csv`; empty for one that the
+/// standard does not have.
+std::string_view mode_abbreviation(std::int8_t mode);
+
 /// What 1000h says in words, `CiA 402, servo drive`: the profile in bits 0 to 15, and of CiA 402 the kinds of
 /// drive in bits 16 to 18 (CiA 301, 7.5.2.1; CiA 402-2, object 1000h). In English and of one line.
 std::string device_kind(std::uint32_t device_type);

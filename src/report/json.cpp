@@ -81,6 +81,7 @@ struct ToJson {
     json.end_record();
   }
   void operator()(const Table& t) const {
+    if (!t.documents.empty()) return (*this)(t.documents);
     json.begin_list();
     for (const auto& row : t.rows) {
       json.begin_record();

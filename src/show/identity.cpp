@@ -1,9 +1,12 @@
 #include "show/identity.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <optional>
 #include <utility>
 
+#include "drive/cia402.hpp"
+#include "show/fault_records.hpp"
 #include "show/field_reader.hpp"
 
 namespace servoctl::show {
@@ -34,6 +37,26 @@ std::optional<std::uint32_t> narrow(std::optional<std::uint64_t> number) {
   return number ? std::optional(static_cast<std::uint32_t>(*number)) : std::nullopt;
 }
 
+/// The cells of a condition: three in text unless the identity is, three in JSON.
+void add_condition(const Desk& desk, const Condition& condition, const Value& nmt, bool in_full,
+                   report::List& row) {
+  const auto state =
+      condition.statusword ? std::optional(drive::decode_state(*condition.statusword)) : std::nullopt;
+  const auto words = condition.fault.value_or(0) == 0
+                         ? std::string()
+                         : fault_words(desk.profile, desk.chinese, *condition.fault);
+  if (!in_full) {
+    row.push_back(nmt);
+    row.push_back(!state ? Value() : Value(desk.chinese ? drive::name_zh(*state) : drive::name(*state)));
+    row.push_back(!condition.fault        ? Value()
+                  : *condition.fault == 0 ? Value("none")
+                                          : Value(fmt::format("0x{:04X}", *condition.fault)));
+  }
+  row.push_back(state ? Value(drive::name(*state)) : Value());
+  row.push_back(condition.statusword ? Value(*condition.statusword) : Value());
+  row.push_back(words.empty() ? Value() : Value(report::Record{{"code", *condition.fault}, {"text", words}}));
+}
+
 }  // namespace
 
 std::string guess_text(std::span<const session::Guess> guesses) {
@@ -45,31 +68,38 @@ std::string guess_text(std::span<const session::Guess> guesses) {
   return out;
 }
 
-report::Table identity_table(std::span<const session::Identity> nodes,
-                             std::span<const drive::Family> families) {
+report::Table identity_table(const Desk& desk, std::span<const session::Identity> nodes,
+                             std::span<const Condition> conditions, std::span<const drive::Family> families,
+                             bool in_full) {
   using report::Show;
+  const auto full = in_full ? Show::everywhere : Show::json;
   report::Table table;
   table.columns = {{"node"},
-                   {"device_type", "device type"},
-                   {"vendor_id", "vendor"},
-                   {"product_code", "product"},
-                   {"revision"},
-                   {"serial"},
+                   {"device_type", "device type", full},
+                   {"vendor_id", "vendor", full},
+                   {"product_code", "product", full},
+                   {"revision", "", full},
+                   {"serial", "", full},
                    {"device_name", "name"},
                    {"hardware_version", "hardware", Show::json},
-                   {"software_version", "software"},
+                   {"software_version", "software", full},
                    {"nmt", "", Show::json},
                    {"guess", "family", Show::text},
                    {"families", "", Show::json}};
+  if (!in_full)
+    for (const auto* title : {"NMT", "state", "fault"}) table.columns.push_back({title, "", Show::text});
+  for (const auto* key : {"state", "statusword", "fault"}) table.columns.push_back({key, "", Show::json});
   table.json_only = nodes.empty();
-  for (const auto& node : nodes) {
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const auto& node = nodes[i];
     const auto guesses = session::guess_families(node, families);
+    const auto nmt = node.state ? Value(session::name(*node.state)) : Value();
     table.rows.push_back(
         {node.node, hex(node.device_type), hex(node.vendor_id), hex(node.product_code), hex(node.revision),
          hex(node.serial), report::text_or_null(node.device_name),
-         report::text_or_null(node.hardware_version), report::text_or_null(node.software_version),
-         node.state ? Value(session::name(*node.state)) : Value(),
+         report::text_or_null(node.hardware_version), report::text_or_null(node.software_version), nmt,
          report::text_or_null(guess_text(without_generic(guesses))), guess_records(guesses)});
+    add_condition(desk, conditions[i], nmt, in_full, table.rows.back());
   }
   return table;
 }

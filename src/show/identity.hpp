@@ -6,15 +6,25 @@
 
 #include "report/value.hpp"
 #include "session/scan.hpp"
+#include "show/desk.hpp"
 
 namespace servoctl::show {
 
 /// `gsd600?`, `gsd600`, `gsd600? or ts?`; empty when no family fits.
 std::string guess_text(std::span<const session::Guess> guesses);
 
-/// Nodes with their identity and the families that fit.
-report::Table identity_table(std::span<const session::Identity> nodes,
-                             std::span<const drive::Family> families);
+/// Of a drive, as far as it tells: 6041h and 603Fh.
+struct Condition {
+  std::optional<std::uint16_t> statusword;
+  std::optional<std::uint16_t> fault;
+};
+
+/// Nodes with their identity, the families that fit, and how they are, in the same order. In text the
+/// identity
+/// (`in_full`) or the condition, for each of which a line of 80 columns has room; in JSON both.
+report::Table identity_table(const Desk& desk, std::span<const session::Identity> nodes,
+                             std::span<const Condition> conditions, std::span<const drive::Family> families,
+                             bool in_full);
 
 /// What a file keeps of it: `device_type vendor_id product_code revision serial device_name hardware_version
 /// software_version`, null where the drive does not tell.

@@ -49,6 +49,17 @@ void add_bridges(session::Session& session, const drive::Profile& profile, std::
   }
 }
 
+bool is_refusal_of_one(const Reading& reading) {
+  return reading.one_of_many && !reading.bytes && reading.bytes.error().code == Errc::sdo_abort;
+}
+
+/// In the place of the value.
+Value missing_cell(const Desk& desk, const Reading& reading) {
+  const auto code = reading.bytes.error().abort_code;
+  if (!is_refusal_of_one(reading) || !code) return "-";
+  return fmt::format("abort 0x{:08X} {}", *code, abort_words(desk, *code));
+}
+
 List reading_row(const Desk& desk, const Reading& reading) {
   const bool chinese = desk.chinese;
   const auto& target = reading.target;
@@ -63,8 +74,8 @@ List reading_row(const Desk& desk, const Reading& reading) {
     const auto type = reading.type              ? std::optional(*reading.type)
                       : target.entry != nullptr ? std::optional(target.entry->type)
                                                 : std::nullopt;
-    row.insert(row.end(), {Value("-"), type ? Value(od::name(*type)) : Value(), Value(), Value(), Value(),
-                           Value(), Value(), Value(), Value(), Value(), Value(),
+    row.insert(row.end(), {missing_cell(desk, reading), type ? Value(od::name(*type)) : Value(), Value(),
+                           Value(), Value(), Value(), Value(), Value(), Value(), Value(), Value(),
                            error_record(reading.bytes.error(), abort_words(desk, reading.bytes.error()))});
     return row;
   }
@@ -173,12 +184,13 @@ Table reading_table(Desk& desk, std::vector<Reading> readings) {
                    {"hex", "", Show::text},
                    {"bytes", "", Show::json},
                    {"error", "", Show::json}};
-  for (const auto& reading : readings) {
-    table.rows.push_back(reading_row(desk, reading));
-    if (!reading.bytes) desk.errors.push_back(reading.bytes.error());
-  }
   table.json_only =
       std::none_of(readings.begin(), readings.end(), [](const Reading& r) { return r.bytes.has_value(); });
+  for (const auto& reading : readings) {
+    table.rows.push_back(reading_row(desk, reading));
+    if (!reading.bytes && (table.json_only || !is_refusal_of_one(reading)))
+      desk.errors.push_back(reading.bytes.error());
+  }
   return table;
 }
 

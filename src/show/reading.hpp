@@ -19,6 +19,7 @@ struct Reading {
   std::optional<od::DataType> type;  ///< Overrides the dictionary's type.
   Result<Bytes> bytes = Bytes{};
   std::optional<drive::Bridge> bridge = {};  ///< What the drive's own measures say of the unit.
+  bool one_of_many = false;  ///< Of a record or a pattern: that the drive refuses it is an answer.
 };
 
 /// The value of an object, taken apart for a reader and for JSON.
@@ -44,7 +45,7 @@ struct FamiliarValue {
 FamiliarValue familiar_value(const drive::Meaning& meaning, const od::Value& value);
 
 /// Readings as a table, with what the drive's gear makes of them; an `error` in the rows that failed. Errors
-/// are added to `desk.errors`.
+/// are added to `desk.errors`, but refusals of one_of_many only where nothing at all could be read.
 report::Table reading_table(Desk& desk, std::vector<Reading> readings);
 
 /// Bytes of the object by its type; 0 when the type is not known or of no fixed size.

@@ -118,6 +118,7 @@ std::optional<std::vector<Value>> elements(const Value& value) {
   if (const auto* list = std::get_if<List>(&value.data())) return *list;
   const auto* table = std::get_if<Table>(&value.data());
   if (table == nullptr) return std::nullopt;
+  if (!table->documents.empty()) return table->documents;
   std::vector<Value> out;
   for (const auto& row : table->rows) out.emplace_back(row_record(*table, row));
   return out;
