@@ -30,6 +30,7 @@ constexpr Parameter kParameters[] = {
     {.name = "--bitrate",
      .help = "bitrate for the bus load, if the interface does not give it: 500k",
      .kind = Kind::text},
+    {.name = "--table", .help = "on a terminal: one row per CAN-ID, updated in place", .kind = Kind::flag},
     {.name = "--raw", .help = "show the frames as well", .kind = Kind::flag},
 };
 
@@ -68,9 +69,11 @@ bool is_loss(const NodeEvent& event) {
 
 class Monitor {
  public:
-  Monitor(Context& context, traffic::FrameLog& log, std::uint32_t bitrate)
+  /// `view`: null where frames are lines.
+  Monitor(Context& context, traffic::FrameLog& log, std::uint32_t bitrate, show::LiveView* view)
       : context_(&context),
         log_(&log),
+        view_(view),
         load_(bitrate, context.session->now()),
         begin_(context.session->now()) {}
 
@@ -83,7 +86,9 @@ class Monitor {
     listener.on_pause = [this] {
       take_alarms();
       log_->flush();
+      if (view_ != nullptr) view_->refresh(context_->session->now());
     };
+    listener.is_over = [this] { return view_ != nullptr && view_->is_over(); };
     context_->session->can()->bus().gather(kDelay);
     const auto ended = traffic::listen(*context_->session, length, listener);
     context_->session->can()->bus().gather(Duration::zero());
@@ -124,6 +129,7 @@ class Monitor {
 
   Context* context_;
   traffic::FrameLog* log_;
+  show::LiveView* view_;
   traffic::BusLoad load_;
   TimePoint begin_;
   std::size_t lost_ = 0;
@@ -141,8 +147,12 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   traffic::FrameLog log(context, std::move(*filter), arguments.has("--raw"));
   if (arguments.has("--ask"))
     if (const auto asked = ask_mappings(context, log.decoder().pdos()); !asked) return fail(asked.error());
-  Monitor monitor(context, log, *bitrate);
-  if (const auto ended = monitor.run(*length); !ended) return fail(ended.error());
+  auto view = arguments.has("--table") ? context.open_view(traffic::FrameTable::layout()) : nullptr;
+  if (view) log.show_in(*view);
+  Monitor monitor(context, log, *bitrate, view.get());
+  const auto ended = monitor.run(*length);
+  view.reset();
+  if (!ended) return fail(ended.error());
   auto summary = monitor.summary();
   if (context.keeps_samples) summary.push_back({"samples", log.take_kept()});
   return Value(std::move(summary));
@@ -159,7 +169,8 @@ const Command kMonitor{
         "SDO with names, values and aborts, heartbeats, boot-ups, node guarding; and an ALARM if a node's "
         "heartbeat stops. It sends nothing, except with --ask: then it first reads the PDO mapping of the "
         "nodes given by -n. Otherwise PDOs are decoded by a mapping seen on the bus meanwhile, or by the "
-        "family's (-d) factory mapping. At the end (--for, or Ctrl-C) it shows the number of frames, and the "
+        "family's (-d) factory mapping. With --table a terminal shows one row for each CAN-ID, with its number of "
+        "frames, their mean period in ms, and what the last one means (keys: space pauses, s sorts, q quits). At the end (--for, or Ctrl-C) it shows the number of frames, and the "
         "bus load if the bitrate is known from the interface or --bitrate. `-o jsonl` gives one document per "
         "frame.",
     .parameters = kParameters,

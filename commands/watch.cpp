@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <algorithm>
+#include <memory>
 
 #include "command/command.hpp"
 #include "command/duration_option.hpp"
@@ -36,6 +37,9 @@ class Watching {
   Watching(Context& context, traffic::Sampler& sampler, bool changes)
       : context_(&context), sampler_(&sampler), changes_(changes), writer_(context) {
     for (const auto& channel : sampler.channels()) records_.emplace_back(channel);
+    if (!changes)
+      view_ = context.open_view(
+          {.columns = {{.title = "node", .right = true}, {.title = "object"}, {.title = "value"}}});
   }
 
   /// Errc of the first look when nothing could be read; a failure later on is shown and counted.
@@ -47,13 +51,21 @@ class Watching {
     if (interrupted || (looks_++ == 0 && failed != samples.end())) return fail(failed->bytes.error());
     const auto seconds = std::chrono::duration<double>(since).count();
     for (std::size_t i = 0; i < samples.size(); ++i) records_[i].add(seconds, samples[i]);
-    for (const auto node : context_->nodes) show(node, seconds, samples);
+    if (view_) show(samples);
+    for (const auto node : context_->nodes)
+      if (!view_) show(node, seconds, samples);
     before_ = samples;
     writer_.flush();
     return {};
   }
 
+  bool is_over() const { return view_ && view_->is_over(); }
+  void refresh() {
+    if (view_) view_->refresh(context_->session->now());
+  }
+
   Value result(bool plot) {
+    view_.reset();
     for (auto& error : traffic::failures_of(before_)) context_->errors.push_back(std::move(error));
     report::Record out{{"objects", traffic::sampling_table(records_)}};
     if (plot) out.push_back({"plot", report::Plot{traffic::series_of(records_)}, report::Show::text});
@@ -65,6 +77,20 @@ class Watching {
   bool has_changed(std::size_t i, const std::vector<traffic::Sample>& samples) const {
     if (before_.empty() || before_[i].bytes.has_value() != samples[i].bytes.has_value()) return true;
     return samples[i].bytes && *samples[i].bytes != *before_[i].bytes;
+  }
+
+  void show(const std::vector<traffic::Sample>& samples) {
+    for (const auto& sample : samples) {
+      const auto& channel = sampler_->channels()[sample.channel];
+      const auto node = fmt::format("{}", channel.node);
+      const auto row = fmt::format("{}", sample.channel);
+      if (!sample.bytes) {
+        view_->set(row, {node, channel.name, "-"});
+        continue;
+      }
+      const auto value = decoded(channel, sample);
+      view_->set(row, {node, channel.name, text_of(value)}, show::plotted(value.value));
+    }
   }
 
   void show(std::uint8_t node, double seconds, const std::vector<traffic::Sample>& samples) {
@@ -91,12 +117,17 @@ class Watching {
   }
 
   static std::string text_of(const traffic::Channel& channel, const traffic::Sample& sample) {
-    if (!sample.bytes) return channel.name + " -";
-    const auto value =
-        show::decode_value({channel.node, channel.target, {}, Bytes{}, channel.bridge}, *sample.bytes);
-    auto out = channel.name + " " + value.text;
-    if (const auto* label = std::get_if<std::string>(&value.label.data())) out += " " + *label;
-    return out;
+    return channel.name + " " + (sample.bytes ? text_of(decoded(channel, sample)) : "-");
+  }
+
+  static std::string text_of(const show::DecodedValue& value) {
+    const auto* label = std::get_if<std::string>(&value.label.data());
+    return label == nullptr ? value.text : value.text + " " + *label;
+  }
+
+  /// Of a sample that has bytes.
+  static show::DecodedValue decoded(const traffic::Channel& channel, const traffic::Sample& sample) {
+    return show::decode_value({channel.node, channel.target, {}, Bytes{}, channel.bridge}, *sample.bytes);
   }
 
   static report::Record record_of(const traffic::Channel& channel, const traffic::Sample& sample) {
@@ -108,8 +139,7 @@ class Watching {
       out.push_back({"error", show::error_record(sample.bytes.error())});
       return out;
     }
-    auto value =
-        show::decode_value({channel.node, channel.target, {}, Bytes{}, channel.bridge}, *sample.bytes);
+    auto value = decoded(channel, sample);
     out.push_back({"value", std::move(value.value)});
     out.push_back({"raw", std::move(value.raw)});
     out.push_back({"unit", report::text_or_null(value.unit)});
@@ -125,6 +155,7 @@ class Watching {
   show::SampleWriter writer_;
   std::vector<traffic::ChannelRecord> records_;
   std::vector<traffic::Sample> before_;
+  std::unique_ptr<show::LiveView> view_;
   std::size_t looks_ = 0;
 };
 
@@ -144,6 +175,8 @@ Result<Value> run(Context& context, const Arguments& arguments) {
       session, [&](const can::Frame& frame, TimePoint time) { (void)sampler->on_frame(frame, time); });
   traffic::Listener listener;
   listener.next = [&] { return next; };
+  listener.on_pause = [&] { watching.refresh(); };
+  listener.is_over = [&] { return watching.is_over(); };
   listener.on_time = [&](TimePoint now) -> Result<void> {
     const auto looked = watching.look(now - begin);
     // A drive that answers slowly is not asked for what was missed.
@@ -162,7 +195,9 @@ const Command kWatch{
     .path = "watch",
     .summary = "Show the values of objects over time",
     .details =
-        "One line per node at each --every, until --for is over or Ctrl-C. Values in a TPDO are taken from "
+        "On a terminal a table that is updated in place, with a small plot of each value (keys: space pauses, s "
+        "sorts, q quits); elsewhere, and with --changes, one line per node at each --every; until --for is over "
+        "or Ctrl-C. Values in a TPDO are taken from "
         "it; the rest is read by SDO. At the end it shows the number of values of each object, the minimum, "
         "mean and maximum; --plot plots them. `-o jsonl` gives one document per sample. A drive that no "
         "longer answers at the end sets the exit code.",

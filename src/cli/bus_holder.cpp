@@ -98,7 +98,7 @@ Result<void> BusHolder::connect(const std::string& url) {
 void BusHolder::on_trace_failed(const Error& error) {
   trace_failure_ = error;
   if (!flushing_)
-    console_->err(fmt::format("notice: {}; {}\n", printable(error.message), printable(error.hint)));
+    console_->note(fmt::format("notice: {}; {}\n", printable(error.message), printable(error.hint)));
 }
 
 std::optional<Error> BusHolder::take_trace_failure() {
@@ -125,7 +125,7 @@ void BusHolder::drop(session::Session& session) {
 void BusHolder::lose(session::Session& session) {
   for (const auto node : session.energised().nodes()) warn(names(session), node, session.url() + " was lost");
   if (produces_sync(session))
-    console_->err(fmt::format("notice: SYNC is no longer produced: {} was lost\n", session.url()));
+    console_->note(fmt::format("notice: SYNC is no longer produced: {} was lost\n", session.url()));
   drop(session);
 }
 
@@ -155,8 +155,8 @@ Result<void> BusHolder::connect_again(const std::string& url, const std::set<std
     const auto time = steady_now();
     if (back || back.error().code != Errc::bus || time >= end) return back;
     if (time >= next_line) {
-      console_->err(fmt::format("notice: {}: trying again to stop node{} {}\n", back.error().message,
-                                nodes.size() == 1 ? "" : "s", fmt::join(nodes, ", ")));
+      console_->note(fmt::format("notice: {}: trying again to stop node{} {}\n", back.error().message,
+                                 nodes.size() == 1 ? "" : "s", fmt::join(nodes, ", ")));
       next_line += kTelling;
     }
     can::nap(kReconnectPause);
@@ -178,7 +178,8 @@ void BusHolder::stop_sync() {
     const auto count = session->can()->sync()->rhythm.count();
     for (const auto& warning : traffic::end_sync(*session).warnings)
       console_->err("warning: " + warning + "\n");
-    console_->err(fmt::format("notice: SYNC is no longer produced on {}, after {}\n", session->url(), count));
+    console_->note(
+        fmt::format("notice: SYNC is no longer produced on {}, after {}\n", session->url(), count));
   }
 }
 
@@ -241,7 +242,7 @@ void BusHolder::stop_and_disable() {
   for (auto* session : sessions())
     for (const auto& [node, done] : motion::de_energise(*session)) {
       if (done)
-        console_->err("notice: " + names(*session).in(motion::disabled_notice(node)) + "\n");
+        console_->note("notice: " + names(*session).in(motion::disabled_notice(node)) + "\n");
       else
         warn(names(*session), node, done.error().message);
     }

@@ -56,7 +56,8 @@ int show(Console& console, const Outcome& outcome) {
 }
 
 void show_remarks(Console& console, const Outcome& outcome) {
-  for (const auto& notice : outcome.notices) console.err("notice: " + printable(notice) + "\n");
+  if (!outcome.settings.quiet)
+    for (const auto& notice : outcome.notices) console.err("notice: " + printable(notice) + "\n");
   console.err(errors_text(outcome.errors));
 }
 

@@ -42,7 +42,14 @@ void RunningLine::write(std::string_view lines) { shell_->console().out(lines); 
 
 void RunningLine::tell(std::string_view text) {
   shell_->end_progress();
-  shell_->console().err(settings_->names.in(text));
+  if (!settings_->quiet) shell_->console().err(settings_->names.in(text));
+}
+
+std::unique_ptr<show::LiveView> RunningLine::open_view(const show::LiveView::Layout& layout) {
+  if (settings_->json || settings_->samples) return nullptr;
+  auto view = shell_->console().open_view(layout);
+  if (view) view->set_names(settings_->names);
+  return view;
 }
 
 bool RunningLine::is_gone() const { return shell_->console().output_lost(); }

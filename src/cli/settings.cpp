@@ -62,6 +62,7 @@ Result<Settings> apply_options(Settings base, const command::Arguments& argument
   if (arguments.has("--json")) base.json = true;
   if (arguments.has("--lang")) base.chinese = arguments.text("--lang") == "zh";
   base.yes = base.yes || arguments.has("--yes");
+  base.quiet = base.quiet || arguments.has("--quiet");
   base.force_family = base.force_family || arguments.has("--force-family");
   base.read_only = base.read_only || arguments.has("--read-only");
   base.dry_run = base.dry_run || arguments.has("--dry-run");

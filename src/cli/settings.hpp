@@ -25,6 +25,7 @@ struct Settings {
   bool samples = false;  ///< One JSON document a sample.
   bool chinese = false;
   bool yes = false;
+  bool quiet = false;         ///< No notices and no progress.
   bool force_family = false;  ///< Although the drive's identity contradicts the family.
   bool read_only = false;
   bool dry_run = false;

@@ -68,7 +68,7 @@ session::Options Shell::session_options() {
   out.claim_seed = (static_cast<std::uint64_t>(::getpid()) * kSpread ^ time * kSpread) >> 16U;
   out.tell = [this](std::string_view line) {
     progress_.end();
-    console_->err("notice: " + std::string(line) + "\n");
+    console_->note("notice: " + std::string(line) + "\n");
   };
   out.progress = [this](std::size_t done, std::optional<std::size_t> total, TimePoint now) {
     progress_.update(done, total, now);
@@ -91,6 +91,7 @@ Outcome Shell::perform(const std::vector<std::string>& words) {
   if (!parsed) return failed(parsed.error(), std::move(settings), path);
   auto applied = apply_options(options_.defaults, parsed->arguments);
   if (!applied) return failed(applied.error(), std::move(settings), path);
+  console_->set_quiet(applied->quiet);
   return perform_parsed(*parsed, *applied);
 }
 
@@ -235,12 +236,12 @@ Result<std::unique_ptr<session::RingEnd>> Shell::open_ring_end(const Settings& s
 /// A drive that stays energised only while servoctl is there is held until the user ends it.
 int Shell::hold() {
   if (!bus_.must_go_on()) return 0;
-  console_->err("notice: process data go on, and the drive stays as it is: Ctrl-C ends it\n");
+  console_->note("notice: process data go on, and the drive stays as it is: Ctrl-C ends it\n");
   auto& session = *bus_.session();
   while (!cancelled() && bus_.must_go_on()) {
     const auto stepped = session.step(session.now() + std::chrono::milliseconds(250));
     for (const auto& notice : take_notices(nullptr, false))
-      console_->err("notice: " + printable(notice) + "\n");
+      console_->note("notice: " + printable(notice) + "\n");
     if (!stepped) return report_error(stepped.error(), false);
   }
   if (cancelled()) return 0;

@@ -45,6 +45,7 @@ void put_bus_into(Value& value, const std::string& bus) {
   if (auto* table = std::get_if<Table>(&value.data())) {
     table->columns.insert(table->columns.begin(), {"bus"});
     for (auto& row : table->rows) row.insert(row.begin(), bus);
+    for (auto& document : table->documents) put_bus_into(document, bus);
   }
 }
 
@@ -52,8 +53,9 @@ void put_bus_into(Value& value, const std::string& bus) {
 void add_rows(Table& to, const Table& from) {
   std::vector<std::size_t> places;
   for (const auto& column : from.columns) {
-    auto at = std::find_if(to.columns.begin(), to.columns.end(),
-                           [&](const Table::Column& known) { return known.key == column.key; });
+    auto at = std::find_if(to.columns.begin(), to.columns.end(), [&](const Table::Column& known) {
+      return known.key == column.key && known.show == column.show;
+    });
     if (at == to.columns.end()) {
       for (auto& row : to.rows) row.emplace_back();
       to.columns.push_back(column);
@@ -66,6 +68,8 @@ void add_rows(Table& to, const Table& from) {
     for (std::size_t i = 0; i < row.size(); ++i) cells[places[i]] = row[i];
     to.rows.push_back(std::move(cells));
   }
+  to.documents.insert(to.documents.end(), from.documents.begin(), from.documents.end());
+  to.json_only = to.json_only && from.json_only;
   to.below.insert(to.below.end(), from.below.begin(), from.below.end());
 }
 

@@ -24,6 +24,8 @@ class Keys {
 
   /// The next key; never waits.
   virtual Key take() = 0;
+  /// The letter of the last one that was `other`; 0 for none.
+  virtual char character() const { return '\0'; }
 };
 
 }  // namespace servoctl::command

@@ -10,4 +10,6 @@ void Audience::emit(const report::Record& /*sample*/, std::string_view /*line*/)
 void Audience::write(std::string_view /*lines*/) {}
 void Audience::tell(std::string_view /*text*/) {}
 
+std::unique_ptr<LiveView> Audience::open_view(const LiveView::Layout& /*layout*/) { return nullptr; }
+
 }  // namespace servoctl::show

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <memory>
 #include <string_view>
 
 #include "base/result.hpp"
 #include "report/value.hpp"
+#include "show/live_view.hpp"
 
 namespace servoctl::show {
 
@@ -26,6 +28,9 @@ class Audience {
   virtual void write(std::string_view lines);
   /// Shows lines at once where people look (stderr), whatever form the result has.
   virtual void tell(std::string_view text);
+  /// A table that is updated where it stands, until the answer is destroyed; null where samples are lines or
+  /// records: no terminal, `--json`, `-o jsonl`.
+  virtual std::unique_ptr<LiveView> open_view(const LiveView::Layout& layout);
   /// Whether what emit() shows reaches nobody any more (closed pipe, full disk).
   virtual bool is_gone() const { return false; }
 };

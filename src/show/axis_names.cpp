@@ -116,6 +116,7 @@ void AxisNames::put_into(Value& value) const {
   if (table == nullptr) return;
   for (auto& row : table->rows)
     for (auto& cell : row) put_into(cell);
+  for (auto& document : table->documents) put_into(document);
   const auto is = [](std::string_view key) {
     return [key](const Table::Column& column) { return column.key == key; };
   };

@@ -18,4 +18,8 @@ void Desk::tell(std::string_view text) const {
   if (audience != nullptr) audience->tell(text);
 }
 
+std::unique_ptr<LiveView> Desk::open_view(const LiveView::Layout& layout) const {
+  return audience == nullptr ? nullptr : audience->open_view(layout);
+}
+
 }  // namespace servoctl::show

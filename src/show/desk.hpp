@@ -23,12 +23,12 @@ struct Desk {
   std::vector<std::uint8_t> nodes;          ///< That are meant; 0 stands for all.
   /// What the loads of nodes move, where somebody said it: `20mm` means something there.
   std::map<std::uint8_t, drive::LoadUnit> loads;
-  bool chinese = false;                     ///< Names in Chinese where there are any.
-  bool dry_run = false;                     ///< Show what would be sent, send nothing.
-  bool keeps_samples = false;               ///< `--json`: the result carries what emit() was given.
-  bool wants_records = false;               ///< `-o jsonl`: samples are shown as records, one a line.
-  std::filesystem::path state_folder;       ///< For records of changes under way; empty: none are kept.
-  Audience* audience = nullptr;             ///< Null: nobody.
+  bool chinese = false;                ///< Names in Chinese where there are any.
+  bool dry_run = false;                ///< Show what would be sent, send nothing.
+  bool keeps_samples = false;          ///< `--json`: the result carries what emit() was given.
+  bool wants_records = false;          ///< `-o jsonl`: samples are shown as records, one a line.
+  std::filesystem::path state_folder;  ///< For records of changes under way; empty: none are kept.
+  Audience* audience = nullptr;        ///< Null: nobody.
 
   std::vector<Error> errors;  ///< Parts that failed while others succeeded; the first makes the exit code.
   std::vector<std::string> notices;  ///< Things worth knowing that are no errors.
@@ -38,6 +38,7 @@ struct Desk {
   void emit(const report::Record& sample, std::string_view line) const;
   void write(std::string_view lines) const;
   void tell(std::string_view text) const;
+  std::unique_ptr<LiveView> open_view(const LiveView::Layout& layout) const;
   bool audience_is_gone() const { return audience != nullptr && audience->is_gone(); }
 };
 

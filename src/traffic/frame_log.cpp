@@ -76,6 +76,7 @@ void FrameLog::add(Duration time, std::string_view interface_name, const can::Fr
   const auto& decoded = decoder_.decode(frame);
   ++services_[decoded.service];
   if (!filter_.passes(decoded)) return;
+  if (table_) return table_->add(time, frame, decoded);
   if (writer_.wants_records()) {
     return writer_.add_record([&](report::JsonWriter& json) {
       json.member("time", seconds(time));
@@ -98,6 +99,8 @@ void FrameLog::add(Duration time, std::string_view interface_name, const can::Fr
 void FrameLog::remark(Duration time, std::string_view service, std::optional<std::uint8_t> node,
                       std::string_view text, std::string_view event) {
   if (!filter_.services.empty() && service != "alarm") return;
+  if (view_ != nullptr)
+    return view_->remark(fmt::format("{:.3f} s, node {}: {}", seconds(time), node.value_or(0), text));
   if (writer_.wants_records()) {
     return writer_.add_record([&](report::JsonWriter& json) {
       json.member("time", seconds(time));

@@ -9,6 +9,7 @@
 #include "can/trace.hpp"
 #include "show/sample_writer.hpp"
 #include "traffic/frame_decoder.hpp"
+#include "traffic/frame_table.hpp"
 
 namespace servoctl::traffic {
 
@@ -32,6 +33,12 @@ class FrameLog {
   void remark(Duration time, std::string_view service, std::optional<std::uint8_t> node,
               std::string_view text, std::string_view event);
   void flush() { writer_.flush(); }
+  /// From now on a table of FrameTable::layout() shows the frames, and alarms under it; `view` outlives the
+  /// log.
+  void show_in(show::LiveView& view) {
+    view_ = &view;
+    table_.emplace(view);
+  }
 
   FrameDecoder& decoder() { return decoder_; }
   std::size_t count() const { return count_; }
@@ -51,6 +58,8 @@ class FrameLog {
   std::map<std::string_view, std::size_t> services_;
   std::optional<Duration> begin_;
   std::string line_;
+  show::LiveView* view_ = nullptr;
+  std::optional<FrameTable> table_;
 };
 
 }  // namespace servoctl::traffic

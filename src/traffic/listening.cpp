@@ -27,6 +27,7 @@ Result<void> listen(session::Session& session, std::optional<Duration> length, c
     if (!*stepped || now >= shown + kSlice) {
       if (listener.on_pause) listener.on_pause();
       shown = now;
+      if (listener.is_over && listener.is_over()) return {};
     }
     // A frame may have arrived long before it was taken: what is due is asked of the clock.
     if (due != kNever && session.now() >= due && session.now() < end)

@@ -17,6 +17,8 @@ struct Listener {
   /// Called when `next` (asked each time) has come.
   std::function<Result<void>(TimePoint now)> on_time = {};
   std::function<TimePoint()> next = {};
+  /// Asked after each pause: whether it is over, as after Ctrl-C.
+  std::function<bool()> is_over = {};
 };
 
 /// Listens until `length` is over or Ctrl-C comes, which is no error.

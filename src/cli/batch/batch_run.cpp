@@ -40,9 +40,9 @@ class BatchRun {
   int finish() {
     const auto left = count_ - done_ - failed_;
     if (!settings_.json) {
-      shell_->console().err(fmt::format("{}: {} of {} lines done", printable(*file_), done_, count_) +
-                            (failed_ > 0 ? fmt::format(", {} failed", failed_) : "") +
-                            (left > 0 ? fmt::format(", {} not run", left) : "") + "\n");
+      shell_->console().note(fmt::format("{}: {} of {} lines done", printable(*file_), done_, count_) +
+                             (failed_ > 0 ? fmt::format(", {} failed", failed_) : "") +
+                             (left > 0 ? fmt::format(", {} not run", left) : "") + "\n");
       return first_error_ ? exit_code(first_error_->code) : 0;
     }
     report::Record result;

@@ -50,8 +50,19 @@ void StandardConsole::show(LiveOutput& output, std::string_view text) const {
   output.offer(text, waits ? kPatience : Duration::zero());
 }
 
-void StandardConsole::write_out(std::string_view text) { show(out_, text); }
-void StandardConsole::write_err(std::string_view text) { show(err_, text); }
+void StandardConsole::make_room() {
+  if (view_ != nullptr) view_->step_aside();
+}
+
+void StandardConsole::write_out(std::string_view text) {
+  make_room();
+  show(out_, text);
+}
+
+void StandardConsole::write_err(std::string_view text) {
+  make_room();
+  show(err_, text);
+}
 
 void StandardConsole::set_care(session::Care care) {
   const bool was_live = std::exchange(care_, care) != session::Care::none;
@@ -73,7 +84,7 @@ void StandardConsole::finish() {
 }
 
 void StandardConsole::show_progress(std::string_view line) {
-  if (::isatty(STDERR_FILENO) == 1) write_err("\r\033[K" + printable(line));
+  if (::isatty(STDERR_FILENO) == 1 && !is_quiet()) write_err("\r\033[K" + printable(line));
 }
 
 bool StandardConsole::ask(std::string_view question) {
@@ -94,10 +105,24 @@ std::unique_ptr<command::Keys> StandardConsole::open_keys() {
   return can_ask() ? TerminalKeys::open(STDIN_FILENO) : nullptr;
 }
 
-std::size_t StandardConsole::width() const {
-  winsize size{};
-  if (!shows_output_ || ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return 0;
-  return size.ws_col;
+std::unique_ptr<show::LiveView> StandardConsole::open_view(const show::LiveView::Layout& layout) {
+  if (view_ != nullptr || screen_size().rows == 0) return nullptr;
+  auto view =
+      std::make_unique<TerminalView>(layout,
+                                     Screen{.write = [this](std::string_view text) { show(out_, text); },
+                                            .size = [this] { return screen_size(); },
+                                            .closed = [this] { view_ = nullptr; }},
+                                     open_keys());
+  view_ = view.get();
+  return view;
 }
+
+Screen::Size StandardConsole::screen_size() const {
+  winsize size{};
+  if (!shows_output_ || ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0) return {};
+  return {size.ws_col, size.ws_row};
+}
+
+std::size_t StandardConsole::width() const { return screen_size().columns; }
 
 }  // namespace servoctl::cli

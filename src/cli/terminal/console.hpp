@@ -11,8 +11,10 @@
 #include "base/printable.hpp"
 #include "base/time.hpp"
 #include "cli/terminal/live_output.hpp"
+#include "cli/terminal/terminal_view.hpp"
 #include "command/keys.hpp"
 #include "session/protection.hpp"
+#include "show/live_view.hpp"
 
 namespace servoctl::cli {
 
@@ -26,8 +28,14 @@ class Console {
 
   /// Data. Whatever it holds, nothing but printable_lines() of it leaves the program.
   void out(std::string_view text) { write_out(printable_lines(text)); }
-  /// Errors, notices, progress; as out().
+  /// Errors, warnings, questions; as out().
   void err(std::string_view text) { write_err(printable_lines(text)); }
+  /// A notice, or how far something has come: nothing with --quiet.
+  void note(std::string_view text) {
+    if (!quiet_) err(text);
+  }
+  void set_quiet(bool quiet) { quiet_ = quiet; }
+  bool is_quiet() const { return quiet_; }
   /// Empties the line the cursor is in; only where somebody looks.
   virtual void wipe_line() {}
   /// Shows this line in place of the one shown before; an empty one wipes it. Only where somebody looks.
@@ -40,6 +48,11 @@ class Console {
   virtual std::size_t width() const = 0;  ///< Columns of the terminal text goes to; 0: no terminal.
   /// The keys of the terminal as they are pressed, until the answer is destroyed; null where there is none.
   virtual std::unique_ptr<command::Keys> open_keys() { return nullptr; }
+  /// A table on the terminal, until the answer is destroyed; null where text goes somewhere else.
+  virtual std::unique_ptr<show::LiveView> open_view(const show::LiveView::Layout& layout) {
+    (void)layout;
+    return nullptr;
+  }
   /// Whether data can no longer be written: the reader has gone.
   virtual bool output_lost() const { return false; }
   /// Told what would be left alone if nobody read what is shown: who reads is not waited for while a drive is
@@ -60,6 +73,7 @@ class Console {
 
  private:
   std::function<Duration()> service_;
+  bool quiet_ = false;
 };
 
 /// Standard streams of the process.
@@ -72,6 +86,7 @@ class StandardConsole final : public Console {
   bool can_ask() const override;
   std::size_t width() const override;
   std::unique_ptr<command::Keys> open_keys() override;
+  std::unique_ptr<show::LiveView> open_view(const show::LiveView::Layout& layout) override;
   bool output_lost() const override { return write_error() != 0; }
   void set_care(session::Care care) override;
   std::size_t take_left_out() override { return out_.take_left_out(); }
@@ -87,12 +102,17 @@ class StandardConsole final : public Console {
   void write_err(std::string_view text) override;
 
  private:
+  /// Nothing where text goes somewhere else.
+  Screen::Size screen_size() const;
+  /// Text stands above a table that is on the screen.
+  void make_room();
   bool line_is_there() const;
   std::string typed_line() const;
   void show(LiveOutput& output, std::string_view text) const;
 
   session::Care care_ = session::Care::none;
   bool shows_output_ = ::isatty(STDOUT_FILENO) == 1;
+  TerminalView* view_ = nullptr;
   LiveOutput out_{1};
   LiveOutput err_{2};
 };

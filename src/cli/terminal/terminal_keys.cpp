@@ -37,6 +37,7 @@ int TerminalKeys::next_byte() {
 
 TerminalKeys::Key TerminalKeys::take() {
   const int first = next_byte();
+  character_ = first > 0 && first != kEscape ? static_cast<char>(first) : '\0';
   if (first == kNothing) return Key::none;
   if (first == kGone) return Key::lost;
   if (first != kEscape) return Key::other;

@@ -16,6 +16,7 @@ class TerminalKeys final : public command::Keys {
   ~TerminalKeys() override;
 
   Key take() override;
+  char character() const override { return character_; }
 
  private:
   TerminalKeys(int descriptor, const termios& before) : descriptor_(descriptor), before_(before) {}
@@ -24,6 +25,7 @@ class TerminalKeys final : public command::Keys {
 
   int descriptor_;
   termios before_;
+  char character_ = '\0';
 };
 
 }  // namespace servoctl::cli

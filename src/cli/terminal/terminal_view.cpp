@@ -1,0 +1,110 @@
+#include "cli/terminal/terminal_view.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <utility>
+
+#include "base/number.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+using command::Keys;
+
+constexpr Duration kLeastBetween = std::chrono::milliseconds(100);
+constexpr std::string_view kToAlternate = "\033[?1049h\033[H";
+constexpr std::string_view kFromAlternate = "\033[?1049l";
+constexpr std::string_view kNode = "node";
+constexpr std::string_view kToLeft = "\r";
+constexpr std::string_view kRestOfLine = "\033[K";
+constexpr std::string_view kRestOfScreen = "\033[J";
+constexpr std::string_view kHome = "\033[H";
+
+}  // namespace
+
+TerminalView::TerminalView(Layout layout, Screen screen, std::unique_ptr<Keys> keys)
+    : table_(layout),
+      alternate_(layout.alternate_screen),
+      screen_(std::move(screen)),
+      keys_(std::move(keys)) {
+  for (const auto& column : layout.columns) titles_.push_back(column.title);
+  if (alternate_) screen_.write(kToAlternate);
+}
+
+TerminalView::~TerminalView() {
+  if (alternate_)
+    screen_.write(kFromAlternate);
+  else
+    draw();
+  if (screen_.closed) screen_.closed();
+}
+
+void TerminalView::set(std::string_view row, std::vector<std::string> cells, std::optional<double> number) {
+  for (std::size_t i = 0; i < std::min(cells.size(), titles_.size()); ++i)
+    if (titles_[i] == kNode) cells[i] = name_of(std::move(cells[i]));
+  table_.set(row, std::move(cells), number);
+}
+
+void TerminalView::remark(std::string text) { table_.remark(names().in(text)); }
+
+std::string TerminalView::name_of(std::string node) const {
+  const auto number = parse_digits(node, 10);
+  const auto name =
+      number && *number <= 127 ? names().of(static_cast<std::uint8_t>(*number)) : std::string_view();
+  return name.empty() ? std::move(node) : std::string(name);
+}
+
+void TerminalView::refresh(TimePoint now) {
+  take_keys();
+  if (drawn_ && now < *drawn_ + kLeastBetween) return;
+  drawn_ = now;
+  draw();
+}
+
+void TerminalView::take_keys() {
+  if (!keys_) return;
+  for (auto key = keys_->take(); key != Keys::Key::none && !over_; key = keys_->take()) {
+    switch (key) {
+      case Keys::Key::up: table_.scroll(-1); break;
+      case Keys::Key::down: table_.scroll(1); break;
+      case Keys::Key::lost: over_ = true; break;
+      case Keys::Key::other:
+        if (keys_->character() == ' ') table_.pause();
+        if (keys_->character() == 's') table_.sort_by_next();
+        if (keys_->character() == 'q') over_ = true;
+        break;
+      default: break;
+    }
+  }
+}
+
+/// A terminal of another size has broken the lines anew, or not: what stood there is pushed up, and the table
+/// begins at the top.
+std::string TerminalView::to_top(Screen::Size size) const {
+  if (height_ == 0) return std::string(kToLeft);
+  if (alternate_) return std::string(kHome);
+  if (size_ != size) return "\r\n" + std::string(size.rows, '\n') + std::string(kHome);
+  return fmt::format("\r\033[{}A", height_);
+}
+
+void TerminalView::draw() {
+  const auto size = screen_.size();
+  // The last line stays free for the cursor, the last column for terminals that break a full line.
+  if (size.rows < 3 || size.columns < 2) return;
+  table_.update();
+  auto out = to_top(size);
+  const auto lines = table_.lines(size.columns - 1, size.rows - 1);
+  for (const auto& line : lines) (out += line).append(kRestOfLine).append("\r\n");
+  out += kRestOfScreen;
+  height_ = lines.size();
+  size_ = size;
+  screen_.write(out);
+}
+
+void TerminalView::step_aside() {
+  if (height_ == 0 || alternate_) return;
+  screen_.write(fmt::format("\r\033[{}A{}", height_, kRestOfScreen));
+  height_ = 0;
+}
+
+}  // namespace servoctl::cli

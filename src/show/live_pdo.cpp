@@ -1,0 +1,31 @@
+#include "show/live_pdo.hpp"
+
+#include <fmt/format.h>
+
+#include "show/records.hpp"
+
+namespace servoctl::show {
+
+LiveView::Layout pdo_layout() {
+  return {.columns = {
+              {.title = "node", .right = true}, {.title = "PDO"}, {.title = "object"}, {.title = "value"}}};
+}
+
+void show_values(LiveView& live, const PdoView& view, ByteSpan data, bool chinese) {
+  const auto node = fmt::format("{}", view.node);
+  const auto row = fmt::format("{} {}", node, view.name);
+  std::string text;
+  if (!shows_values(view, data)) {
+    append_values(view, data, chinese, text);
+    return live.set(row, {node, view.name, "", std::move(text)});
+  }
+  for (const auto& field : view.fields) {
+    const auto value = field.value(data);
+    text.clear();
+    append_value(field, value, chinese, text);
+    live.set(fmt::format("{} {}", row, field.first_bit), {node, view.name, field.name, text},
+             plotted(od_value(value)));
+  }
+}
+
+}  // namespace servoctl::show
