@@ -26,15 +26,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   const auto read = session::read_pdo_values(*context.session, context.profile, context.nodes).front();
   if (!read) return fail(read.error());
   const pdo::PresentPdos present{node, *read, session::pdos_of(*read)};
-  drive::PdoFile file;
-  if (context.profile != nullptr) file.family = context.profile->family;
-  std::vector<std::vector<std::string>> names;
-  for (const auto& pdo : present.pdos) {
-    file.pdos.push_back(pdo::recipe_of(context.profile, present, pdo));
-    names.emplace_back();
-    for (const auto& entry : pdo.entries)
-      names.back().push_back(show::mapped_name(context.profile, entry, context.chinese));
-  }
+  const auto [file, names] = pdo::saved_pdos(context, present);
   const auto text = extension == ".json" ? pdo::pdo_json(file) : pdo::pdo_toml(file, names);
   if (!context.dry_run)
     if (const auto written = write_file_atomically(path, text); !written) return fail(written.error());

@@ -22,6 +22,8 @@ extern const Command kParamSearch;
 extern const Command kParamExplain;
 extern const Command kBackup;
 extern const Command kCabinetCheck;
+extern const Command kCabinetInit;
+extern const Command kCabinetShow;
 extern const Command kDiff;
 extern const Command kVerify;
 extern const Command kRestore;
@@ -108,7 +110,9 @@ constexpr Named kNamed[] = {
     {"param search", &commands::kParamSearch},
     {"param explain", &commands::kParamExplain},
     {"backup", &commands::kBackup},
+    {"cabinet init", &commands::kCabinetInit},
     {"cabinet check", &commands::kCabinetCheck},
+    {"cabinet show", &commands::kCabinetShow},
     {"diff", &commands::kDiff},
     {"verify", &commands::kVerify},
     {"restore", &commands::kRestore},

@@ -184,4 +184,16 @@ std::string pdo_json(const drive::PdoFile& file) {
   return out + "\n]}\n";
 }
 
+SavedPdos saved_pdos(const show::Desk& desk, const PresentPdos& present) {
+  SavedPdos out;
+  if (desk.profile != nullptr) out.file.family = desk.profile->family;
+  for (const auto& pdo : present.pdos) {
+    out.file.pdos.push_back(recipe_of(desk.profile, present, pdo));
+    auto& names = out.names.emplace_back();
+    for (const auto& entry : pdo.entries)
+      names.push_back(show::mapped_name(desk.profile, entry, desk.chinese));
+  }
+  return out;
+}
+
 }  // namespace servoctl::pdo

@@ -27,6 +27,13 @@ Result<drive::PdoFile> read_pdo_file(const std::filesystem::path& file);
 /// The same for a text; the name of the file decides how it is read.
 Result<drive::PdoFile> parse_pdo_file(std::string_view text, const std::filesystem::path& file);
 
+/// All PDOs of a node as such a file, with the names of what they map.
+struct SavedPdos {
+  drive::PdoFile file;
+  std::vector<std::vector<std::string>> names;  ///< One list for each recipe.
+};
+SavedPdos saved_pdos(const show::Desk& desk, const PresentPdos& present);
+
 /// The text of such a file; `names` are those of the mapped objects, one list for each recipe.
 std::string pdo_toml(const drive::PdoFile& file, const std::vector<std::vector<std::string>>& names);
 std::string pdo_json(const drive::PdoFile& file);

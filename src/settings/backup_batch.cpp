@@ -159,24 +159,32 @@ std::string comment_text(std::string_view text) {
   return out;
 }
 
+WordedValue worded_value(const drive::Profile* profile, std::uint8_t node, ObjectAddress object,
+                         const Bytes& data) {
+  const auto target = drive::target_at(profile, object);
+  const auto meaning = drive::fitted(drive::meaning(target, node), data.size());
+  WordedValue out;
+  out.type = show::type_of({node, target, {}, data}, data);
+  out.value = value_text(meaning, out.type, object, data);
+  out.typed = !meaning.type_known || !meaning.size_known;
+  out.panel = target.parameter != nullptr && is_plain_id(target.parameter->id);
+  out.name = out.panel ? target.parameter->id : to_string(object);
+  return out;
+}
+
 std::string write_line(const drive::Profile* profile, std::uint8_t node, ObjectAddress object,
                        const Bytes& data) {
-  const auto target = drive::target_at(profile, object);
-  const auto* parameter = target.parameter;
-  const auto meaning = drive::fitted(drive::meaning(target, node), data.size());
-  const auto type = show::type_of({node, target, {}, data}, data);
-  const auto text = value_text(meaning, type, object, data);
-  const bool harmless = type != od::DataType::string && is_harmless(text);
-  const bool typed = !meaning.type_known || !meaning.size_known;
+  const auto* parameter = drive::target_at(profile, object).parameter;
+  const auto words = worded_value(profile, node, object, data);
+  const bool harmless = words.type != od::DataType::string && is_harmless(words.value);
   const bool locked = parameter != nullptr && is_locked(*profile, *parameter);
-  const auto options =
-      (typed ? fmt::format(" --type {}", od::name(type)) : std::string()) + (locked ? " --unlock" : "");
-  const bool named = parameter != nullptr && is_plain_id(parameter->id);
-  const auto name = named ? parameter->id : to_string(object);
-  const std::string verb = named && !typed ? "param set " : "write ";
+  const auto options = (words.typed ? fmt::format(" --type {}", od::name(words.type)) : std::string()) +
+                       (locked ? " --unlock" : "");
+  const bool set = words.panel && !words.typed;
+  const std::string verb = set ? "param set " : "write ";
   // A drive's string may be an option to the letter.
-  if (!harmless) return fmt::format("{}{}{} -- {}", verb, name, options, in_quotes(text));
-  return fmt::format("{}{}{}{}{}", verb, name, named && !typed ? '=' : ' ', quoted(text), options);
+  if (!harmless) return fmt::format("{}{}{} -- {}", verb, words.name, options, in_quotes(words.value));
+  return fmt::format("{}{}{}{}{}", verb, words.name, set ? '=' : ' ', quoted(words.value), options);
 }
 
 std::string commented_line(const drive::Profile* profile, std::uint8_t node, ObjectAddress object,

@@ -44,6 +44,17 @@ bool fits_a_line(std::string_view text);
 /// The text as a comment behind a line: in one line, and not going on in the next.
 std::string comment_text(std::string_view text);
 
+/// A value in words that give these bytes again.
+struct WordedValue {
+  std::string name;    ///< Number of the panel, else the address of the object.
+  std::string value;   ///< `600`, `0x00000181`, `hex:01 02`.
+  bool panel = false;  ///< `name` is a number of the panel.
+  bool typed = false;  ///< The data do not tell the type: it has to be said beside the value.
+  od::DataType type = od::DataType::u32;
+};
+WordedValue worded_value(const drive::Profile* profile, std::uint8_t node, ObjectAddress object,
+                         const Bytes& data);
+
 /// One line that writes the value: `param set Pn0214=600`, `write 0x6065:0 1000`. Text stands in quotes
 /// behind
 /// `--`, whatever it is: `write 0x2000:0 -- "--from=x"`.

@@ -92,6 +92,7 @@ const std::map<std::string, std::string> kSamples{
     {"decode", "decode DIR/recording.log"},
     {"replay", "replay DIR/recording.log --speed 100 -n 1 -y"},
     {"drives", "drives"},
+    {"cabinet check", "cabinet check tests/cli/data/cabinet.toml"},
     {"eds check", "eds check EDS"},
     {"run", "run DIR/lines.servoctl"},
     {"sim", "sim FAMILY@3"},

@@ -73,7 +73,8 @@ const std::map<std::string, std::string, std::less<>> kLines{
 /// Commands that send nothing to a drive.
 const std::set<std::string_view> kQuiet{
     "objects",   "param list", "param search", "param explain", "fault list", "decode",      "drives",
-    "eds check", "run",        "sim",          "help",          "completion", "units forget"};
+    "eds check", "run",        "sim",          "help",          "completion", "units forget",
+    "cabinet check"};
 
 /// Refused on a read already: the answer would make sense for the family alone.
 const std::set<std::string_view> kAnswers{"backup", "diff",    "info",       "report",

@@ -1,0 +1,151 @@
+#include "cabinet/cabinet_text.hpp"
+
+#include <fmt/format.h>
+
+#include "base/pdo_index.hpp"
+#include "base/text.hpp"
+#include "drive/standard_objects.hpp"
+#include "pdo/pdo_changing.hpp"
+#include "pdo/pdo_recipes.hpp"
+#include "session/pdo_setup.hpp"
+#include "session/snapshot.hpp"
+#include "settings/backup_formats.hpp"
+#include "settings/comparison.hpp"
+
+namespace servoctl::cabinet {
+namespace {
+
+/// As a string of TOML.
+std::string in_quotes(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + '"';
+}
+
+bool is_whole_number(std::string_view text) {
+  if (text.starts_with('-')) text.remove_prefix(1);
+  return !text.empty() && text.size() <= 18 &&
+         text.find_first_not_of("0123456789") == std::string_view::npos &&
+         (text == "0" || text.front() != '0');
+}
+
+bool is_bare_key(std::string_view name) {
+  return name.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-") ==
+         std::string_view::npos;
+}
+
+std::string line_of(const show::Desk& desk, std::uint8_t node, ObjectAddress object, const Bytes& data) {
+  const auto words = settings::worded_value(desk.profile, node, object, data);
+  const auto target = drive::target_at(desk.profile, object);
+  const auto label = settings::comment_text(desk.chinese ? target.label_zh() : target.label());
+  const auto key = is_bare_key(words.name) ? words.name : in_quotes(words.name);
+  const auto value = is_whole_number(words.value) ? words.value : in_quotes(words.value);
+  return fmt::format("{} = {}{}", key, value, label.empty() ? "" : "  # " + label);
+}
+
+std::string who(const session::Identity& identity) {
+  std::string out;
+  if (!identity.device_name.empty()) append(out, settings::comment_text(identity.device_name));
+  if (identity.vendor_id) append(out, fmt::format("vendor 0x{:08X}", *identity.vendor_id));
+  if (identity.product_code) append(out, fmt::format("product 0x{:08X}", *identity.product_code));
+  if (!identity.software_version.empty())
+    append(out, "software " + settings::comment_text(identity.software_version));
+  return out;
+}
+
+/// Whether the object says which PDOs are exchanged, and what is in them.
+bool is_of_pdos(const drive::Profile& profile, ObjectAddress object) {
+  const auto assigns = [&](const std::string& name) {
+    const auto place = drive::place_of(profile, name);
+    return place && place->index == object.index;
+  };
+  return pdo_at(object.index) || assigns(profile.rules.pdo.assign_rpdo) ||
+         assigns(profile.rules.pdo.assign_tpdo);
+}
+
+std::string family_lines(const FoundAxis& axis) {
+  if (axis.family.empty())
+    return "# No family fits: name one (`servoctl drives`) or an .eds or .xml file, and take the # away.\n"
+           "# family = \"\"\n";
+  auto out = fmt::format("family = {}", in_quotes(axis.family));
+  if (axis.guessed)
+    out += axis.others.empty()
+               ? "  # guessed by its identity: does the nameplate agree?"
+               : fmt::format("  # guessed by its identity, which fits {} as well", one_of(axis.others));
+  return out + "\n";
+}
+
+std::string axis_text(const std::string& bus, const FoundAxis& axis) {
+  const bool unknown = axis.family.empty();
+  const std::string mark = unknown ? "# " : "";
+  auto out = fmt::format("\n{0}[axis.{1}]", mark, axis.name);
+  if (const auto told = who(axis.identity); !told.empty()) out += "  # " + told;
+  out +=
+      fmt::format("\n{0}bus = {1}\n{0}node = {2}\n{3}", mark, in_quotes(bus), axis.node, family_lines(axis));
+  if (unknown) return out;
+  if (axis.identity.serial.value_or(0) != 0)
+    out += fmt::format("serial = \"0x{:08X}\"\n", *axis.identity.serial);
+  out +=
+      "# turn = 131072            # increments of 6064h per motor revolution, if the drive does not tell them\n"
+      "# gear = \"10:1\"            # motor to output\n"
+      "# per_turn = \"20 mm\"       # what the load moves in one turn of the output\n"
+      "# limits = { speed = \"300rpm\", torque = \"80%\" }\n";
+  if (axis.heartbeat_ms) out += fmt::format("heartbeat = \"{}ms\"\n", *axis.heartbeat_ms);
+  if (!axis.pdo_file.empty()) out += fmt::format("pdos = {}\n", in_quotes(axis.pdo_file));
+  if (axis.parameters.empty()) return out;
+  out += fmt::format("[axis.{}.parameters]\n", axis.name);
+  for (const auto& line : axis.parameters) out += line + "\n";
+  return out;
+}
+
+}  // namespace
+
+Result<FoundSettings> find_settings(show::Desk& desk, std::uint8_t node) {
+  FoundSettings out;
+  const std::uint8_t nodes[] = {node};
+  const auto snapshot = std::move(session::take_snapshots(*desk.session, *desk.profile, nodes, {}).front());
+  if (!snapshot) return fail(snapshot.error());
+  const auto factory = settings::factory_side(*desk.profile, node);
+  bool other_pdos = false;
+  for (const auto& entry : snapshot->entries) {
+    const auto usual = factory.values.find(entry.object);
+    const bool known = entry.bytes && entry.left_out.empty() && usual != factory.values.end();
+    if (!known || *entry.bytes == usual->second || settings::is_address(desk.profile, entry.object)) continue;
+    if (is_of_pdos(*desk.profile, entry.object))
+      other_pdos = true;
+    else if (entry.object == objects::kProducerHeartbeat)
+      out.heartbeat_ms = static_cast<std::uint16_t>(load_le(*entry.bytes));
+    else
+      out.parameters.push_back(line_of(desk, node, entry.object, *entry.bytes));
+  }
+  if (!other_pdos) return out;
+  const auto values = std::move(session::read_pdo_values(*desk.session, desk.profile, nodes).front());
+  if (!values) return fail(values.error());
+  const pdo::PresentPdos present{node, *values, session::pdos_of(*values)};
+  const auto saved = pdo::saved_pdos(desk, present);
+  out.pdos = pdo::pdo_toml(saved.file, saved.names);
+  return out;
+}
+
+std::string cabinet_text(const std::string& bus, const std::string& url, const std::vector<FoundAxis>& axes,
+                         bool whole) {
+  std::string out;
+  if (whole)
+    out +=
+        "# What stands in the cabinet, and what each drive is to have. `servoctl cabinet check` reads this file\n"
+        "# without a bus, `cabinet plan` shows what differs from the drives, `cabinet apply` makes it so.\n"
+        "# Give the axes the names of your machine: `servoctl status feeder`. Values that axes share go into\n"
+        "# [group.NAME] (an axis says group = \"NAME\") or [family.NAME].\n"
+        "format = 1\n\n";
+  else
+    out += "\n";
+  out += fmt::format("[bus.{}]\nurl = {}\n", bus, in_quotes(url));
+  if (whole) out += "# bitrate = \"500k\"\n";
+  for (const auto& axis : axes) out += axis_text(bus, axis);
+  return out;
+}
+
+}  // namespace servoctl::cabinet

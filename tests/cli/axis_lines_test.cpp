@@ -1,0 +1,164 @@
+// Axes of a cabinet by name: which bus, node and family they stand for, and what is told of them.
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+#include <filesystem>
+#include <fstream>
+
+#include "../source_dir.hpp"
+#include "cli/line_runner.hpp"
+#include "cli/shell.hpp"
+#include "recording_console.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+class AxisLines : public testing::Test {
+ protected:
+  AxisLines() : folder(fs::temp_directory_path() / ("servoctl-axes-" + std::to_string(::getpid()))) {
+    fs::create_directories(folder);
+    write(R"([bus.main]
+url = "sim:gsd600@1,gsd600@2,da200@3"
+[bus.ring]
+url = "coe:sim:sv2@1"
+[group.feeders]
+bus = "main"
+family = "gsd600"
+turn = 10000
+gear = "10:1"
+per_turn = "20 mm"
+limits = { speed = "100mm/s" }
+[axis."feeder{1-2}"]
+node = "1-2"
+group = "feeders"
+[axis."送料"]
+bus = "main"
+node = 3
+family = "da200"
+[axis.table]
+bus = "ring"
+node = 1
+family = "sv2"
+)");
+    Shell::Options options;
+    options.drive_folders = {fs::path(source_dir()) / "eds"};
+    options.clock = sim::SimBus::Clock::virtual_time;
+    options.defaults.cabinet = folder / "cabinet.toml";
+    shell = std::make_unique<Shell>(console, options);
+    shell->stay_open(true);
+  }
+  ~AxisLines() override { fs::remove_all(folder); }
+
+  void write(const std::string& text) const { std::ofstream(folder / "cabinet.toml") << text; }
+  int run(std::string_view line) {
+    console.out_text.clear();
+    console.err_text.clear();
+    return LineRunner(*shell).run(line);
+  }
+  std::string all() const { return console.out_text + console.err_text; }
+  bool says(std::string_view what) const { return all().find(what) != std::string::npos; }
+
+  fs::path folder;
+  RecordingConsole console;
+  std::unique_ptr<Shell> shell;
+};
+
+TEST_F(AxisLines, ANameStandsForBusNodeAndFamily) {
+  EXPECT_EQ(run("param get Pn0202 -n feeder2 --json"), 0) << all();
+  EXPECT_TRUE(says(R"("axis":"feeder2","node":2)")) << all();
+  EXPECT_TRUE(says(R"("bus":"sim:gsd600@1,gsd600@2,da200@3")")) << all();
+  EXPECT_EQ(run("read statusword -n 送料"), 0) << all();
+  EXPECT_TRUE(says("送料")) << all();
+}
+
+TEST_F(AxisLines, TheFirstWordAfterACommandMayBeAnAxis) {
+  EXPECT_EQ(run("param get feeder1,feeder2 Pn0202 --json"), 0) << all();
+  EXPECT_TRUE(says(R"("axis":"feeder1")") && says(R"("axis":"feeder2")")) << all();
+  EXPECT_EQ(run("read feeder9 statusword"), 2) << all();
+}
+
+TEST_F(AxisLines, AxesOfSeveralBusesAndFamiliesHaveOneAnswer) {
+  EXPECT_EQ(run("read statusword -n all --json"), 0) << all();
+  for (const auto* name : {"feeder1", "feeder2", "送料", "table"})
+    EXPECT_TRUE(says(std::string("\"axis\":\"") + name + '"')) << name << all();
+  EXPECT_EQ(run("read statusword --json -n all --retries 0 --timeout 50ms"), 0) << all();
+  EXPECT_EQ(run("read Pn0202 -n feeder1,table"), 2) << all();  // The other family has no such number.
+  EXPECT_TRUE(says("feeder1") && says("'Pn0202' is not an object or parameter of sv2")) << all();
+}
+
+TEST_F(AxisLines, WhatMovesOrGoesOnIsOfOneBusAndFamily) {
+  EXPECT_EQ(run("watch statusword -n all --for 1s"), 2) << all();
+  EXPECT_TRUE(says("for axes of one bus and one family at a time")) << all();
+  EXPECT_EQ(run("enable -n feeder1,table --yes"), 2) << all();
+  EXPECT_EQ(run("jog -n feeders 10mm/s --for 1s --yes"), 2) << all();
+  EXPECT_TRUE(says("one motor at a time")) << all();
+}
+
+TEST_F(AxisLines, AMotionIsToldInTheUnitOfTheLoadAndMovesThatFar) {
+  EXPECT_EQ(run("move feeder1 20mm --speed 50mm/s --yes"), 0) << all();
+  EXPECT_TRUE(says("go 3600 deg (20 mm) to 3600 deg (20 mm) at 1500 rpm (50 mm/s)")) << all();
+  EXPECT_TRUE(says("position of the load")) << all();
+  EXPECT_EQ(run("read 0x6064 -n feeder1 --json"), 0) << all();
+  EXPECT_TRUE(says(R"("value":100000,)")) << all();                     // Ten revolutions of 10000.
+  EXPECT_EQ(run("jog feeder1 101mm/s --for 100ms --yes"), 8) << all();  // Above the limit of the file.
+  EXPECT_EQ(run("move 送料 20mm --yes"), 2) << all();                   // Nobody said what it moves.
+}
+
+TEST_F(AxisLines, ALineThatContradictsTheFileIsRefused) {
+  EXPECT_EQ(run("status -n feeder1 -d da200"), 2) << all();
+  EXPECT_TRUE(says("feeder1 is gsd600 by cabinet.toml, not da200")) << all();
+  EXPECT_EQ(run("status -n feeder1 -b sim:gsd600@1"), 2) << all();
+  EXPECT_EQ(run("status -n feeder1 -b main -d gsd600"), 0) << all();
+  EXPECT_EQ(run("status -n feedr1"), 2) << all();
+  EXPECT_TRUE(says("did you mean feeder1")) << all();
+}
+
+TEST_F(AxisLines, AnotherBusLetsNoDriveGo) {
+  EXPECT_EQ(run("enable feeder1 --yes"), 0) << all();
+  EXPECT_EQ(run("status table"), 0) << all();
+  EXPECT_FALSE(says("disabled")) << all();
+  EXPECT_EQ(run("status feeder1 --json"), 0) << all();
+  EXPECT_TRUE(says(R"("energised":true)")) << all();
+  EXPECT_EQ(run("status -b sim:dm@1 -n 1"), 0) << all();  // A bus of its own does, and says so by name.
+  EXPECT_TRUE(says("feeder1")) << all();
+}
+
+TEST_F(AxisLines, TheBusesOfTheFileAreNamesAndDefaults) {
+  EXPECT_EQ(run("scan --json"), 0) << all();
+  EXPECT_TRUE(says(R"("bus":"coe:sim:sv2@1","axis":"table")")) << all();
+  EXPECT_EQ(run("read statusword -b ring -n 1 --json"), 0) << all();
+  EXPECT_TRUE(says(R"("axis":"table")")) << all();
+  EXPECT_EQ(run("read statusword -n 1"), 2) << all();
+  EXPECT_TRUE(says("which bus? cabinet.toml has 2")) << all();
+}
+
+TEST_F(AxisLines, ErrorsAndHintsSpeakOfTheAxis) {
+  write("[bus.main]\nurl = \"sim:gsd600@1\"\n[axis.lift]\nnode = 7\nfamily = \"gsd600\"\n");
+  EXPECT_EQ(run("read statusword -n lift --timeout 50ms"), 4) << all();
+  EXPECT_TRUE(says("error: lift, object 0x6041:0")) << all();
+  EXPECT_FALSE(says("node 7")) << all();
+}
+
+TEST_F(AxisLines, AFileThatCannotBeUsedDisturbsOnlyLinesThatNeedIt) {
+  write("[bus.main]\nurl = 5\n");
+  EXPECT_EQ(run("read 0x6041 -b sim:dm@1 -n 1"), 0) << all();
+  EXPECT_EQ(run("status -n feeder1"), 7) << all();
+  EXPECT_TRUE(says("cabinet.toml:2:7: the value of 'url' is of the wrong kind")) << all();
+  write("[bus.main]\nurl = \"sim:ts@5\"\n[axis.lift]\nnode = 5\nfamily = \"ts\"\n");  // Read again.
+  EXPECT_EQ(run("status -n lift"), 0) << all();
+}
+
+TEST_F(AxisLines, ThePromptTakesAnAxisForTheLinesThatFollow) {
+  EXPECT_EQ(run("use feeder2"), 0) << all();
+  EXPECT_EQ(run("param get Pn0202 --json"), 0) << all();
+  EXPECT_TRUE(says(R"("axis":"feeder2")")) << all();
+  EXPECT_EQ(run("use feeder8"), 2) << all();
+  EXPECT_EQ(run("use table"), 0) << all();
+  EXPECT_EQ(run("status --json"), 0) << all();
+  EXPECT_TRUE(says(R"("axis":"table")")) << all();
+}
+
+}  // namespace
+}  // namespace servoctl::cli
