@@ -64,6 +64,7 @@ Result<void> RestoreTarget::check_identity() {
 
 /// Gains and limits are no things to change under a drive that holds a load.
 Result<void> RestoreTarget::check_standstill() const {
+  if (choice_.only_looks) return {};
   const auto word = desk_->session->upload(node_, objects::kStatusword);
   if (!word && word.error().code != Errc::sdo_abort) return fail(word.error());
   if (!word || !drive::is_energised(drive::decode_state(static_cast<std::uint16_t>(load_le(*word)))))

@@ -17,6 +17,7 @@ struct RestoreChoice {
   bool with_address = false;  ///< Node-ID and bitrate as well.
   bool force = false;         ///< Although identity or family are others; what does not fit is left out.
   bool skip_invalid = false;  ///< Values that the drive cannot take are named and left out.
+  bool only_looks = false;    ///< Nothing will be written: that the drive is energised is no hindrance.
 };
 
 /// A drive that a backup is to go into: whether it may, and which values. Writes nothing.

@@ -36,7 +36,7 @@ class Restoring {
     if (!answer) return fail(answer.error());
     const bool failed = desk_->errors.size() > errors;
     desk_->errors.insert(desk_->errors.end(), left_over_.begin(), left_over_.end());
-    return Restored{std::move(*answer), failed};
+    return Restored{std::move(*answer), failed, end_};
   }
 
  private:
@@ -61,17 +61,41 @@ class Restoring {
     if (const auto known = take_up_journals(); !known) return fail(known.error());
     RestoreTarget target(*desk_, *backup_, title_, node_, options_.choice);
     if (const auto fits = target.prepare(); !fits) return fail(fits.error());
+    if (const auto same = hold_to_expected(target.present()); !same) return fail(same.error());
     auto comparison = compare(desk_->profile, {fmt::format("node {}", node_), node_, target.present()},
                               {title_, node_, target.wanted()}, true, desk_->chinese);
     left_over_ = target.left();
     const bool idle = comparison.different == 0 && !options_.keep && left_.means.empty();
     if (idle) return take_away_journals(result(std::move(comparison.record), said("nothing differs"), {}));
-    if (desk_->dry_run) return planned(target);
+    if (desk_->dry_run) {
+      end_ = RestoreEnd::planned;
+      return planned(target);
+    }
     if (const auto answer = desk_->confirm(question(comparison.different)); !answer)
       return fail(answer.error());
     if (const auto noted = note(target); !noted) return fail(noted.error());
     if (const auto back = put_means_back(*desk_->session, left_); !back) return fail(back.error());
     return carry_out(target, std::move(comparison.record));
+  }
+
+  /// Only what was agreed to is done.
+  Result<void> hold_to_expected(const session::Values& present) const {
+    if (!options_.expected) return {};
+    const auto refuse = [this](ObjectAddress object, std::string_view then, std::string_view now) {
+      return fail(
+          drive_error(Errc::refused, node_, object,
+                      fmt::format("{} has changed since the plan was made: it held {} then, and holds {} now",
+                                  name_of(drive::target_at(desk_->profile, object)), then, now),
+                      "nothing was written to this drive; look at the plan again"));
+    };
+    for (const auto& [object, then] : *options_.expected)
+      if (present.count(object) == 0) return refuse(object, to_hex(then), "nothing that can be read");
+    for (const auto& [object, now] : present) {
+      const auto then = options_.expected->find(object);
+      if (then == options_.expected->end()) return refuse(object, "nothing that could be read", to_hex(now));
+      if (then->second != now) return refuse(object, to_hex(then->second), to_hex(now));
+    }
+    return {};
   }
 
   fs::path journal() const { return journal_of(before_); }
@@ -107,7 +131,9 @@ class Restoring {
                   fmt::format("resuming needs the same values; `restore {} -n {}` restores the old ones",
                               before_.string(), node_));
     left_ = found;
-    options_.choice = {found.with_address, found.force, options_.choice.skip_invalid};
+    options_.choice = {.with_address = found.with_address,
+                       .force = found.force,
+                       .skip_invalid = options_.choice.skip_invalid};
     options_.keep = found.keep;
     options_.unlock = found.unlock;
     return {};
@@ -157,6 +183,7 @@ class Restoring {
     const auto outcome =
         session::restore(*desk_->session, desk_->profile, node_, target.present(), target.wanted(),
                          {.roll_back = options_.roll_back, .keep = options_.keep, .unlock = options_.unlock});
+    end_ = end_of(outcome);
     for (const auto& notice : outcome.notices) desk_->notices.push_back(notice);
     desk_->notices.push_back(fmt::format("the old values of node {} are in {}", node_, before_.string()));
     if (!outcome.failure) return take_away_journals(result(std::move(record), said("restored"), outcome));
@@ -178,6 +205,13 @@ class Restoring {
 
   std::string said(std::string state) const {
     return left_over_.empty() ? state : fmt::format("{}; {} left as it is", state, left_over_.size());
+  }
+
+  static RestoreEnd end_of(const session::RestoreOutcome& outcome) {
+    if (!outcome.failure) return RestoreEnd::done;
+    if (outcome.rolled_back) return RestoreEnd::rolled_back;
+    if (outcome.all_written) return RestoreEnd::not_kept;
+    return outcome.astray.empty() ? RestoreEnd::left : RestoreEnd::astray;
   }
 
   static std::string_view failed_state(const session::RestoreOutcome& outcome) {
@@ -207,6 +241,7 @@ class Restoring {
   RestoringOptions options_;
   std::vector<Error> left_over_;  ///< Values outside of the limits.
   RestoreJournal left_;           ///< Of what was cut off and is gone on with, or undone.
+  RestoreEnd end_ = RestoreEnd::idle;
 };
 
 }  // namespace

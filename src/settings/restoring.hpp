@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "settings/backup_file.hpp"
@@ -16,12 +17,27 @@ struct RestoringOptions {
   bool keep = false;
   bool unlock = false;
   bool resume = false;  ///< Go on with the one that its journal tells of; its options hold then.
+  /// What the drive held of these values when somebody agreed to the change: another value now, or an object
+  /// more or less, is Errc::refused. Empty: nobody is held to anything.
+  std::optional<session::Values> expected = {};
+};
+
+/// How a restore ended.
+enum class RestoreEnd : std::uint8_t {
+  idle,         ///< Nothing differed, and nothing was written.
+  planned,      ///< The answer is what would be sent.
+  done,         ///< Every value is as wanted.
+  not_kept,     ///< Every value is as wanted; keeping it, or locking the drive again, failed.
+  rolled_back,  ///< It failed, and every value is as it was before.
+  astray,       ///< It failed, and some values are neither, or are not known; the errors name them.
+  left          ///< It failed, and what was written stays written, as was asked for.
 };
 
 /// What came of it.
 struct Restored {
   report::Value answer;
   bool failed = false;  ///< Beyond values that are outside of the limits and left as they are.
+  RestoreEnd end = RestoreEnd::idle;
 };
 
 /// Puts a backup into one node: checks identity, state and every value, shows what differs, asks, saves what

@@ -85,6 +85,18 @@ class World {
     }
   }
 
+  /// Runs one restore of the backup on a bus without trouble.
+  Result<Restored> put(const RestoringOptions& options) {
+    auto bus = std::make_unique<TroubledBus>(bus_, drive_, Trouble{}, 1);
+    session::Session session(std::move(bus), "sim", {});
+    show::Desk desk;
+    desk.session = &session;
+    desk.profile = &profile_;
+    show::Willing willing;
+    desk.audience = &willing;
+    return put_into(desk, backup, "drive.json", 1, saved(), options);
+  }
+
   session::Values read(const std::vector<ObjectAddress>& objects) {
     session::Session session(std::make_unique<TroubledBus>(bus_, drive_, Trouble{}, 1), "sim", {});
     (void)session.wait([] { return false; }, session.now() + 1s);
@@ -178,6 +190,33 @@ TEST_P(KilledRestore, IsUndoneFromAnyStep) {
     world.power_cycle();
     EXPECT_EQ(world.values(), world.before);
   }
+}
+
+TEST_P(KilledRestore, IsRefusedWhereTheDriveHasChangedSinceItWasAgreedTo) {
+  World world(GetParam());
+  auto how = options();
+  how.expected = world.values();
+  how.expected->begin()->second.front() ^= 1U;
+  const auto object = how.expected->begin()->first;
+  const auto refused = world.put(how);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, Errc::refused);
+  EXPECT_EQ(refused.error().object, object);
+  EXPECT_NE(refused.error().message.find("has changed since the plan was made"), std::string::npos);
+  EXPECT_EQ(world.values(), world.before);
+  EXPECT_FALSE(fs::exists(world.saved()));
+  how.expected = world.values();
+  how.expected->erase(object);
+  EXPECT_FALSE(world.put(how)) << "an object more than was agreed to";
+  how.expected = world.values();
+  how.expected->emplace(ObjectAddress{0x6502, 0}, Bytes{1});
+  EXPECT_FALSE(world.put(how)) << "an object less than was agreed to";
+  EXPECT_EQ(world.values(), world.before);
+  how.expected = world.values();
+  const auto done = world.put(how);
+  ASSERT_TRUE(done) << done.error().message;
+  EXPECT_FALSE(done->failed);
+  world.expect_values_of_backup();
 }
 
 INSTANTIATE_TEST_SUITE_P(
