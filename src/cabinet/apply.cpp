@@ -1,0 +1,398 @@
+#include "cabinet/apply.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "base/file.hpp"
+#include "session/option_scope.hpp"
+#include "session/state_pause.hpp"
+#include "settings/restore_journal.hpp"
+#include "settings/restoring.hpp"
+#include "show/audience.hpp"
+#include "show/records.hpp"
+
+namespace servoctl::cabinet {
+namespace {
+
+namespace fs = std::filesystem;
+using report::List;
+using report::Record;
+using report::Show;
+using report::Value;
+using settings::RestoreEnd;
+
+/// It was asked for all axes at once.
+class AskedBefore final : public show::Audience {
+ public:
+  Result<void> confirm(std::string_view /*question*/) override { return {}; }
+};
+
+/// How an apply ended for one axis.
+enum class AxisEnd : std::uint8_t {
+  untouched,
+  nothing_to_do,
+  planned,
+  applied,
+  not_kept,
+  as_before,
+  undone,
+  failed
+};
+
+std::string_view text_of(AxisEnd end) {
+  switch (end) {
+    case AxisEnd::untouched: return "not changed";
+    case AxisEnd::nothing_to_do: return "nothing to do";
+    case AxisEnd::planned: return "to be written";
+    case AxisEnd::applied: return "applied";
+    case AxisEnd::not_kept: return "applied, but not kept; see the error";
+    case AxisEnd::as_before: return "put back: every value is as it was before";
+    case AxisEnd::undone: return "put back, because another axis failed";
+    case AxisEnd::failed: return "failed; see the errors";
+  }
+  return {};
+}
+
+AxisEnd end_of(RestoreEnd end) {
+  switch (end) {
+    case RestoreEnd::idle: return AxisEnd::nothing_to_do;
+    case RestoreEnd::planned: return AxisEnd::planned;
+    case RestoreEnd::done: return AxisEnd::applied;
+    case RestoreEnd::not_kept: return AxisEnd::not_kept;
+    case RestoreEnd::rolled_back: return AxisEnd::as_before;
+    case RestoreEnd::astray:
+    case RestoreEnd::left: break;
+  }
+  return AxisEnd::failed;
+}
+
+/// One axis on its way.
+struct AxisRun {
+  AxisRun(const Station& at, const AxisLook* seen) : station(at), look(seen) {}
+  Station station;
+  const AxisLook* look = nullptr;
+  AxisEnd end = AxisEnd::untouched;
+  Value frames;  ///< With --dry-run.
+  std::vector<Error> errors;
+  std::vector<std::string> notices;
+};
+
+class Applying {
+ public:
+  Applying(show::Desk& desk, const Cabinet& cabinet, std::span<const Station> stations,
+           const ApplyOptions& options)
+      : desk_(&desk), cabinet_(&cabinet), options_(&options) {
+    auto choice = options.choice;
+    choice.keep = options.keep;
+    looks_ = look_at_all(desk, cabinet, stations, choice, options.resume);
+    for (const auto& look : looks_)
+      for (const auto& station : stations)
+        if (station.axis == look.axis) runs_.emplace_back(station, &look);
+  }
+
+  Result<Value> run() {
+    if (options_->resume && looks_.empty())
+      return fail(Errc::usage, "there is nothing to resume: no apply of these axes was interrupted",
+                  "leave --resume out");
+    if (const auto may = may_begin(); !may) return fail(may.error());
+    const bool any = std::any_of(runs_.begin(), runs_.end(), [&](const auto& run) { return has_work(run); });
+    if (any && !desk_->dry_run)
+      if (const auto agreed = ask(); !agreed) return fail(agreed.error());
+    carry_out();
+    if (options_->all_or_nothing && any_failed()) undo();
+    tell();
+    return answer();
+  }
+
+ private:
+  bool has_work(const AxisRun& run) const {
+    return run.look->plan && (run.look->plan->different > 0 || options_->resume);
+  }
+
+  Result<void> may_begin() {
+    for (auto& run : runs_)
+      if (run.look->plan && !run.look->to_do() && !options_->resume) run.end = AxisEnd::nothing_to_do;
+    if (!options_->all_or_nothing) return {};
+    for (const auto& run : runs_) {
+      auto why = run.look->plan ? hindrance(run) : std::optional(run.look->plan.error());
+      if (!why) continue;
+      auto error = of_axis(*run.look->axis, std::move(*why));
+      error.hint = fmt::format("--all-or-nothing: nothing was written{}{}", error.hint.empty() ? "" : "; ",
+                               error.hint);
+      return fail(std::move(error));
+    }
+    return {};
+  }
+
+  /// What is known before the first write to keep it from being taken.
+  std::optional<Error> hindrance(const AxisRun& run) const {
+    if (!has_work(run) || desk_->dry_run) return std::nullopt;
+    const auto node = run.look->axis->node;
+    for (const auto& need : run.look->plan->needs) {
+      if (need.kind == AxisNeed::Kind::power)
+        return drive_error(Errc::refused, node, "it is energised: its settings cannot be changed now",
+                           "`disable` de-energises it; make sure that the load is held");
+      if (need.kind == AxisNeed::Kind::password && !options_->unlock && has_password(*run.station.profile))
+        return drive_error(Errc::refused, node,
+                           fmt::format("{} {} behind its password", fmt::join(need.names, ", "),
+                                       need.names.size() == 1 ? "is" : "are"),
+                           "add --unlock, which gives it and takes it back after");
+    }
+    return std::nullopt;
+  }
+
+  Result<void> ask() const {
+    desk_->tell(report::to_text(plan_record(*cabinet_, looks_)));
+    std::size_t values = 0;
+    std::size_t axes = 0;
+    for (const auto& run : runs_) {
+      if (!has_work(run)) continue;
+      values += run.look->plan->different;
+      ++axes;
+    }
+    return desk_->confirm(fmt::format("Write {} value{} to {} ax{}?", values, values == 1 ? "" : "s", axes,
+                                      axes == 1 ? "is" : "es"));
+  }
+
+  /// Those that have something to do, with the numbers of their runs.
+  std::vector<Station> stations(const std::function<bool(const AxisRun&)>& which,
+                                std::vector<std::size_t>& numbers) const {
+    std::vector<Station> out;
+    for (std::size_t i = 0; i < runs_.size(); ++i) {
+      if (!which(runs_[i])) continue;
+      out.push_back(runs_[i].station);
+      numbers.push_back(i);
+    }
+    return out;
+  }
+
+  void carry_out() {
+    std::vector<std::size_t> numbers;
+    const auto at = stations([this](const AxisRun& run) { return has_work(run); }, numbers);
+    at_all(at, [&](std::size_t i) { apply(runs_[numbers[i]]); });
+  }
+
+  void apply(AxisRun& run) {
+    auto desk = desk_at(*desk_, run.station);
+    AskedBefore asked;
+    desk.audience = &asked;
+    if (const auto why = hindrance(run)) {
+      desk.errors.push_back(*why);
+    } else if (const auto done = write(desk, run); !done) {
+      desk.errors.push_back(done.error());
+    }
+    run.errors.insert(run.errors.end(), desk.errors.begin(), desk.errors.end());
+    run.notices.insert(run.notices.end(), desk.notices.begin(), desk.notices.end());
+  }
+
+  Result<void> write(show::Desk& desk, AxisRun& run) const {
+    const auto& axis = *run.look->axis;
+    const auto wanted = wanted_file(*cabinet_, axis);
+    if (!desk.dry_run && !options_->resume)
+      if (const auto noted =
+              write_file_atomically(wanted, settings::backup_text(desk, run.look->plan->wanted));
+          !noted)
+        return noted;
+    session::StatePause pause(*desk.session, axis.node);
+    if (!desk.dry_run && needs_pause(*run.look->plan))
+      if (const auto entered = pause.enter(); !entered) return entered;
+    const auto done = settings::put_into(desk, run.look->plan->wanted, cabinet_->file.string(), axis.node,
+                                         before_file(*cabinet_, axis), restoring(run));
+    if (done) {
+      run.end = end_of(done->end);
+      if (desk.dry_run) run.frames = done->answer;
+    }
+    const auto left = pause.leave(run.end != AxisEnd::failed);
+    desk.notices.insert(desk.notices.end(), pause.notices().begin(), pause.notices().end());
+    forget_wanted(axis);
+    if (!done) return fail(done.error());
+    return left;
+  }
+
+  static bool needs_pause(const AxisPlan& plan) {
+    return std::any_of(plan.needs.begin(), plan.needs.end(),
+                       [](const AxisNeed& need) { return need.kind == AxisNeed::Kind::state; });
+  }
+
+  settings::RestoringOptions restoring(const AxisRun& run) const {
+    settings::RestoringOptions out;
+    out.keep = options_->keep && can_be_told_to_keep(*run.station.profile);
+    out.unlock = options_->unlock && has_password(*run.station.profile);
+    out.resume = options_->resume;
+    out.expected = run.look->plan->present;
+    return out;
+  }
+
+  /// What was to be written is needed as long as there is something to resume.
+  void forget_wanted(const Axis& axis) const {
+    std::error_code ignored;
+    if (!fs::exists(settings::journal_of(before_file(*cabinet_, axis)), ignored))
+      fs::remove(wanted_file(*cabinet_, axis), ignored);
+  }
+
+  bool any_failed() const {
+    return std::any_of(runs_.begin(), runs_.end(), [](const AxisRun& run) {
+      return run.end == AxisEnd::failed || run.end == AxisEnd::as_before || run.end == AxisEnd::not_kept ||
+             run.end == AxisEnd::untouched;
+    });
+  }
+
+  /// Puts back what was written already, as it was written.
+  void undo() {
+    if (desk_->dry_run) return;
+    std::vector<std::size_t> numbers;
+    const auto written = [](const AxisRun& run) {
+      return run.end == AxisEnd::applied || run.end == AxisEnd::not_kept;
+    };
+    const auto at = stations(written, numbers);
+    at_all(at, [&](std::size_t i) { put_back(runs_[numbers[i]]); });
+  }
+
+  void put_back(AxisRun& run) const {
+    const auto& axis = *run.look->axis;
+    const auto file = before_file(*cabinet_, axis);
+    auto desk = desk_at(*desk_, run.station);
+    AskedBefore asked;
+    desk.audience = &asked;
+    // What was begun is put in order, whoever is impatient.
+    const session::Deaf deaf(*desk.session);
+    auto how = restoring(run);
+    how.resume = false;
+    how.expected.reset();
+    const auto done = put_back_from(desk, axis, file, needs_pause(*run.look->plan), how);
+    run.end = done && (done->end == RestoreEnd::done || done->end == RestoreEnd::idle) ? AxisEnd::undone
+                                                                                       : AxisEnd::failed;
+    if (!done) run.errors.push_back(done.error());
+    run.errors.insert(run.errors.end(), desk.errors.begin(), desk.errors.end());
+    run.notices.insert(run.notices.end(), desk.notices.begin(), desk.notices.end());
+  }
+
+  static Result<settings::Restored> put_back_from(show::Desk& desk, const Axis& axis, const fs::path& file,
+                                                  bool pauses, const settings::RestoringOptions& how) {
+    const auto backup = settings::read_backup(file);
+    if (!backup) return fail(backup.error());
+    session::StatePause pause(*desk.session, axis.node);
+    if (pauses)
+      if (const auto entered = pause.enter(); !entered) return fail(entered.error());
+    auto done = settings::put_into(desk, *backup, file.string(), axis.node,
+                                   fmt::format("{}.before-{}.json", file.string(), axis.name), how,
+                                   settings::journal_of(file));
+    if (const auto left = pause.leave(true); !left) desk.errors.push_back(left.error());
+    desk.notices.insert(desk.notices.end(), pause.notices().begin(), pause.notices().end());
+    return done;
+  }
+
+  void tell() {
+    tell_looks(*desk_, looks_);
+    for (auto& run : runs_) {
+      for (auto& error : run.errors) desk_->errors.push_back(of_axis(*run.look->axis, std::move(error)));
+      for (auto& notice : run.notices)
+        desk_->notices.push_back(fmt::format("axis {}: {}", run.look->axis->name, notice));
+    }
+    for (const auto& run : runs_)
+      if (run.end == AxisEnd::applied && options_->keep) tell_unstated(run);
+    const bool working = !options_->keep && std::any_of(runs_.begin(), runs_.end(), [](const AxisRun& run) {
+      return run.end == AxisEnd::applied;
+    });
+    if (working)
+      desk_->notices.emplace_back(
+          "--no-keep: the values are gone after power-off; the next `cabinet plan` finds them as the file says, "
+          "and `store` keeps them");
+  }
+
+  void tell_unstated(const AxisRun& run) {
+    constexpr std::size_t kMostNamed = 4;
+    auto names = unstated(run);
+    if (names.empty()) return;
+    const auto all = names.size();
+    names.resize(std::min(all, kMostNamed));
+    desk_->notices.push_back(fmt::format(
+        "axis {}: whether a {} keeps {}{} is not stated: `cabinet plan` after a power cycle tells",
+        run.look->axis->name, run.look->axis->family, fmt::join(names, ", "),
+        all > kMostNamed ? fmt::format(" and {} more", all - kMostNamed) : std::string()));
+  }
+
+  Value answer() const {
+    if (desk_->dry_run) return frames();
+    report::Table table;
+    table.columns = {{"axis"},
+                     {"bus", "", Show::json},
+                     {"node"},
+                     {"family"},
+                     {"result"},
+                     {"values"},
+                     {"kept"},
+                     {"needs"},
+                     {"needs_list", "", Show::json},
+                     {"error", "", Show::json}};
+    for (const auto& run : runs_) table.rows.push_back(row(run));
+    return Value(std::move(table));
+  }
+
+  /// What was written, and of which no manual tells whether it is kept.
+  static std::vector<std::string> unstated(const AxisRun& run) {
+    std::vector<std::string> out;
+    const auto& profile = *run.station.profile;
+    for (const auto& entry : run.look->plan->wanted.entries) {
+      const auto present = run.look->plan->present.find(entry.object);
+      const bool written = present != run.look->plan->present.end() && present->second != entry.bytes;
+      if (written && !is_known_to_keep(profile, entry.object)) out.push_back(to_string(entry.object));
+    }
+    return out;
+  }
+
+  /// Null where no manual tells.
+  Value kept(const AxisRun& run) const {
+    if (run.end == AxisEnd::not_kept) return false;
+    if (run.end != AxisEnd::applied) return {};
+    if (!options_->keep) return false;
+    return unstated(run).empty() ? Value(true) : Value();
+  }
+
+  List row(const AxisRun& run) const {
+    const bool applied = run.end == AxisEnd::applied || run.end == AxisEnd::not_kept;
+    std::string needs;
+    List list;
+    if (applied)
+      for (const auto& need : run.look->plan->needs)
+        if (need.kind == AxisNeed::Kind::restart) {
+          needs = to_string(need);
+          for (const auto& name : need.names) list.emplace_back(name);
+        }
+    const auto& axis = *run.look->axis;
+    const auto error = !run.look->plan      ? show::error_record(run.look->plan.error())
+                       : run.errors.empty() ? Value()
+                                            : show::error_record(run.errors.front());
+    return {axis.name,        axis.bus,
+            axis.node,        axis.family,
+            text_of(run.end), applied ? Value(run.look->plan->different) : Value(0U),
+            kept(run),        report::text_or_null(needs),
+            std::move(list),  error};
+  }
+
+  Value frames() const {
+    Record out;
+    for (const auto& run : runs_) {
+      const auto& axis = *run.look->axis;
+      const auto title = fmt::format("{}, node {}, {}", axis.name, axis.node, axis.family);
+      out.push_back(
+          {axis.name, run.frames.is_null() ? Value(text_of(run.end)) : run.frames, Show::everywhere, title});
+    }
+    return Value(std::move(out));
+  }
+
+  show::Desk* desk_;
+  const Cabinet* cabinet_;
+  const ApplyOptions* options_;
+  std::vector<AxisLook> looks_;
+  std::vector<AxisRun> runs_;
+};
+
+}  // namespace
+
+Result<Value> apply_cabinet(show::Desk& desk, const Cabinet& cabinet, std::span<const Station> stations,
+                            const ApplyOptions& options) {
+  return Applying(desk, cabinet, stations, options).run();
+}
+
+}  // namespace servoctl::cabinet

@@ -1,0 +1,53 @@
+#include "cabinet/axis_identity.hpp"
+
+#include <fmt/format.h>
+
+#include "drive/standard_objects.hpp"
+#include "session/family_check.hpp"
+#include "session/identify.hpp"
+
+namespace servoctl::cabinet {
+namespace {
+
+using session::FamilyVerdict;
+
+tl::unexpected<Error> other_drive(const Axis& axis, ObjectAddress object, const std::string& what,
+                                  std::string hint) {
+  return fail(drive_error(Errc::refused, axis.node, object, fmt::format("axis {}: {}", axis.name, what),
+                          std::move(hint)));
+}
+
+Result<void> hold_family(show::Desk& desk, const Axis& axis, std::span<const drive::Family> families) {
+  const std::uint8_t nodes[] = {axis.node};
+  const auto identity = session::identify(*desk.session, nodes, desk.profile->rules).front();
+  if (!identity) return fail(identity.error());
+  const auto verdict = session::judge_family(*identity, *desk.profile, families);
+  if (verdict.kind == FamilyVerdict::Kind::contradicted)
+    return other_drive(axis, verdict.object.value_or(objects::kDeviceType),
+                       fmt::format("not a {}: {}", desk.profile->family, verdict.why),
+                       "is another drive at this node, or is `family` wrong? `scan` shows who is there");
+  if (verdict.kind == FamilyVerdict::Kind::unproven)
+    desk.notices.push_back(fmt::format("axis {}, node {}: nothing proves that it is a {}: {}", axis.name,
+                                       axis.node, desk.profile->family, verdict.why));
+  if (const auto heard = desk.session->listen(); !heard) return heard;
+  return session::refuse_duplicate(*desk.session, axis.node);
+}
+
+}  // namespace
+
+Result<session::Identity> hold_axis_identity(show::Desk& desk, const Axis& axis,
+                                             std::span<const drive::Family> families) {
+  if (const auto held = hold_family(desk, axis, families); !held) return fail(held.error());
+  auto identity = session::read_identity(*desk.session, axis.node);
+  if (!identity || !axis.serial || identity->serial == axis.serial) return identity;
+  if (!identity->serial)
+    return other_drive(axis, objects::kSerialNumber,
+                       fmt::format("the drive tells no serial number, and the file says {}", *axis.serial),
+                       "remove `serial` where the family has none");
+  return other_drive(axis, objects::kSerialNumber,
+                     fmt::format("the drive has the serial number {}, and the file says {}",
+                                 *identity->serial, *axis.serial),
+                     "was the drive replaced, or swapped with another? `info` shows what it is");
+}
+
+}  // namespace servoctl::cabinet

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <span>
+
+#include "cabinet/cabinet.hpp"
+#include "session/identity.hpp"
+#include "show/desk.hpp"
+
+namespace servoctl::cabinet {
+
+/// Asks the drive at the place of an axis what it is, and holds that against the file: its family, by what
+/// its data says of the drives of it, and its serial number where the file says one. `desk` has the session
+/// and the family; `families` are those that there are. Errc::refused, with both serial numbers, for another
+/// drive, for one that tells no serial number where the file says one, and for two nodes of one number;
+/// Errc::timeout when none answers. What proves nothing is told in `desk.notices`.
+Result<session::Identity> hold_axis_identity(show::Desk& desk, const Axis& axis,
+                                             std::span<const drive::Family> families);
+
+}  // namespace servoctl::cabinet

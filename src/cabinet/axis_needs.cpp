@@ -1,0 +1,106 @@
+#include "cabinet/axis_needs.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "drive/cia402.hpp"
+#include "drive/drive_settings.hpp"
+#include "drive/quantity.hpp"
+#include "drive/standard_objects.hpp"
+#include "session/pdo_change.hpp"
+#include "session/state_pause.hpp"
+#include "settings/change.hpp"
+
+namespace servoctl::cabinet {
+namespace {
+
+void add_need(std::vector<AxisNeed>& needs, AxisNeed::Kind kind, const std::string& who) {
+  const auto found =
+      std::find_if(needs.begin(), needs.end(), [&](const AxisNeed& need) { return need.kind == kind; });
+  auto& need = found != needs.end() ? *found : needs.emplace_back(AxisNeed{kind});
+  if (!who.empty()) need.names.push_back(who);
+}
+
+bool is_locked(const drive::Profile& profile, const od::Parameter* parameter) {
+  const auto& locked = profile.rules.store.locked;
+  return parameter != nullptr && std::find(locked.begin(), locked.end(), parameter->id) != locked.end();
+}
+
+bool keeps_by_object(const drive::Profile& profile) {
+  return profile.rules.store.objects && profile.dictionary.find({objects::kStoreIndex, 1}) != nullptr;
+}
+
+Result<bool> is_energised(session::Session& session, std::uint8_t node) {
+  const auto word = session.upload(node, objects::kStatusword);
+  if (!word && word.error().code != Errc::sdo_abort) return fail(word.error());
+  return word && drive::is_energised(drive::decode_state(static_cast<std::uint16_t>(load_le(*word))));
+}
+
+}  // namespace
+
+std::string_view name(AxisNeed::Kind kind) {
+  switch (kind) {
+    case AxisNeed::Kind::restart: return "restart";
+    case AxisNeed::Kind::standstill: return "standstill";
+    case AxisNeed::Kind::password: return "password";
+    case AxisNeed::Kind::state: return "state";
+    case AxisNeed::Kind::power: return "power";
+  }
+  return {};
+}
+
+std::string to_string(const AxisNeed& need) {
+  const auto names = need.names.empty() ? std::string() : fmt::format(" ({})", fmt::join(need.names, ", "));
+  switch (need.kind) {
+    case AxisNeed::Kind::restart: return "a restart" + names;
+    case AxisNeed::Kind::standstill: return "standstill" + names;
+    case AxisNeed::Kind::password: return "the password: --unlock" + names;
+    case AxisNeed::Kind::state: return "Pre-operational while its PDOs change";
+    case AxisNeed::Kind::power: return "to be de-energised: `disable`";
+  }
+  return {};
+}
+
+bool has_password(const drive::Profile& profile) {
+  const auto& store = profile.rules.store;
+  return drive::place_of(profile, store.unlock).has_value() && store.unlock_open.has_value();
+}
+
+bool can_be_told_to_keep(const drive::Profile& profile) {
+  const auto& store = profile.rules.store;
+  return keeps_by_object(profile) || !store.store.empty() || !store.flash_switch.empty();
+}
+
+bool is_known_to_keep(const drive::Profile& profile, ObjectAddress object) {
+  if (!can_be_told_to_keep(profile)) return false;
+  const bool of_maker = object.index >= 0x2000 && object.index < 0x6000;
+  return keeps_by_object(profile) || of_maker || profile.parameter(object) != nullptr;
+}
+
+Result<std::vector<AxisNeed>> needs_of(session::Session& session, const drive::Profile& profile,
+                                       std::uint8_t node, const session::Values& present,
+                                       const session::Values& wanted) {
+  std::vector<AxisNeed> out;
+  const auto plan = session::plan_writes(&profile, present, wanted);
+  if (plan.empty()) return out;
+  for (const auto& [object, data] : wanted) {
+    if (present.at(object) == data) continue;
+    const auto target = drive::target_at(&profile, object);
+    const auto who = target.parameter != nullptr ? target.parameter->id : settings::name_of(target);
+    const auto effect = drive::meaning(target, node).effect;
+    if (effect == od::Effect::restart) add_need(out, AxisNeed::Kind::restart, who);
+    if (effect == od::Effect::standstill) add_need(out, AxisNeed::Kind::standstill, who);
+    if (is_locked(profile, target.parameter)) add_need(out, AxisNeed::Kind::password, who);
+  }
+  if (session::needs_pre_operational(&profile, plan)) {
+    const auto state = session::ask_state(session, node);
+    if (!state) return fail(state.error());
+    if (*state != session::NodeState::pre_operational) add_need(out, AxisNeed::Kind::state, {});
+  }
+  const auto energised = is_energised(session, node);
+  if (!energised) return fail(energised.error());
+  if (*energised) add_need(out, AxisNeed::Kind::power, {});
+  return out;
+}
+
+}  // namespace servoctl::cabinet

@@ -1,0 +1,193 @@
+#include "cabinet/axis_plan.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <set>
+
+#include "base/pdo_index.hpp"
+#include "cabinet/axis_identity.hpp"
+#include "cabinet/axis_values.hpp"
+#include "session/pdo_setup.hpp"
+#include "session/snapshot.hpp"
+#include "settings/comparison.hpp"
+#include "settings/selection.hpp"
+
+namespace servoctl::cabinet {
+namespace {
+
+using report::Record;
+using report::Show;
+using report::Table;
+using report::Value;
+
+/// The table of a comparison, its sides called as they are here.
+Table table_of(const settings::Comparison& comparison, std::string_view a, std::string_view b) {
+  for (const auto& field : comparison.record) {
+    const auto* found = std::get_if<Table>(&field.value.data());
+    if (field.key != "differences" || found == nullptr) continue;
+    auto table = *found;
+    for (auto& column : table.columns) {
+      const auto side = column.key == "a" || column.key == "a_text"   ? a
+                        : column.key == "b" || column.key == "b_text" ? b
+                                                                      : std::string_view();
+      if (!side.empty()) column.key = std::string(side) + column.key.substr(1);
+    }
+    return table;
+  }
+  return {};
+}
+
+/// The objects that another one stands for: what a drive copies from one into the other at its start.
+std::set<ObjectAddress> with_copies(const drive::Profile& profile, const session::Values& values) {
+  std::set<ObjectAddress> out;
+  for (const auto& value : values) out.insert(value.first);
+  for (const auto& parameter : profile.parameters) {
+    if (!parameter.mirror || !parameter.object) continue;
+    if (values.count(*parameter.mirror) > 0) out.insert(*parameter.object);
+    if (values.count(*parameter.object) > 0) out.insert(*parameter.mirror);
+  }
+  return out;
+}
+
+/// Without the entries of mappings behind their counts: whatever they hold means nothing.
+void drop_unused_entries(std::map<ObjectAddress, Bytes>& values) {
+  std::erase_if(values, [&](const auto& value) {
+    const auto object = value.first;
+    const auto count = values.find({object.index, 0});
+    return is_pdo_mapping(object.index) && object.sub > 0 && count != values.end() &&
+           load_le(count->second) < object.sub;
+  });
+}
+
+/// A look at one axis.
+class AxisPlanner {
+ public:
+  AxisPlanner(show::Desk& desk, const Cabinet& cabinet, const Axis& axis, const PlanChoice& choice)
+      : desk_(&desk), cabinet_(&cabinet), axis_(&axis), choice_(&choice) {}
+
+  Result<AxisPlan> plan(std::optional<settings::Backup> wanted) {
+    auto identity = hold_axis_identity(*desk_, *axis_, choice_->families);
+    if (!identity) return fail(identity.error());
+    out_.identity = std::move(*identity);
+    auto part = settings::selection_of(*desk_->profile, choice_->only);
+    if (!part) return fail(part.error());
+    part_ = std::move(*part);
+    if (const auto chosen = choose(std::move(wanted)); !chosen) return fail(chosen.error());
+    if (const auto compared = compare_wanted(); !compared) return fail(compared.error());
+    if (choice_->unlisted)
+      if (const auto read = read_unlisted(); !read) return fail(read.error());
+    return std::move(out_);
+  }
+
+ private:
+  Result<void> choose(std::optional<settings::Backup> wanted) {
+    if (wanted) {
+      out_.wanted = std::move(*wanted);
+      listed_ = with_copies(*desk_->profile, values_of_backup());
+      return {};
+    }
+    auto made = wanted_backup(*desk_, *cabinet_, *axis_, choice_->keep);
+    if (!made) return fail(made.error());
+    out_.wanted = std::move(*made);
+    listed_ = with_copies(*desk_->profile, values_of_backup());
+    if (part_) std::erase_if(out_.wanted.entries, [&](const auto& entry) { return !part_(entry.object); });
+    return {};
+  }
+
+  session::Values values_of_backup() const {
+    session::Values out;
+    for (const auto& entry : out_.wanted.entries)
+      if (entry.bytes) out.emplace(entry.object, *entry.bytes);
+    return out;
+  }
+
+  Result<void> compare_wanted() {
+    settings::RestoreTarget target(*desk_, out_.wanted, cabinet_->file.string(), axis_->node,
+                                   {.only_looks = true});
+    if (const auto fits = target.prepare(); !fits) return fail(fits.error());
+    out_.present = target.present();
+    const auto node = axis_->node;
+    const auto comparison =
+        settings::compare(desk_->profile, {"drive", node, target.present()},
+                          {cabinet_->file.filename().string(), node, target.wanted()}, true, desk_->chinese);
+    out_.different = comparison.different;
+    out_.compared = comparison.compared;
+    out_.differences = differences(table_of(comparison, "present", "wanted"));
+    auto needs = needs_of(*desk_->session, *desk_->profile, node, target.present(), target.wanted());
+    if (!needs) return fail(needs.error());
+    out_.needs = std::move(*needs);
+    return note_pdos(target.present(), target.wanted());
+  }
+
+  /// With the line of the file that says it.
+  Value differences(Table table) const {
+    table.columns.push_back({"line", "", Show::json});
+    for (auto& row : table.rows) {
+      Value line;
+      for (const auto& entry : out_.wanted.entries)
+        if (std::get<std::string>(row.front().data()) == to_string(entry.object)) line = Value(entry.line);
+      row.push_back(std::move(line));
+    }
+    return table.rows.empty() ? Value() : Value(std::move(table));
+  }
+
+  /// The PDOs as they are and will be, for those who share the bus.
+  Result<void> note_pdos(const session::Values& present, const session::Values& wanted) {
+    const bool changes = std::any_of(wanted.begin(), wanted.end(), [&](const auto& value) {
+      return pdo_at(value.first.index) && present.at(value.first) != value.second;
+    });
+    if (!changes) return {};
+    const std::uint8_t nodes[] = {axis_->node};
+    auto values = std::move(session::read_pdo_values(*desk_->session, desk_->profile, nodes).front());
+    if (!values) return fail(values.error());
+    out_.pdos_before = session::pdos_of(*values);
+    for (const auto& [object, data] : wanted)
+      if (pdo_at(object.index)) values->insert_or_assign(object, data);
+    out_.pdos_after = session::pdos_of(*values);
+    return {};
+  }
+
+  Result<void> read_unlisted() {
+    const auto& profile = *desk_->profile;
+    const auto wanted = [&](const drive::DriveSetting& setting) {
+      const auto object = setting.entry->address;
+      const bool mapped = is_pdo_mapping(object.index) && listed_.count({object.index, 0}) > 0;
+      return listed_.count(object) == 0 && !mapped && !settings::is_address(&profile, object) &&
+             (!part_ || part_(object));
+    };
+    const std::uint8_t nodes[] = {axis_->node};
+    const auto snapshot = session::take_snapshots(*desk_->session, profile, nodes, wanted).front();
+    if (!snapshot) return fail(snapshot.error());
+    settings::Side drive{"drive", axis_->node, {}};
+    for (const auto& entry : snapshot->entries)
+      if (entry.bytes) drive.values.emplace(entry.object, *entry.bytes);
+    drop_unused_entries(drive.values);
+    auto factory = settings::factory_side(profile, axis_->node);
+    const auto comparison = settings::compare(&profile, drive, factory, false, desk_->chinese);
+    out_.unlisted_count = comparison.different;
+    if (comparison.different > 0) out_.unlisted = table_of(comparison, "present", "factory");
+    return {};
+  }
+
+  show::Desk* desk_;
+  const Cabinet* cabinet_;
+  const Axis* axis_;
+  const PlanChoice* choice_;
+  settings::Selection part_;
+  std::set<ObjectAddress> listed_;
+  AxisPlan out_;
+};
+
+}  // namespace
+
+Result<AxisPlan> plan_axis(show::Desk& desk, const Cabinet& cabinet, const Axis& axis,
+                           const PlanChoice& choice) {
+  return AxisPlanner(desk, cabinet, axis, choice).plan(std::nullopt);
+}
+
+Result<AxisPlan> plan_axis(show::Desk& desk, const Cabinet& cabinet, const Axis& axis,
+                           settings::Backup wanted, const PlanChoice& choice) {
+  return AxisPlanner(desk, cabinet, axis, choice).plan(std::move(wanted));
+}
+
+}  // namespace servoctl::cabinet

@@ -1,0 +1,180 @@
+#include "cabinet/axis_values.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "base/text.hpp"
+#include "drive/standard_objects.hpp"
+#include "pdo/pdo_recipes.hpp"
+#include "pdo/pdo_source.hpp"
+#include "session/pdo_change.hpp"
+#include "session/pdo_setup.hpp"
+#include "settings/change.hpp"
+#include "settings/comparison.hpp"
+
+namespace servoctl::cabinet {
+namespace {
+
+using drive::PdoRecipe;
+
+/// The error with the place in the file before it.
+tl::unexpected<Error> at_place(const Cabinet& cabinet, const Axis& axis, Place place, Error error) {
+  const auto placed = cabinet_error(cabinet, axis, place, error.message);
+  error.message = placed.message;
+  error.line = placed.line;
+  return fail(std::move(error));
+}
+
+/// A value in the load's unit is one of the motor's.
+std::string in_units_of_motor(const Axis& axis, const std::string& text) {
+  if (!axis.load) return text;
+  return drive::in_revolutions(*axis.load, text).value_or(text);
+}
+
+Result<std::vector<PdoRecipe>> recipes_of(const drive::Profile& profile, const Cabinet& cabinet,
+                                          const Axis& axis) {
+  if (!axis.pdos.recipes.empty()) return axis.pdos.recipes;
+  if (!axis.pdos.file.empty()) {
+    const auto path =
+        axis.pdos.file.is_absolute() ? axis.pdos.file : cabinet.file.parent_path() / axis.pdos.file;
+    auto file = pdo::read_pdo_source(profile, path);
+    if (!file) return at_place(cabinet, axis, axis.pdos.at, file.error());
+    return std::move(file->pdos);
+  }
+  const auto& presets = profile.rules.pdo.presets;
+  const auto found = std::find_if(presets.begin(), presets.end(), [&](const drive::PdoPreset& preset) {
+    return equals_nocase(preset.name, axis.pdos.preset);
+  });
+  if (found != presets.end()) return found->pdos;
+  std::vector<std::string> names;
+  for (const auto& preset : presets) names.push_back(preset.name);
+  return at_place(
+      cabinet, axis, axis.pdos.at,
+      make_error(Errc::usage,
+                 fmt::format("the manual of {} has no mapping for '{}'", profile.family, axis.pdos.preset),
+                 names.empty() ? "it has none: write them as tables" : "use " + one_of(names)));
+}
+
+/// What is written for one axis, in the making.
+class Wanted {
+ public:
+  Wanted(show::Desk& desk, const Cabinet& cabinet, const Axis& axis, bool keep)
+      : desk_(&desk), cabinet_(&cabinet), axis_(&axis), keep_(keep) {
+    out_.family = desk.profile->family;
+    out_.identity.node = axis.node;
+  }
+
+  Result<settings::Backup> make() {
+    for (const auto& setting : axis_->parameters)
+      if (const auto done = add_parameter(setting); !done) return fail(done.error());
+    if (axis_->pdos.said())
+      if (const auto done = add_pdos(); !done) return fail(done.error());
+    if (axis_->heartbeat)
+      if (const auto done = add_heartbeat(); !done) return fail(done.error());
+    std::sort(out_.entries.begin(), out_.entries.end(),
+              [](const auto& a, const auto& b) { return a.object < b.object; });
+    return std::move(out_);
+  }
+
+ private:
+  Result<void> add_parameter(const Setting& setting) {
+    const auto target = drive::resolve(desk_->profile, setting.name);
+    if (!target) return at_place(*cabinet_, *axis_, setting.at, target.error());
+    const auto text = in_units_of_motor(*axis_, setting.value);
+    const auto change = settings::make_change(*desk_, axis_->node, *target, text, std::nullopt);
+    if (!change) return at_place(*cabinet_, *axis_, setting.at, change.error());
+    return add_all({{target->address, change->data}}, setting.at);
+  }
+
+  Result<void> add_pdos() {
+    const auto recipes = recipes_of(*desk_->profile, *cabinet_, *axis_);
+    if (!recipes) return fail(recipes.error());
+    const std::uint8_t nodes[] = {axis_->node};
+    auto read = std::move(session::read_pdo_values(*desk_->session, desk_->profile, nodes).front());
+    if (!read) return fail(read.error());
+    const pdo::PresentPdos present{axis_->node, *read, session::pdos_of(*read)};
+    const auto wanted = pdo::follow(*desk_->profile, present, *recipes);
+    if (!wanted) return at_place(*cabinet_, *axis_, axis_->pdos.at, wanted.error());
+    session::Values values = wanted->assignments;
+    for (const auto& pdo : wanted->pdos)
+      for (auto& [object, data] : session::values_of(pdo, present.values)) values.emplace(object, data);
+    return add_all(std::move(values), axis_->pdos.at);
+  }
+
+  Result<void> add_heartbeat() {
+    const auto& profile = *desk_->profile;
+    if (profile.dictionary.find(objects::kProducerHeartbeat) == nullptr && !profile.is_generic())
+      return at_place(
+          *cabinet_, *axis_, axis_->heartbeat_at,
+          make_error(Errc::file, fmt::format("a {} produces no heartbeat (1017h)", profile.family),
+                     "leave `heartbeat` out"));
+    const auto milliseconds = std::chrono::duration_cast<std::chrono::milliseconds>(*axis_->heartbeat);
+    const auto target = drive::target_at(desk_->profile, objects::kProducerHeartbeat);
+    const auto change = settings::make_change(*desk_, axis_->node, target,
+                                              fmt::format("{}", milliseconds.count()), std::nullopt);
+    if (!change) return at_place(*cabinet_, *axis_, axis_->heartbeat_at, change.error());
+    return add_all({{objects::kProducerHeartbeat, change->data}}, axis_->heartbeat_at);
+  }
+
+  Result<void> add_all(session::Values values, Place place) {
+    if (keep_) session::add_stored_copies(*desk_->profile, axis_->node, values);
+    for (const auto& [object, data] : values)
+      if (const auto done = add(object, data, place); !done) return done;
+    return {};
+  }
+
+  Result<void> add(ObjectAddress object, const Bytes& data, Place place) {
+    const auto target = drive::target_at(desk_->profile, object);
+    const auto refuse = [&](std::string_view why, std::string hint) {
+      return at_place(
+          *cabinet_, *axis_, place,
+          make_error(Errc::file, fmt::format("{} {}", settings::name_of(target), why), std::move(hint)));
+    };
+    if (settings::is_address(desk_->profile, object))
+      return refuse("is the address of the drive",
+                    "`node` says where it is; `cabinet swap` gives a drive its address");
+    const auto first = std::find_if(out_.entries.begin(), out_.entries.end(),
+                                    [&](const auto& entry) { return entry.object == object; });
+    if (first != out_.entries.end()) {
+      if (*first->bytes == data) return {};
+      return refuse(fmt::format("has another value in line {}", first->line), "remove one of them");
+    }
+    settings::Backup::Entry entry;
+    entry.object = object;
+    entry.id = target.parameter != nullptr ? target.parameter->id : std::string();
+    entry.name = target.label();
+    entry.type = drive::fitted(drive::meaning(target, axis_->node), data.size()).type;
+    entry.bytes = data;
+    entry.line = place.line;
+    out_.entries.push_back(std::move(entry));
+    return {};
+  }
+
+  show::Desk* desk_;
+  const Cabinet* cabinet_;
+  const Axis* axis_;
+  bool keep_;
+  settings::Backup out_;
+};
+
+}  // namespace
+
+Result<settings::Backup> wanted_backup(show::Desk& desk, const Cabinet& cabinet, const Axis& axis,
+                                       bool keep) {
+  return Wanted(desk, cabinet, axis, keep).make();
+}
+
+Result<void> check_wanted(const show::Desk& desk, const Cabinet& cabinet, const Axis& axis) {
+  for (const auto& setting : axis.parameters) {
+    const auto target = drive::resolve(desk.profile, setting.name);
+    if (!target) return at_place(cabinet, axis, setting.at, target.error());
+    const auto fits = settings::check_change(desk, axis.node, *target, in_units_of_motor(axis, setting.value),
+                                             std::nullopt);
+    if (!fits) return at_place(cabinet, axis, setting.at, fits.error());
+  }
+  if (!axis.pdos.said()) return {};
+  if (const auto recipes = recipes_of(*desk.profile, cabinet, axis); !recipes) return fail(recipes.error());
+  return {};
+}
+
+}  // namespace servoctl::cabinet

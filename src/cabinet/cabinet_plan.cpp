@@ -1,0 +1,210 @@
+#include "cabinet/cabinet_plan.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <map>
+
+#include "settings/restore_journal.hpp"
+#include "show/records.hpp"
+
+namespace servoctl::cabinet {
+namespace {
+
+using report::List;
+using report::Record;
+using report::Show;
+using report::Table;
+using report::Value;
+
+/// Looks for a journal first: what an axis holds in the middle of a change is no basis for another.
+Result<AxisPlan> look_at(show::Desk& desk, const Cabinet& cabinet, const Axis& axis, const PlanChoice& choice,
+                         bool resume) {
+  const auto before = before_file(cabinet, axis);
+  const auto journal = settings::read_journal(desk, settings::journal_of(before));
+  if (!journal) return fail(journal.error());
+  if (!*journal) return plan_axis(desk, cabinet, axis, choice);
+  if (!resume)
+    return fail(drive_error(Errc::refused, axis.node, "an apply was interrupted",
+                            fmt::format("`cabinet apply --resume` continues it; `restore {} -n {}` restores "
+                                        "the old values",
+                                        before.string(), axis.name)));
+  auto wanted = settings::read_backup(wanted_file(cabinet, axis));
+  if (!wanted) return fail(wanted.error());
+  // It is what a file says, not what a drive held.
+  wanted->proven = false;
+  auto all = choice;
+  all.only.clear();
+  all.unlisted = false;
+  return plan_axis(desk, cabinet, axis, std::move(*wanted), all);
+}
+
+bool is_cut_off(const Cabinet& cabinet, const Axis& axis) {
+  std::error_code ignored;
+  return std::filesystem::exists(settings::journal_of(before_file(cabinet, axis)), ignored);
+}
+
+/// The axes of one session whose PDOs change, held against each other and those who share the bus: the one
+/// that is at fault is taken out, until the others fit.
+void check_bus(const show::Desk& line, const Station& of, std::vector<AxisLook*> changing) {
+  while (!changing.empty()) {
+    std::vector<pdo::PdoNeighbour> nodes;
+    for (const auto* look : changing)
+      nodes.push_back({look->axis->node, look->plan->pdos_before, look->plan->pdos_after});
+    auto desk = desk_at(line, of);
+    const auto fits = pdo::check_neighbours(desk, nodes);
+    for (auto& notice : desk.notices) changing.front()->notices.push_back(std::move(notice));
+    if (fits) return;
+    const auto at_fault = std::find_if(changing.begin(), changing.end(), [&](const AxisLook* look) {
+      return look->axis->node == fits.error().node;
+    });
+    auto* const look = at_fault != changing.end() ? *at_fault : changing.front();
+    look->plan = fail(fits.error());
+    std::erase(changing, look);
+  }
+}
+
+void check_buses(const show::Desk& desk, std::span<const Station> stations, std::vector<AxisLook>& looks) {
+  std::map<session::Session*, std::vector<AxisLook*>> changing;
+  std::map<session::Session*, const Station*> first;
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    if (!looks[i].plan || looks[i].plan->pdos_after.empty()) continue;
+    changing[stations[i].session].push_back(&looks[i]);
+    first.emplace(stations[i].session, &stations[i]);
+  }
+  for (auto& [session, of_it] : changing) check_bus(desk, *first.at(session), std::move(of_it));
+}
+
+std::string title_of(const Axis& axis) {
+  return fmt::format("{}, node {}, {}", axis.name, axis.node, axis.family);
+}
+
+Value needs_value(const AxisPlan& plan) {
+  List out;
+  for (const auto& need : plan.needs) {
+    List names;
+    for (const auto& each : need.names) names.emplace_back(each);
+    out.emplace_back(Record{{"need", name(need.kind)}, {"parameters", std::move(names)}});
+  }
+  return Value(std::move(out));
+}
+
+/// A table as JSON has it; an empty list where there is none.
+Value rows_or_none(const Value& table) { return table.is_null() ? Value(List()) : table; }
+
+Record json_of(const AxisLook& look) {
+  Record out{{"axis", look.axis->name},
+             {"bus", look.axis->bus},
+             {"node", look.axis->node},
+             {"family", look.axis->family}};
+  if (!look.plan) {
+    out.push_back({"error", show::error_record(look.plan.error())});
+    return out;
+  }
+  out.push_back({"serial", look.plan->identity.serial ? Value(*look.plan->identity.serial) : Value()});
+  out.push_back({"compared", look.plan->compared});
+  out.push_back({"differences", rows_or_none(look.plan->differences)});
+  out.push_back({"unlisted", rows_or_none(look.plan->unlisted)});
+  out.push_back({"needs", needs_value(*look.plan)});
+  out.push_back({"error", Value()});
+  return out;
+}
+
+/// Its differences, and below them what they ask for.
+void add_text(const AxisLook& look, Record& out) {
+  const auto title = title_of(*look.axis);
+  if (!look.plan) {
+    out.push_back({look.axis->name, "not known; see the error", Show::text, title});
+    return;
+  }
+  if (look.plan->different == 0) {
+    out.push_back({look.axis->name, "nothing to do", Show::text, title});
+  } else if (const auto* table = std::get_if<Table>(&look.plan->differences.data())) {
+    auto shown = *table;
+    for (const auto& need : look.plan->needs) shown.below.push_back("needs " + to_string(need));
+    out.push_back({look.axis->name, std::move(shown), Show::text, title});
+  }
+  if (!look.plan->unlisted.is_null())
+    out.push_back({look.axis->name, look.plan->unlisted, Show::text,
+                   fmt::format("{}: not in the file, and not as the factory left it", look.axis->name)});
+}
+
+std::size_t axes_to_do(std::span<const AxisLook> looks) {
+  return static_cast<std::size_t>(
+      std::count_if(looks.begin(), looks.end(), [](const auto& look) { return look.to_do(); }));
+}
+
+std::size_t values_to_do(std::span<const AxisLook> looks) {
+  std::size_t out = 0;
+  for (const auto& look : looks)
+    if (look.plan) out += look.plan->different;
+  return out;
+}
+
+}  // namespace
+
+std::filesystem::path before_file(const Cabinet& cabinet, const Axis& axis) {
+  return fmt::format("{}.before-{}.json", cabinet.file.string(), axis.name);
+}
+
+std::filesystem::path wanted_file(const Cabinet& cabinet, const Axis& axis) {
+  return fmt::format("{}.wanted-{}.json", cabinet.file.string(), axis.name);
+}
+
+std::vector<AxisLook> look_at_all(const show::Desk& desk, const Cabinet& cabinet,
+                                  std::span<const Station> stations, const PlanChoice& choice, bool resume) {
+  std::vector<AxisLook> out;
+  std::vector<Station> looked_at;
+  for (const auto& station : stations) {
+    if (resume && !is_cut_off(cabinet, *station.axis)) continue;
+    looked_at.push_back(station);
+    const auto why = station.away.value_or(make_error(Errc::interrupted, "not looked at"));
+    out.push_back({station.axis, fail(why), {}});
+  }
+  at_all(looked_at, [&](std::size_t i) {
+    auto at = desk_at(desk, looked_at[i]);
+    out[i].plan = look_at(at, cabinet, *looked_at[i].axis, choice, resume);
+    out[i].notices = std::move(at.notices);
+  });
+  check_buses(desk, looked_at, out);
+  return out;
+}
+
+Record plan_record(const Cabinet& cabinet, std::span<const AxisLook> looks) {
+  Record out{{"cabinet", cabinet.file.string(), Show::json}};
+  List axes;
+  for (const auto& look : looks) {
+    add_text(look, out);
+    axes.emplace_back(json_of(look));
+  }
+  out.push_back({"axes", std::move(axes), Show::json});
+  out.push_back({"different", values_to_do(looks), Show::json});
+  return out;
+}
+
+Error of_axis(const Axis& axis, Error error) {
+  if (error.message.find(axis.name) == std::string::npos)
+    error.message = fmt::format("axis {}: {}", axis.name, error.message);
+  if (!error.node) error.node = axis.node;
+  return error;
+}
+
+void tell_looks(show::Desk& desk, std::span<const AxisLook> looks) {
+  for (const auto& look : looks) {
+    for (const auto& notice : look.notices)
+      desk.notices.push_back(notice.find(look.axis->name) == std::string::npos
+                                 ? fmt::format("axis {}: {}", look.axis->name, notice)
+                                 : notice);
+    if (!look.plan) desk.errors.push_back(of_axis(*look.axis, look.plan.error()));
+  }
+}
+
+Error something_to_do(const Cabinet& cabinet, std::span<const AxisLook> looks) {
+  const auto axes = axes_to_do(looks);
+  return make_error(Errc::negative,
+                    fmt::format("{} value{} of {} ax{} differ from {}", values_to_do(looks),
+                                values_to_do(looks) == 1 ? "" : "s", axes, axes == 1 ? "is" : "es",
+                                cabinet.file.filename().string()),
+                    "`cabinet apply` writes them");
+}
+
+}  // namespace servoctl::cabinet

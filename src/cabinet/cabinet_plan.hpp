@@ -1,0 +1,46 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cabinet/axis_plan.hpp"
+#include "cabinet/station.hpp"
+
+namespace servoctl::cabinet {
+
+/// What came of the look at one axis.
+struct AxisLook {
+  const Axis* axis = nullptr;
+  Result<AxisPlan> plan;
+  std::vector<std::string> notices;
+  bool to_do() const { return plan && plan->different > 0; }
+};
+
+/// Looks at all axes at the same time; what one axis or its bus is not able to tell does not stop the others.
+/// PDOs that would come to share a CAN-ID are refused, for the axis that would get it. Of an axis at which an
+/// apply was cut off Errc::refused, unless `resume`: then only those are looked at, for what was to be
+/// written.
+std::vector<AxisLook> look_at_all(const show::Desk& desk, const Cabinet& cabinet,
+                                  std::span<const Station> stations, const PlanChoice& choice,
+                                  bool resume = false);
+
+/// What is to be done, axis by axis, as text and for JSON `{cabinet, axes[{axis node bus family differences
+/// unlisted needs error}], different}`.
+report::Record plan_record(const Cabinet& cabinet, std::span<const AxisLook> looks);
+
+/// Errors and notices of all looks, with the names of their axes.
+void tell_looks(show::Desk& desk, std::span<const AxisLook> looks);
+
+/// The error with the name of its axis before it.
+Error of_axis(const Axis& axis, Error error);
+
+/// The exit code 1 of a plan by which there is something to do.
+Error something_to_do(const Cabinet& cabinet, std::span<const AxisLook> looks);
+
+/// Where the values of an axis from before an apply are kept, and what was to be written to it; both beside
+/// the cabinet file.
+std::filesystem::path before_file(const Cabinet& cabinet, const Axis& axis);
+std::filesystem::path wanted_file(const Cabinet& cabinet, const Axis& axis);
+
+}  // namespace servoctl::cabinet

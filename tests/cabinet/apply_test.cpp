@@ -1,0 +1,345 @@
+// A cabinet of drives of five families: its plan names what differs, and apply makes it so.
+#include "cabinet/apply.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+
+#include "drive/drive_settings.hpp"
+#include "fleet.hpp"
+#include "session/write.hpp"
+#include "settings/comparison.hpp"
+
+namespace servoctl::cabinet {
+namespace {
+
+/// The objects that a table of a plan is about.
+std::set<std::string> objects_of(const report::Value& table) {
+  std::set<std::string> out;
+  if (const auto* rows = std::get_if<report::Table>(&table.data()))
+    for (const auto& row : rows->rows) out.insert(std::get<std::string>(row.front().data()));
+  return out;
+}
+
+void expect_no_errors(const Fleet& fleet) {
+  for (const auto& error : fleet.desk.errors) ADD_FAILURE() << error.message << "; " << error.hint;
+}
+
+session::Values wanted_of(const AxisLook& look) {
+  session::Values out;
+  for (const auto& entry : look.plan->wanted.entries) out.emplace(entry.object, *entry.bytes);
+  return out;
+}
+
+/// Writes another value into an object, as somebody at the panel might; false where the drive has no other.
+bool change_at_the_panel(Fleet& fleet, std::size_t axis, ObjectAddress object) {
+  const auto node = fleet.cabinet.axes[axis].node;
+  auto& session = fleet.session(axis);
+  const auto held = fleet.drive(axis).value(object);
+  for (const std::uint64_t step : {std::uint64_t{1}, ~std::uint64_t{0}})
+    if (session.download(node, object, store_le(load_le(held) + step, held.size()))) return true;
+  return false;
+}
+
+/// After a power cycle: what no manual calls stored, the simulated drives forget, and the plan tells it.
+void expect_kept(Fleet& fleet) {
+  for (const auto& look : fleet.look()) {
+    for (const auto& [object, data] : wanted_of(look)) {
+      const bool differs = look.plan->present.at(object) != data;
+      EXPECT_FALSE(differs && is_known_to_keep(family_of(look.axis->family), object))
+          << look.axis->family << " " << to_string(object);
+    }
+  }
+}
+
+TEST(CabinetApply, MakesFortyAxesAsTheFileSaysAndThenDoesNothing) {
+  Fleet fleet(40, 3);
+  EXPECT_GT(fleet.different(), 80U);
+  const auto answer = fleet.apply();
+  ASSERT_TRUE(answer) << answer.error().message;
+  expect_no_errors(fleet);
+  EXPECT_EQ(Fleet::results_of(*answer), std::vector<std::string>(40, "applied"));
+  EXPECT_EQ(fleet.different(), 0U);
+  const auto again = fleet.apply();
+  ASSERT_TRUE(again);
+  EXPECT_EQ(Fleet::results_of(*again), std::vector<std::string>(40, "nothing to do"));
+  fleet.power_cycle();
+  expect_kept(fleet);
+  for (const auto& file : fs::directory_iterator(fleet.folder()))
+    EXPECT_EQ(file.path().extension(), ".json") << file.path() << ": no journal, no lock";
+}
+
+TEST(CabinetPlan, NamesExactlyWhatDiffers) {
+  Fleet fleet(10, 2);
+  ASSERT_TRUE(fleet.apply());
+  std::mt19937 random(7);
+  std::size_t changed = 0;
+  for (int round = 0; round < 12; ++round) {
+    SCOPED_TRACE(round);
+    const auto before = fleet.look();
+    for (std::size_t i = 0; i < fleet.size(); ++i) {
+      ASSERT_TRUE(before[i].plan);
+      EXPECT_EQ(before[i].plan->different, 0U);
+      for (const auto& entry : before[i].plan->wanted.entries)
+        if (random() % 3 == 0) changed += change_at_the_panel(fleet, i, entry.object) ? 1U : 0U;
+    }
+    const auto looks = fleet.look();
+    for (std::size_t i = 0; i < fleet.size(); ++i) {
+      ASSERT_TRUE(looks[i].plan);
+      std::set<std::string> differ;
+      for (const auto& [object, data] : wanted_of(looks[i]))
+        if (fleet.drive(i).value(object) != data) differ.insert(to_string(object));
+      EXPECT_EQ(objects_of(looks[i].plan->differences), differ) << looks[i].axis->name;
+      EXPECT_EQ(looks[i].plan->different, differ.size());
+    }
+    ASSERT_TRUE(fleet.apply());
+    expect_no_errors(fleet);
+  }
+  EXPECT_GT(changed, 60U);
+}
+
+TEST(CabinetPlan, ListsApartWhatIsNeitherInTheFileNorFromTheFactory) {
+  Fleet fleet(5);
+  ASSERT_TRUE(fleet.apply());
+  for (const auto& look : fleet.look({.unlisted = true})) {
+    ASSERT_TRUE(look.plan) << look.plan.error().message;
+    EXPECT_EQ(look.plan->unlisted_count, 0U)
+        << look.axis->family << " " << report::to_text(look.plan->unlisted);
+  }
+  for (std::size_t i = 0; i < fleet.size(); ++i) {
+    const auto& profile = family_of(fleet.cabinet.axes[i].family);
+    const auto listed = wanted_of(fleet.look()[i]);
+    std::set<std::string> changed;
+    for (const auto& setting : drive::settings_of(profile)) {
+      const auto object = setting.entry->address;
+      const bool free = setting.left_out.empty() && listed.count(object) == 0 && object.index >= 0x2000 &&
+                        setting.entry->default_value && !settings::is_address(&profile, object);
+      if (free && changed.size() < 3 && change_at_the_panel(fleet, i, object))
+        changed.insert(to_string(object));
+    }
+    const auto look = fleet.look({.unlisted = true})[i];
+    EXPECT_EQ(objects_of(look.plan->unlisted), changed) << profile.family;
+    EXPECT_EQ(look.plan->different, 0U);
+    EXPECT_EQ(fleet.look({.unlisted = false})[i].plan->unlisted_count, 0U);
+  }
+}
+
+TEST(CabinetApply, MakesPdosAndHeartbeatsOfOperationalDrives) {
+  Fleet fleet(10);
+  for (auto& axis : fleet.cabinet.axes) {
+    axis.heartbeat_at = axis.at;
+    if (family_of(axis.family).dictionary.find({0x1017, 0}) != nullptr) axis.heartbeat = 500ms;
+    const auto& presets = family_of(axis.family).rules.pdo.presets;
+    if (!presets.empty()) axis.pdos.preset = presets.back().name;
+    drive::PdoRecipe recipe;
+    recipe.pdo = "TPDO1";
+    recipe.type = 1;
+    recipe.valid = true;
+    if (presets.empty()) axis.pdos.recipes = {recipe};
+    axis.pdos.at = axis.at;
+  }
+  fleet.start_all();
+  const auto looks = fleet.look();
+  bool state = false;
+  for (const auto& look : looks) {
+    ASSERT_TRUE(look.plan) << look.axis->family << ": " << look.plan.error().message;
+    EXPECT_GT(look.plan->different, 0U);
+    for (const auto& need : look.plan->needs) state = state || need.kind == AxisNeed::Kind::state;
+  }
+  EXPECT_TRUE(state) << "no family changes PDOs outside Operational only";
+  const auto answer = fleet.apply();
+  ASSERT_TRUE(answer) << answer.error().message;
+  expect_no_errors(fleet);
+  EXPECT_EQ(Fleet::results_of(*answer), std::vector<std::string>(10, "applied"));
+  EXPECT_EQ(fleet.different(), 0U);
+  for (std::size_t i = 0; i < fleet.size(); ++i) {
+    const auto heartbeat = fleet.cabinet.axes[i].heartbeat;
+    EXPECT_TRUE(!heartbeat || load_le(fleet.drive(i).value({0x1017, 0})) == 500);
+    EXPECT_EQ(fleet.drive(i).nmt_state(), canopen::NmtState::operational) << fleet.cabinet.axes[i].family;
+  }
+  fleet.power_cycle();
+  expect_kept(fleet);
+}
+
+/// Does something at the moment at which somebody agrees.
+class Meddler final : public show::Audience {
+ public:
+  explicit Meddler(std::function<void()> what) : what_(std::move(what)) {}
+  Result<void> confirm(std::string_view question) override {
+    questions.emplace_back(question);
+    what_();
+    return {};
+  }
+  std::vector<std::string> questions;
+
+ private:
+  std::function<void()> what_;
+};
+
+TEST(CabinetApply, LeavesADriveAloneThatHasChangedSinceItWasLookedAt) {
+  Fleet fleet(5);
+  Meddler meddler([&] { EXPECT_TRUE(change_at_the_panel(fleet, 2, {0x6065, 0})); });
+  fleet.cabinet.axes[2] = [&] {
+    auto axis = fleet.cabinet.axes[2];
+    axis.parameters.push_back({"0x6065", "65536", {99, 1}});
+    return axis;
+  }();
+  fleet.desk.audience = &meddler;
+  const auto answer = fleet.apply();
+  ASSERT_TRUE(answer) << answer.error().message;
+  EXPECT_EQ(meddler.questions.size(), 1U);
+  EXPECT_EQ(Fleet::results_of(*answer),
+            (std::vector<std::string>{"applied", "applied", "not changed", "applied", "applied"}));
+  ASSERT_EQ(fleet.desk.errors.size(), 1U);
+  EXPECT_EQ(fleet.desk.errors[0].code, Errc::refused);
+  EXPECT_NE(fleet.desk.errors[0].message.find("axis3"), std::string::npos);
+  EXPECT_NE(fleet.desk.errors[0].message.find("changed since the plan was made"), std::string::npos);
+}
+
+TEST(CabinetApply, WritesNothingUnlessSomebodyAgrees) {
+  Fleet fleet(5);
+  show::Unwilling unwilling;
+  fleet.desk.audience = &unwilling;
+  const auto before = fleet.different();
+  const auto answer = fleet.apply();
+  ASSERT_FALSE(answer);
+  EXPECT_EQ(answer.error().code, Errc::refused);
+  EXPECT_EQ(fleet.different(), before);
+  fleet.desk.audience = nullptr;
+  fleet.desk.dry_run = true;
+  const auto frames = fleet.apply();
+  ASSERT_TRUE(frames) << frames.error().message;
+  EXPECT_NE(report::to_text(*frames).find("601#"), std::string::npos) << report::to_text(*frames);
+  EXPECT_EQ(fleet.different(), before);
+  EXPECT_TRUE(fs::is_empty(fleet.folder()));
+}
+
+TEST(CabinetApply, LeavesAnEnergisedDriveAloneAndThePlanSaysSo) {
+  Fleet fleet(5);
+  auto& session = fleet.session(2);
+  const auto node = fleet.cabinet.axes[2].node;
+  for (const std::uint64_t word : {6U, 7U, 15U}) {
+    ASSERT_TRUE(session.download(node, {0x6040, 0}, store_le(word, 2)));
+    (void)session.wait([] { return false; }, session.now() + 1s);
+  }
+  const auto look = fleet.look()[2];
+  ASSERT_TRUE(look.plan) << look.plan.error().message;
+  ASSERT_FALSE(look.plan->needs.empty());
+  EXPECT_EQ(look.plan->needs.back().kind, AxisNeed::Kind::power);
+  ApplyOptions all;
+  all.all_or_nothing = true;
+  const auto none = fleet.apply(all);
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().code, Errc::refused);
+  const auto answer = fleet.apply();
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(Fleet::results_of(*answer),
+            (std::vector<std::string>{"applied", "applied", "not changed", "applied", "applied"}));
+}
+
+TEST(CabinetPlan, RefusesAnotherDriveAndTellsBothSerialNumbers) {
+  Fleet fleet(5);
+  bool told = false;
+  for (std::size_t i = 0; i < fleet.size(); ++i) {
+    fleet.cabinet.axes[i].serial = 4711;
+    const auto look = fleet.look()[i];
+    ASSERT_FALSE(look.plan) << look.axis->family;
+    EXPECT_EQ(look.plan.error().code, Errc::refused);
+    EXPECT_NE(look.plan.error().message.find("4711"), std::string::npos) << look.plan.error().message;
+    const auto found = fleet.session(i).upload(fleet.cabinet.axes[i].node, {0x1018, 4});
+    if (!found) continue;
+    told = true;
+    EXPECT_NE(look.plan.error().message.find(fmt::format("{}", load_le(*found))), std::string::npos);
+    fleet.cabinet.axes[i].serial = static_cast<std::uint32_t>(load_le(*found));
+    EXPECT_TRUE(fleet.look()[i].plan);
+  }
+  EXPECT_TRUE(told);
+  std::swap(fleet.cabinet.axes[0].family, fleet.cabinet.axes[2].family);
+  std::swap(fleet.cabinet.axes[0].parameters, fleet.cabinet.axes[2].parameters);
+  const auto swapped = fleet.look()[2];
+  ASSERT_FALSE(swapped.plan);
+  EXPECT_EQ(swapped.plan.error().code, Errc::refused);
+}
+
+TEST(CabinetPlan, TellsWhatTheFileSaysWrongWithItsLine) {
+  Fleet fleet(5);
+  auto& parameters = fleet.cabinet.axes[2].parameters;
+  const auto good = parameters;
+  const auto refusal = [&] {
+    const auto look = fleet.look()[2];
+    return look.plan ? std::string("taken") : look.plan.error().message;
+  };
+  parameters = {{"Pn9999", "1", {7, 1}}};
+  EXPECT_NE(refusal().find("cabinet.toml:7:1: axis axis3: "), std::string::npos) << refusal();
+  parameters = {{"Pn0214", "99999", {8, 1}}};
+  EXPECT_NE(refusal().find("cabinet.toml:8:1"), std::string::npos) << refusal();
+  parameters = {{"Pn0214", "450", {8, 1}}, {"0x2001:F", "451", {9, 1}}};
+  EXPECT_NE(refusal().find("another value in line 8"), std::string::npos) << refusal();
+  parameters = {{"0x6040", "6", {8, 1}}};
+  EXPECT_NE(refusal().find("not a setting"), std::string::npos) << refusal();
+  fleet.cabinet.axes[3].heartbeat = 100ms;
+  fleet.cabinet.axes[3].heartbeat_at = {33, 4};
+  EXPECT_NE(fleet.look()[3].plan.error().message.find("cabinet.toml:33:4: axis axis4: a sv2 produces no"),
+            std::string::npos);
+  parameters = good;
+  EXPECT_EQ(refusal(), "taken");
+}
+
+TEST(CabinetApply, OnlyAPartIsWrittenWhereAPartIsNamed) {
+  Fleet fleet(1);
+  fleet.cabinet.axes[0].heartbeat = 700ms;
+  fleet.cabinet.axes[0].heartbeat_at = fleet.cabinet.axes[0].at;
+  const auto all = fleet.different();
+  const auto part = fleet.different({.only = "communication", .unlisted = false});
+  EXPECT_EQ(part, 1U);
+  ApplyOptions options;
+  options.choice.only = "communication";
+  ASSERT_TRUE(fleet.apply(options));
+  EXPECT_EQ(load_le(fleet.drive(0).value({0x1017, 0})), 700U);
+  EXPECT_EQ(fleet.different(), all - 1);
+}
+
+TEST(CabinetApply, RefusesTwoAxesThatWouldSendWithOneCanId) {
+  Fleet fleet(5);
+  for (const std::size_t i : {1U, 4U}) {
+    auto& axis = fleet.cabinet.axes[i];
+    drive::PdoRecipe recipe;
+    recipe.pdo = "TPDO2";
+    recipe.cob_id = "0x2F0";
+    recipe.valid = true;
+    axis.pdos.recipes = {recipe};
+    axis.pdos.at = axis.at;
+  }
+  const auto looks = fleet.look();
+  EXPECT_NE(looks[1].plan.has_value(), looks[4].plan.has_value()) << "one of them";
+  for (const auto& look : looks)
+    EXPECT_TRUE(look.plan || look.plan.error().message.find("0x2F0") != std::string::npos);
+}
+
+TEST(CabinetApply, OfFortyAxesTakesAsLongAsOfTheSlowest) {
+  Duration slowest{};
+  {
+    Fleet fleet(5, 1, 3ms);
+    for (std::size_t i = 0; i < fleet.size(); ++i) {
+      auto& session = fleet.session(i);
+      const auto begin = session.now();
+      ASSERT_TRUE(fleet.apply({fleet.stations()[i]}, {}));
+      slowest = std::max(slowest, session.now() - begin);
+    }
+  }
+  // Twenty on one bus: with forty the frames themselves take longer than the drives.
+  Fleet fleet(40, 2, 3ms);
+  const TimePoint begin[] = {fleet.session(0).now(), fleet.session(1).now()};
+  const auto answer = fleet.apply();
+  const auto together = std::max(fleet.session(0).now() - begin[0], fleet.session(1).now() - begin[1]);
+  ASSERT_TRUE(answer);
+  expect_no_errors(fleet);
+  RecordProperty("alone_us", static_cast<int>(slowest.count()));
+  RecordProperty("together_us", static_cast<int>(together.count()));
+  EXPECT_GT(slowest, 100ms);
+  EXPECT_LE(together, slowest * 12 / 10);
+}
+
+}  // namespace
+}  // namespace servoctl::cabinet
