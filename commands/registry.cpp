@@ -24,6 +24,10 @@ extern const Command kBackup;
 extern const Command kCabinetCheck;
 extern const Command kCabinetInit;
 extern const Command kCabinetShow;
+extern const Command kCabinetPlan;
+extern const Command kCabinetApply;
+extern const Command kCabinetBackup;
+extern const Command kCabinetDiff;
 extern const Command kDiff;
 extern const Command kVerify;
 extern const Command kRestore;
@@ -113,6 +117,10 @@ constexpr Named kNamed[] = {
     {"cabinet init", &commands::kCabinetInit},
     {"cabinet check", &commands::kCabinetCheck},
     {"cabinet show", &commands::kCabinetShow},
+    {"cabinet plan", &commands::kCabinetPlan},
+    {"cabinet apply", &commands::kCabinetApply},
+    {"cabinet backup", &commands::kCabinetBackup},
+    {"cabinet diff", &commands::kCabinetDiff},
     {"diff", &commands::kDiff},
     {"verify", &commands::kVerify},
     {"restore", &commands::kRestore},

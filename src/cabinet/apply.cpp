@@ -4,18 +4,17 @@
 #include <algorithm>
 
 #include "base/file.hpp"
+#include "cabinet/axis_run.hpp"
 #include "session/option_scope.hpp"
 #include "session/state_pause.hpp"
 #include "settings/restore_journal.hpp"
 #include "settings/restoring.hpp"
 #include "show/audience.hpp"
-#include "show/records.hpp"
 
 namespace servoctl::cabinet {
 namespace {
 
 namespace fs = std::filesystem;
-using report::List;
 using report::Record;
 using report::Show;
 using report::Value;
@@ -25,56 +24,6 @@ using settings::RestoreEnd;
 class AskedBefore final : public show::Audience {
  public:
   Result<void> confirm(std::string_view /*question*/) override { return {}; }
-};
-
-/// How an apply ended for one axis.
-enum class AxisEnd : std::uint8_t {
-  untouched,
-  nothing_to_do,
-  planned,
-  applied,
-  not_kept,
-  as_before,
-  undone,
-  failed
-};
-
-std::string_view text_of(AxisEnd end) {
-  switch (end) {
-    case AxisEnd::untouched: return "not changed";
-    case AxisEnd::nothing_to_do: return "nothing to do";
-    case AxisEnd::planned: return "to be written";
-    case AxisEnd::applied: return "applied";
-    case AxisEnd::not_kept: return "applied, but not kept; see the error";
-    case AxisEnd::as_before: return "put back: every value is as it was before";
-    case AxisEnd::undone: return "put back, because another axis failed";
-    case AxisEnd::failed: return "failed; see the errors";
-  }
-  return {};
-}
-
-AxisEnd end_of(RestoreEnd end) {
-  switch (end) {
-    case RestoreEnd::idle: return AxisEnd::nothing_to_do;
-    case RestoreEnd::planned: return AxisEnd::planned;
-    case RestoreEnd::done: return AxisEnd::applied;
-    case RestoreEnd::not_kept: return AxisEnd::not_kept;
-    case RestoreEnd::rolled_back: return AxisEnd::as_before;
-    case RestoreEnd::astray:
-    case RestoreEnd::left: break;
-  }
-  return AxisEnd::failed;
-}
-
-/// One axis on its way.
-struct AxisRun {
-  AxisRun(const Station& at, const AxisLook* seen) : station(at), look(seen) {}
-  Station station;
-  const AxisLook* look = nullptr;
-  AxisEnd end = AxisEnd::untouched;
-  Value frames;  ///< With --dry-run.
-  std::vector<Error> errors;
-  std::vector<std::string> notices;
 };
 
 class Applying {
@@ -231,10 +180,7 @@ class Applying {
   }
 
   bool any_failed() const {
-    return std::any_of(runs_.begin(), runs_.end(), [](const AxisRun& run) {
-      return run.end == AxisEnd::failed || run.end == AxisEnd::as_before || run.end == AxisEnd::not_kept ||
-             run.end == AxisEnd::untouched;
-    });
+    return std::any_of(runs_.begin(), runs_.end(), [](const AxisRun& run) { return run.has_failed(); });
   }
 
   /// Puts back what was written already, as it was written.
@@ -286,8 +232,7 @@ class Applying {
     tell_looks(*desk_, looks_);
     for (auto& run : runs_) {
       for (auto& error : run.errors) desk_->errors.push_back(of_axis(*run.look->axis, std::move(error)));
-      for (auto& notice : run.notices)
-        desk_->notices.push_back(fmt::format("axis {}: {}", run.look->axis->name, notice));
+      for (const auto& notice : run.notices) desk_->notices.push_back(of_axis(*run.look->axis, notice));
     }
     for (const auto& run : runs_)
       if (run.end == AxisEnd::applied && options_->keep) tell_unstated(run);
@@ -312,63 +257,7 @@ class Applying {
         all > kMostNamed ? fmt::format(" and {} more", all - kMostNamed) : std::string()));
   }
 
-  Value answer() const {
-    if (desk_->dry_run) return frames();
-    report::Table table;
-    table.columns = {{"axis"},
-                     {"bus", "", Show::json},
-                     {"node"},
-                     {"family"},
-                     {"result"},
-                     {"values"},
-                     {"kept"},
-                     {"needs"},
-                     {"needs_list", "", Show::json},
-                     {"error", "", Show::json}};
-    for (const auto& run : runs_) table.rows.push_back(row(run));
-    return Value(std::move(table));
-  }
-
-  /// What was written, and of which no manual tells whether it is kept.
-  static std::vector<std::string> unstated(const AxisRun& run) {
-    std::vector<std::string> out;
-    const auto& profile = *run.station.profile;
-    for (const auto& entry : run.look->plan->wanted.entries) {
-      const auto present = run.look->plan->present.find(entry.object);
-      const bool written = present != run.look->plan->present.end() && present->second != entry.bytes;
-      if (written && !is_known_to_keep(profile, entry.object)) out.push_back(to_string(entry.object));
-    }
-    return out;
-  }
-
-  /// Null where no manual tells.
-  Value kept(const AxisRun& run) const {
-    if (run.end == AxisEnd::not_kept) return false;
-    if (run.end != AxisEnd::applied) return {};
-    if (!options_->keep) return false;
-    return unstated(run).empty() ? Value(true) : Value();
-  }
-
-  List row(const AxisRun& run) const {
-    const bool applied = run.end == AxisEnd::applied || run.end == AxisEnd::not_kept;
-    std::string needs;
-    List list;
-    if (applied)
-      for (const auto& need : run.look->plan->needs)
-        if (need.kind == AxisNeed::Kind::restart) {
-          needs = to_string(need);
-          for (const auto& name : need.names) list.emplace_back(name);
-        }
-    const auto& axis = *run.look->axis;
-    const auto error = !run.look->plan      ? show::error_record(run.look->plan.error())
-                       : run.errors.empty() ? Value()
-                                            : show::error_record(run.errors.front());
-    return {axis.name,        axis.bus,
-            axis.node,        axis.family,
-            text_of(run.end), applied ? Value(run.look->plan->different) : Value(0U),
-            kept(run),        report::text_or_null(needs),
-            std::move(list),  error};
-  }
+  Value answer() const { return desk_->dry_run ? frames() : apply_table(runs_, options_->keep); }
 
   Value frames() const {
     Record out;

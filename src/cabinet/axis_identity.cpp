@@ -13,8 +13,7 @@ using session::FamilyVerdict;
 
 tl::unexpected<Error> other_drive(const Axis& axis, ObjectAddress object, const std::string& what,
                                   std::string hint) {
-  return fail(drive_error(Errc::refused, axis.node, object, fmt::format("axis {}: {}", axis.name, what),
-                          std::move(hint)));
+  return fail(drive_error(Errc::refused, axis.node, object, what, std::move(hint)));
 }
 
 Result<void> hold_family(show::Desk& desk, const Axis& axis, std::span<const drive::Family> families) {
@@ -27,8 +26,8 @@ Result<void> hold_family(show::Desk& desk, const Axis& axis, std::span<const dri
                        fmt::format("not a {}: {}", desk.profile->family, verdict.why),
                        "is another drive at this node, or is `family` wrong? `scan` shows who is there");
   if (verdict.kind == FamilyVerdict::Kind::unproven)
-    desk.notices.push_back(fmt::format("axis {}, node {}: nothing proves that it is a {}: {}", axis.name,
-                                       axis.node, desk.profile->family, verdict.why));
+    desk.notices.push_back(fmt::format("node {}: nothing proves that it is a {}: {}", axis.node,
+                                       desk.profile->family, verdict.why));
   if (const auto heard = desk.session->listen(); !heard) return heard;
   return session::refuse_duplicate(*desk.session, axis.node);
 }

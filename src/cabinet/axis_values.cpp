@@ -25,19 +25,11 @@ tl::unexpected<Error> at_place(const Cabinet& cabinet, const Axis& axis, Place p
   return fail(std::move(error));
 }
 
-/// A value in the load's unit is one of the motor's.
-std::string in_units_of_motor(const Axis& axis, const std::string& text) {
-  if (!axis.load) return text;
-  return drive::in_revolutions(*axis.load, text).value_or(text);
-}
-
 Result<std::vector<PdoRecipe>> recipes_of(const drive::Profile& profile, const Cabinet& cabinet,
                                           const Axis& axis) {
   if (!axis.pdos.recipes.empty()) return axis.pdos.recipes;
   if (!axis.pdos.file.empty()) {
-    const auto path =
-        axis.pdos.file.is_absolute() ? axis.pdos.file : cabinet.file.parent_path() / axis.pdos.file;
-    auto file = pdo::read_pdo_source(profile, path);
+    auto file = pdo::read_pdo_source(profile, cabinet.file.parent_path() / axis.pdos.file);
     if (!file) return at_place(cabinet, axis, axis.pdos.at, file.error());
     return std::move(file->pdos);
   }
@@ -58,8 +50,9 @@ Result<std::vector<PdoRecipe>> recipes_of(const drive::Profile& profile, const C
 /// What is written for one axis, in the making.
 class Wanted {
  public:
-  Wanted(show::Desk& desk, const Cabinet& cabinet, const Axis& axis, bool keep)
-      : desk_(&desk), cabinet_(&cabinet), axis_(&axis), keep_(keep) {
+  /// `held`: what a drive that is not there held; null: it is there.
+  Wanted(show::Desk& desk, const Cabinet& cabinet, const Axis& axis, bool keep, const session::Values* held)
+      : desk_(&desk), cabinet_(&cabinet), axis_(&axis), keep_(keep), held_(held) {
     out_.family = desk.profile->family;
     out_.identity.node = axis.node;
   }
@@ -81,16 +74,34 @@ class Wanted {
     const auto target = drive::resolve(desk_->profile, setting.name);
     if (!target) return at_place(*cabinet_, *axis_, setting.at, target.error());
     const auto text = in_units_of_motor(*axis_, setting.value);
+    if (held_ != nullptr && !says_all(*target, text)) {
+      desk_->notices.push_back(
+          fmt::format("axis {}: {} = {} is not compared: only its drive tells what that is", axis_->name,
+                      setting.name, setting.value));
+      return {};
+    }
     const auto change = settings::make_change(*desk_, axis_->node, *target, text, std::nullopt);
     if (!change) return at_place(*cabinet_, *axis_, setting.at, change.error());
     return add_all({{target->address, change->data}}, setting.at);
   }
 
+  /// Whether the family's data alone makes bytes of the value.
+  bool says_all(const drive::Target& target, const std::string& text) const {
+    const auto meaning = drive::meaning(target, axis_->node);
+    return meaning.type_known && meaning.size_known &&
+           !(meaning.measure && drive::needs_bridge(meaning, text));
+  }
+
+  Result<session::Values> present_pdos() const {
+    if (held_ != nullptr) return *held_;
+    const std::uint8_t nodes[] = {axis_->node};
+    return std::move(session::read_pdo_values(*desk_->session, desk_->profile, nodes).front());
+  }
+
   Result<void> add_pdos() {
     const auto recipes = recipes_of(*desk_->profile, *cabinet_, *axis_);
     if (!recipes) return fail(recipes.error());
-    const std::uint8_t nodes[] = {axis_->node};
-    auto read = std::move(session::read_pdo_values(*desk_->session, desk_->profile, nodes).front());
+    const auto read = present_pdos();
     if (!read) return fail(read.error());
     const pdo::PresentPdos present{axis_->node, *read, session::pdos_of(*read)};
     const auto wanted = pdo::follow(*desk_->profile, present, *recipes);
@@ -154,6 +165,7 @@ class Wanted {
   const Cabinet* cabinet_;
   const Axis* axis_;
   bool keep_;
+  const session::Values* held_;
   settings::Backup out_;
 };
 
@@ -161,20 +173,16 @@ class Wanted {
 
 Result<settings::Backup> wanted_backup(show::Desk& desk, const Cabinet& cabinet, const Axis& axis,
                                        bool keep) {
-  return Wanted(desk, cabinet, axis, keep).make();
+  return Wanted(desk, cabinet, axis, keep, nullptr).make();
 }
 
-Result<void> check_wanted(const show::Desk& desk, const Cabinet& cabinet, const Axis& axis) {
-  for (const auto& setting : axis.parameters) {
-    const auto target = drive::resolve(desk.profile, setting.name);
-    if (!target) return at_place(cabinet, axis, setting.at, target.error());
-    const auto fits = settings::check_change(desk, axis.node, *target, in_units_of_motor(axis, setting.value),
-                                             std::nullopt);
-    if (!fits) return at_place(cabinet, axis, setting.at, fits.error());
-  }
-  if (!axis.pdos.said()) return {};
-  if (const auto recipes = recipes_of(*desk.profile, cabinet, axis); !recipes) return fail(recipes.error());
-  return {};
+Result<settings::Backup> wanted_of_held(show::Desk& desk, const Cabinet& cabinet, const Axis& axis,
+                                        const session::Values& held) {
+  return Wanted(desk, cabinet, axis, false, &held).make();
+}
+
+std::string in_units_of_motor(const Axis& axis, const std::string& text) {
+  return axis.load ? drive::in_revolutions(*axis.load, text).value_or(text) : text;
 }
 
 }  // namespace servoctl::cabinet

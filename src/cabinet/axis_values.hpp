@@ -1,6 +1,7 @@
 #pragma once
 
 #include "cabinet/cabinet.hpp"
+#include "session/write_plan.hpp"
 #include "settings/backup_file.hpp"
 #include "show/desk.hpp"
 
@@ -16,8 +17,13 @@ namespace servoctl::cabinet {
 /// have, an object that is said twice with two values, node-ID and bitrate; else as Session::upload().
 Result<settings::Backup> wanted_backup(show::Desk& desk, const Cabinet& cabinet, const Axis& axis, bool keep);
 
-/// The same without a drive, as far as that can be judged: names, values without the drive's units, presets
-/// and files of PDOs.
-Result<void> check_wanted(const show::Desk& desk, const Cabinet& cabinet, const Axis& axis);
+/// The same for a drive that held these values, without asking it: `desk` has no session. What only a drive
+/// can tell (a unit that its gear converts, a size that no manual states) is left out, and named in
+/// `desk.notices`.
+Result<settings::Backup> wanted_of_held(show::Desk& desk, const Cabinet& cabinet, const Axis& axis,
+                                        const session::Values& held);
+
+/// A value in the unit of the axis' load as one in the motor's; any other text as it is.
+std::string in_units_of_motor(const Axis& axis, const std::string& text);
 
 }  // namespace servoctl::cabinet

@@ -6,11 +6,12 @@
 #include <set>
 
 #include "base/text.hpp"
+#include "cabinet/axis_values.hpp"
 #include "drive/drive_settings.hpp"
 #include "drive/naming.hpp"
 #include "drive/unit.hpp"
 #include "pdo/pdo_changing.hpp"
-#include "pdo/pdo_recipes.hpp"
+#include "pdo/pdo_source.hpp"
 #include "settings/change.hpp"
 #include "settings/comparison.hpp"
 
@@ -51,7 +52,9 @@ class AxisCheck {
     if (const auto reason = no_setting(*target); !reason.empty())
       return add(setting.at, make_error(Errc::file, fmt::format("{} is no setting: {}", setting.name, reason),
                                         "`param explain` tells more"));
-    if (const auto fits = settings::check_change(desk_, axis_->node, *target, setting.value, {}); !fits)
+    if (const auto fits =
+            settings::check_change(desk_, axis_->node, *target, in_units_of_motor(*axis_, setting.value), {});
+        !fits)
       add(setting.at, with_name(setting, fits.error()));
   }
 
@@ -96,11 +99,8 @@ class AxisCheck {
                        names.empty() ? "it has none" : "it has " + one_of(names)));
     }
     if (pdos.file.empty()) return check_recipes(pdos.recipes);
-    const auto file = pdo::read_pdo_file(pdos.file);
+    const auto file = pdo::read_pdo_source(*profile_, cabinet_->file.parent_path() / pdos.file);
     if (!file) return add(pdos.at, file.error());
-    if (!file->family.empty() && file->family != profile_->family)
-      return add(pdos.at, make_error(Errc::file, fmt::format("{} is of {}, not of {}", pdos.file.string(),
-                                                             file->family, profile_->family)));
     check_recipes(file->pdos);
   }
 

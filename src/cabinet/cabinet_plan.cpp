@@ -5,6 +5,7 @@
 #include <map>
 
 #include "settings/restore_journal.hpp"
+#include "show/axis_names.hpp"
 #include "show/records.hpp"
 
 namespace servoctl::cabinet {
@@ -181,22 +182,27 @@ Record plan_record(const Cabinet& cabinet, std::span<const AxisLook> looks) {
   return out;
 }
 
+std::string of_axis(const Axis& axis, const std::string& notice) {
+  const show::AxisNames names({{axis.node, axis.name}});
+  const auto named = names.in(notice);
+  return named.find(axis.name) == std::string::npos ? fmt::format("axis {}: {}", axis.name, named) : named;
+}
+
 Error of_axis(const Axis& axis, Error error) {
-  if (error.message.find(axis.name) == std::string::npos)
-    error.message = fmt::format("axis {}: {}", axis.name, error.message);
+  error.message = of_axis(axis, error.message);
+  error.hint = show::AxisNames({{axis.node, axis.name}}).in(error.hint);
   if (!error.node) error.node = axis.node;
   return error;
 }
 
 void tell_looks(show::Desk& desk, std::span<const AxisLook> looks) {
   for (const auto& look : looks) {
-    for (const auto& notice : look.notices)
-      desk.notices.push_back(notice.find(look.axis->name) == std::string::npos
-                                 ? fmt::format("axis {}: {}", look.axis->name, notice)
-                                 : notice);
+    for (const auto& notice : look.notices) desk.notices.push_back(of_axis(*look.axis, notice));
     if (!look.plan) desk.errors.push_back(of_axis(*look.axis, look.plan.error()));
   }
 }
+
+bool any_to_do(std::span<const AxisLook> looks) { return axes_to_do(looks) > 0; }
 
 Error something_to_do(const Cabinet& cabinet, std::span<const AxisLook> looks) {
   const auto axes = axes_to_do(looks);

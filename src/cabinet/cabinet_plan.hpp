@@ -32,9 +32,11 @@ report::Record plan_record(const Cabinet& cabinet, std::span<const AxisLook> loo
 /// Errors and notices of all looks, with the names of their axes.
 void tell_looks(show::Desk& desk, std::span<const AxisLook> looks);
 
-/// The error with the name of its axis before it.
+/// The error, and the notice, with the name of the axis where its node is meant.
 Error of_axis(const Axis& axis, Error error);
+std::string of_axis(const Axis& axis, const std::string& notice);
 
+bool any_to_do(std::span<const AxisLook> looks);
 /// The exit code 1 of a plan by which there is something to do.
 Error something_to_do(const Cabinet& cabinet, std::span<const AxisLook> looks);
 

@@ -1,6 +1,7 @@
 #include "cabinet/station.hpp"
 
 #include <pthread.h>
+#include <algorithm>
 #include <csignal>
 #include <exception>
 #include <list>
@@ -55,6 +56,16 @@ class CommonProgress {
   std::list<session::OptionScope<ListProgress>> scopes_;
 };
 
+/// Whether another bus of this process cannot wait: whoever waits serves it, which is one thread's.
+bool serves_another(const std::list<Crew>& crews) {
+  return std::any_of(crews.begin(), crews.end(), [](const Crew& crew) {
+    const auto& beside = crew.session->options().beside;
+    return beside && beside() != Duration::max();
+  });
+}
+
+using Beside = session::OptionScope<std::function<Duration()>>;
+
 /// Signals stay with the thread that has the first session: its wait ends at once, those of the others soon.
 void start_thread(Crew& crew) {
   sigset_t all;
@@ -67,6 +78,17 @@ void start_thread(Crew& crew) {
     crew.thrown = std::current_exception();
   }
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
+}
+
+/// Nobody is served beside while each session has a thread.
+void run_in_threads(std::list<Crew>& crews) {
+  std::list<Beside> scopes;
+  for (auto& crew : crews)
+    scopes.emplace_back(*crew.session, &session::Options::beside, std::function<Duration()>());
+  for (auto crew = std::next(crews.begin()); crew != crews.end(); ++crew) start_thread(*crew);
+  crews.front().run();
+  for (auto& crew : crews)
+    if (crew.thread.joinable()) crew.thread.join();
 }
 
 }  // namespace
@@ -101,10 +123,11 @@ void at_all(std::span<const Station> stations, const std::function<void(std::siz
   if (total == 1) return crews.front().jobs.front()();
   {
     const CommonProgress progress(crews, total);
-    for (auto crew = std::next(crews.begin()); crew != crews.end(); ++crew) start_thread(*crew);
-    crews.front().run();
-    for (auto& crew : crews)
-      if (crew.thread.joinable()) crew.thread.join();
+    if (serves_another(crews)) {
+      for (auto& crew : crews) crew.run();
+    } else {
+      run_in_threads(crews);
+    }
   }
   for (const auto& crew : crews)
     if (crew.thrown) std::rethrow_exception(crew.thrown);

@@ -22,9 +22,10 @@ struct Station {
 show::Desk desk_at(const show::Desk& line, const Station& station);
 
 /// Does the work for all stations that are there, at the same time: those of one session side by side on it
-/// (session::Interleave), sessions in a thread each. `work` is called with the number of the station; it
-/// touches nothing that another one does. Of a session `list_progress` tells how many of all have ended. What
-/// one throws is thrown when all have ended.
+/// (session::Interleave), sessions in a thread each, or one after the other while another bus of this process
+/// has to be served in every wait. `work` is called with the number of the station; it touches nothing that
+/// another one does. Of a session `list_progress` tells how many of all have ended. What one throws is thrown
+/// when all have ended.
 void at_all(std::span<const Station> stations, const std::function<void(std::size_t station)>& work);
 
 }  // namespace servoctl::cabinet

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "cabinet/cabinet_plan.hpp"
+#include "settings/restoring.hpp"
+
+namespace servoctl::cabinet {
+
+/// How an apply ended for one axis.
+enum class AxisEnd : std::uint8_t {
+  untouched,      ///< Nothing was written to it.
+  nothing_to_do,  ///< It held all already.
+  planned,        ///< With --dry-run.
+  applied,
+  not_kept,   ///< Every value is as wanted; keeping it failed.
+  as_before,  ///< It failed, and every value is as it was before.
+  undone,     ///< It was applied and put back, because another axis failed.
+  failed      ///< Some values are neither, or are not known.
+};
+std::string_view text_of(AxisEnd end);
+AxisEnd end_of(settings::RestoreEnd end);
+
+/// One axis on its way.
+struct AxisRun {
+  AxisRun(const Station& at, const AxisLook* seen) : station(at), look(seen) {}
+  Station station;
+  const AxisLook* look;
+  AxisEnd end = AxisEnd::untouched;
+  report::Value frames;  ///< With --dry-run.
+  std::vector<Error> errors;
+  std::vector<std::string> notices;
+
+  /// Whether every value is as wanted.
+  bool is_written() const { return end == AxisEnd::applied || end == AxisEnd::not_kept; }
+  /// It did not come to be as wanted.
+  bool has_failed() const;
+};
+
+/// What was written to the axis, and of which no manual tells whether it is kept.
+std::vector<std::string> unstated(const AxisRun& run);
+
+/// The answer of an apply, a row an axis. `keep`: the values were to be kept.
+report::Value apply_table(const std::vector<AxisRun>& runs, bool keep);
+
+}  // namespace servoctl::cabinet

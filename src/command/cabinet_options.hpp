@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "cabinet/station.hpp"
+#include "command/command.hpp"
+
+/// What commands on whole cabinets have in common on the command line.
+namespace servoctl::command {
+
+inline constexpr Parameter kAxisOption{
+    .name = "--axis", .help = "these axes or groups only: feeder,lift (default: all)", .kind = Kind::text};
+
+/// The axes that `--axis` names, all without it; errors as Cabinet::select().
+Result<std::vector<const cabinet::Axis*>> chosen_axes(const cabinet::Cabinet& cabinet,
+                                                      const Arguments& arguments);
+
+/// Loads the families of the chosen axes and opens their buses. What is not to be had is told at the axes
+/// that need it. Errors as chosen_axes().
+Result<std::vector<cabinet::Station>> open_stations(Context& context, const cabinet::Cabinet& cabinet,
+                                                    const Arguments& arguments);
+
+}  // namespace servoctl::command
