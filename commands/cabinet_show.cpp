@@ -4,7 +4,7 @@
 
 #include "base/number.hpp"
 #include "base/text.hpp"
-#include "cabinet/axis_look.hpp"
+#include "cabinet/axis_states.hpp"
 #include "can/descriptor.hpp"
 #include "command/command.hpp"
 #include "command/duration_option.hpp"
@@ -15,7 +15,7 @@ namespace {
 
 using namespace command;
 
-using cabinet::AxisLook;
+using cabinet::AxisState;
 using report::Record;
 using report::Show;
 using report::Value;
@@ -29,31 +29,31 @@ constexpr Parameter kParameters[] = {
     kForOption,
 };
 
-std::string state_text(const AxisLook& look, bool chinese) {
+std::string state_text(const AxisState& look, bool chinese) {
   if (look.error) return look.error->code == Errc::timeout ? "no answer" : "not reached";
   if (!look.state) return "-";
   return std::string(chinese ? drive::name_zh(*look.state) : drive::name(*look.state));
 }
 
-std::string mode_text(const AxisLook& look) {
+std::string mode_text(const AxisState& look) {
   if (!look.mode) return "-";
   const auto word = drive::mode_abbreviation(*look.mode);
   return word.empty() ? fmt::format("{}", *look.mode) : std::string(word);
 }
 
-std::string fault_text(const AxisLook& look) {
+std::string fault_text(const AxisState& look) {
   if (!look.fault) return "-";
   constexpr std::size_t kWords = 26;
   return *look.fault == 0 ? "none" : fmt::format("0x{:04X} {}", *look.fault, clip(look.fault_text, kWords));
 }
 
-std::string position_text(const AxisLook& look) {
+std::string position_text(const AxisState& look) {
   return look.position ? fmt::format("{} {}", number_text(look.position->value), look.position->unit) : "-";
 }
 
 Value or_null(const auto& optional) { return optional ? Value(*optional) : Value(); }
 
-Record record_of(const AxisLook& look) {
+Record record_of(const AxisState& look) {
   const auto position =
       look.position ? Value(Record{{"value", look.position->value}, {"unit", look.position->unit}}) : Value();
   return {{"axis", look.axis->name},
@@ -70,7 +70,7 @@ Record record_of(const AxisLook& look) {
           {"error", look.error ? show::error_record(*look.error) : Value()}};
 }
 
-report::Table table_of(const std::vector<AxisLook>& looks, bool chinese) {
+report::Table table_of(const std::vector<AxisState>& looks, bool chinese) {
   report::Table out;
   out.columns = {{"axis"},  {"bus"},  {"node"},  {"family"},  {"network"},
                  {"state"}, {"mode"}, {"fault"}, {"position"}};
@@ -104,7 +104,7 @@ class Watching {
     if (view_) view_->refresh(now);
   }
 
-  void take(const std::vector<AxisLook>& looks, double seconds) {
+  void take(const std::vector<AxisState>& looks, double seconds) {
     for (const auto& look : looks) {
       if (view_)
         view_->set(look.axis->name, {look.axis->name, fmt::format("{}", look.axis->node), look.axis->family,
@@ -117,7 +117,7 @@ class Watching {
 
  private:
   /// A position changes all the time: it is told with what else changes.
-  void take_line(const AxisLook& look, double seconds) {
+  void take_line(const AxisState& look, double seconds) {
     auto text = fmt::format("{}  {}  {}  {}", look.network.empty() ? "-" : look.network,
                             state_text(look, context_->chinese), mode_text(look), fault_text(look));
     auto& before = lines_[look.axis];
@@ -135,8 +135,8 @@ class Watching {
 };
 
 /// Ctrl-C in the middle of a look: what was seen last stands.
-bool was_interrupted(const std::vector<AxisLook>& looks) {
-  return std::any_of(looks.begin(), looks.end(), [](const AxisLook& look) {
+bool was_interrupted(const std::vector<AxisState>& looks) {
+  return std::any_of(looks.begin(), looks.end(), [](const AxisState& look) {
     return look.error && look.error->code == Errc::interrupted;
   });
 }
@@ -172,7 +172,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
     last = opened ? *opened : nullptr;
     return opened;
   };
-  cabinet::AxisLooks looks(
+  cabinet::AxisStates looks(
       **cabinet, std::move(*axes), open,
       [&](const std::string& family) { return context.front_end->family(family); }, context);
   auto now = looks.look();

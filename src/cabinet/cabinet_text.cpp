@@ -4,6 +4,7 @@
 
 #include "base/pdo_index.hpp"
 #include "base/text.hpp"
+#include "drive/naming.hpp"
 #include "drive/standard_objects.hpp"
 #include "pdo/pdo_changing.hpp"
 #include "pdo/pdo_recipes.hpp"
@@ -40,7 +41,10 @@ bool is_bare_key(std::string_view name) {
 std::string line_of(const show::Desk& desk, std::uint8_t node, ObjectAddress object, const Bytes& data) {
   const auto words = settings::worded_value(desk.profile, node, object, data);
   const auto target = drive::target_at(desk.profile, object);
-  const auto label = settings::comment_text(desk.chinese ? target.label_zh() : target.label());
+  const auto* parameter = target.parameter;
+  const auto label = settings::comment_text(parameter == nullptr ? target.label()
+                                            : desk.chinese       ? parameter->name_zh
+                                                                 : parameter->name);
   const auto key = is_bare_key(words.name) ? words.name : in_quotes(words.name);
   const auto value = is_whole_number(words.value) ? words.value : in_quotes(words.value);
   return fmt::format("{} = {}{}", key, value, label.empty() ? "" : "  # " + label);
@@ -48,9 +52,10 @@ std::string line_of(const show::Desk& desk, std::uint8_t node, ObjectAddress obj
 
 std::string who(const session::Identity& identity) {
   std::string out;
-  if (!identity.device_name.empty()) append(out, settings::comment_text(identity.device_name));
-  if (identity.vendor_id) append(out, fmt::format("vendor 0x{:08X}", *identity.vendor_id));
-  if (identity.product_code) append(out, fmt::format("product 0x{:08X}", *identity.product_code));
+  if (identity.device_name.size() > 1) append(out, settings::comment_text(identity.device_name));
+  if (identity.vendor_id.value_or(0) != 0) append(out, fmt::format("vendor 0x{:08X}", *identity.vendor_id));
+  if (identity.product_code.value_or(0) != 0)
+    append(out, fmt::format("product 0x{:08X}", *identity.product_code));
   if (!identity.software_version.empty())
     append(out, "software " + settings::comment_text(identity.software_version));
   return out;

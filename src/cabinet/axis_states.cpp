@@ -1,4 +1,4 @@
-#include "cabinet/axis_look.hpp"
+#include "cabinet/axis_states.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -30,7 +30,7 @@ std::string network_of(session::Session& session, std::uint8_t node) {
 
 }  // namespace
 
-const AxisLooks::Known& AxisLooks::known(const Axis& axis, session::Session& session) {
+const AxisStates::Known& AxisStates::known(const Axis& axis, session::Session& session) {
   auto& out = known_[&axis];
   if (out.profile != nullptr) return out;
   const auto profile = load_(axis.family);
@@ -49,7 +49,7 @@ const AxisLooks::Known& AxisLooks::known(const Axis& axis, session::Session& ses
   return out;
 }
 
-void AxisLooks::take(AxisLook& look, session::Session& session, std::span<const Result<Bytes>> answers) {
+void AxisStates::take(AxisState& look, session::Session& session, std::span<const Result<Bytes>> answers) {
   const auto& word = answers[0];
   if (!word) {
     look.error = word.error();
@@ -69,8 +69,8 @@ void AxisLooks::take(AxisLook& look, session::Session& session, std::span<const 
   if (const auto load = known.units->of_load(look.position->value, look.position->unit)) look.position = load;
 }
 
-void AxisLooks::look_on(const Bus& bus, std::vector<AxisLook>& out) {
-  std::vector<AxisLook*> mine;
+void AxisStates::look_on(const Bus& bus, std::vector<AxisState>& out) {
+  std::vector<AxisState*> mine;
   for (auto& look : out)
     if (look.axis->bus == bus.name) mine.push_back(&look);
   if (mine.empty()) return;
@@ -95,8 +95,8 @@ void AxisLooks::look_on(const Bus& bus, std::vector<AxisLook>& out) {
   }
 }
 
-std::vector<AxisLook> AxisLooks::look() {
-  std::vector<AxisLook> out;
+std::vector<AxisState> AxisStates::look() {
+  std::vector<AxisState> out;
   for (const auto* axis : axes_) out.emplace_back().axis = axis;
   for (const auto& bus : cabinet_->buses) look_on(bus, out);
   return out;

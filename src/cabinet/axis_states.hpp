@@ -16,7 +16,7 @@
 namespace servoctl::cabinet {
 
 /// One axis as it is now.
-struct AxisLook {
+struct AxisState {
   const Axis* axis = nullptr;
   std::string network;  ///< NMT or AL state; empty where it was not heard.
   std::optional<drive::DriveState> state;
@@ -32,9 +32,9 @@ using OpenBus = std::function<Result<session::Session*>(const Bus&)>;
 
 /// Looks at axes again and again: all of a bus at the same time, bus after bus. What the units of a drive
 /// need is read once.
-class AxisLooks {
+class AxisStates {
  public:
-  AxisLooks(const Cabinet& cabinet, std::vector<const Axis*> axes, OpenBus open, LoadProfile load,
+  AxisStates(const Cabinet& cabinet, std::vector<const Axis*> axes, OpenBus open, LoadProfile load,
             const show::Desk& desk)
       : cabinet_(&cabinet),
         axes_(std::move(axes)),
@@ -44,7 +44,7 @@ class AxisLooks {
 
   /// In the order of the axes. A bus that cannot be opened, or is lost, is the error of each of its axes; it
   /// is opened again by the next look.
-  std::vector<AxisLook> look();
+  std::vector<AxisState> look();
 
  private:
   struct Known {
@@ -52,8 +52,8 @@ class AxisLooks {
     std::unique_ptr<motion::MotionUnits> units;
   };
 
-  void look_on(const Bus& bus, std::vector<AxisLook>& out);
-  void take(AxisLook& look, session::Session& session, std::span<const Result<Bytes>> answers);
+  void look_on(const Bus& bus, std::vector<AxisState>& out);
+  void take(AxisState& look, session::Session& session, std::span<const Result<Bytes>> answers);
   const Known& known(const Axis& axis, session::Session& session);
 
   const Cabinet* cabinet_;
