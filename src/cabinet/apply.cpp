@@ -273,7 +273,7 @@ class Applying {
   show::Desk* desk_;
   const Cabinet* cabinet_;
   const ApplyOptions* options_;
-  std::vector<AxisLook> looks_;
+  std::vector<PlannedAxis> looks_;
   std::vector<AxisRun> runs_;
 };
 

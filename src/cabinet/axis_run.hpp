@@ -25,9 +25,9 @@ AxisEnd end_of(settings::RestoreEnd end);
 
 /// One axis on its way.
 struct AxisRun {
-  AxisRun(const Station& at, const AxisLook* seen) : station(at), look(seen) {}
+  AxisRun(const Station& at, const PlannedAxis* seen) : station(at), look(seen) {}
   Station station;
-  const AxisLook* look;
+  const PlannedAxis* look;
   AxisEnd end = AxisEnd::untouched;
   report::Value frames;  ///< With --dry-run.
   std::vector<Error> errors;

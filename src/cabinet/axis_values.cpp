@@ -74,22 +74,30 @@ class Wanted {
     const auto target = drive::resolve(desk_->profile, setting.name);
     if (!target) return at_place(*cabinet_, *axis_, setting.at, target.error());
     const auto text = in_units_of_motor(*axis_, setting.value);
-    if (held_ != nullptr && !says_all(*target, text)) {
-      desk_->notices.push_back(
-          fmt::format("axis {}: {} = {} is not compared: only its drive tells what that is", axis_->name,
-                      setting.name, setting.value));
-      return {};
-    }
+    if (held_ != nullptr) return add_by_data(setting, *target, text);
     const auto change = settings::make_change(*desk_, axis_->node, *target, text, std::nullopt);
     if (!change) return at_place(*cabinet_, *axis_, setting.at, change.error());
     return add_all({{target->address, change->data}}, setting.at);
   }
 
-  /// Whether the family's data alone makes bytes of the value.
-  bool says_all(const drive::Target& target, const std::string& text) const {
-    const auto meaning = drive::meaning(target, axis_->node);
-    return meaning.type_known && meaning.size_known &&
-           !(meaning.measure && drive::needs_bridge(meaning, text));
+  /// By the family's data alone, and the length of what was held.
+  Result<void> add_by_data(const Setting& setting, const drive::Target& target, const std::string& text) {
+    auto meaning = drive::meaning(target, axis_->node);
+    if (const auto held = held_->find(target.address); held != held_->end())
+      meaning = drive::fitted(meaning, held->second.size());
+    else if (!meaning.size_known)
+      meaning.type_known = false;
+    if (!meaning.type_known || (meaning.measure && drive::needs_bridge(meaning, text))) {
+      desk_->notices.push_back(
+          fmt::format("axis {}: {} = {} is not compared: only its drive tells what that is", axis_->name,
+                      setting.name, setting.value));
+      return {};
+    }
+    const auto value = drive::parse_quantity(meaning, text);
+    if (!value) return at_place(*cabinet_, *axis_, setting.at, value.error());
+    const auto data = od::encode(meaning.type, *value);
+    if (!data) return at_place(*cabinet_, *axis_, setting.at, data.error());
+    return add(target.address, *data, setting.at);
   }
 
   Result<session::Values> present_pdos() const {

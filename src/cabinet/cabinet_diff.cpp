@@ -25,7 +25,7 @@ class CabinetDifference {
  public:
   CabinetDifference(show::Desk& desk, const CabinetSide& a, const CabinetSide& b, const LoadProfile& load)
       : desk_(&desk), a_(&a), b_(&b), load_(&load) {
-    table_.columns = {{"axis"}, {"name"}, {"a", a.title}, {"b", b.title}};
+    table_.columns = {{"axis"}, {"object"}, {"name"}, {"a", a.title}, {"b", b.title}};
   }
 
   Result<Value> run() {
@@ -60,9 +60,10 @@ class CabinetDifference {
     return compare_with_backup(name);
   }
 
-  void add(const std::string& axis, const std::string& name, const std::string& a, const std::string& b) {
+  void add(const std::string& axis, const std::string& name, const std::string& a, const std::string& b,
+           const std::string& object = {}) {
     ++different_;
-    table_.rows.push_back({axis, name, a, b});
+    table_.rows.push_back({axis, report::text_or_null(object), report::text_or_null(name), a, b});
   }
 
   Result<void> compare_files(const std::string& name) {
@@ -156,8 +157,8 @@ class CabinetDifference {
       for (const auto& row : rows->rows) {
         // Object, name, and the two values as text: see settings::compare().
         const auto* label = std::get_if<std::string>(&row.at(4).data());
-        add(name, label != nullptr ? *label : std::get<std::string>(row.at(0).data()),
-            std::get<std::string>(row.at(5).data()), std::get<std::string>(row.at(7).data()));
+        add(name, label != nullptr ? *label : std::string(), std::get<std::string>(row.at(5).data()),
+            std::get<std::string>(row.at(7).data()), std::get<std::string>(row.at(0).data()));
       }
     }
   }

@@ -46,7 +46,7 @@ bool is_cut_off(const Cabinet& cabinet, const Axis& axis) {
 
 /// The axes of one session whose PDOs change, held against each other and those who share the bus: the one
 /// that is at fault is taken out, until the others fit.
-void check_bus(const show::Desk& line, const Station& of, std::vector<AxisLook*> changing) {
+void check_bus(const show::Desk& line, const Station& of, std::vector<PlannedAxis*> changing) {
   while (!changing.empty()) {
     std::vector<pdo::PdoNeighbour> nodes;
     for (const auto* look : changing)
@@ -55,7 +55,7 @@ void check_bus(const show::Desk& line, const Station& of, std::vector<AxisLook*>
     const auto fits = pdo::check_neighbours(desk, nodes);
     for (auto& notice : desk.notices) changing.front()->notices.push_back(std::move(notice));
     if (fits) return;
-    const auto at_fault = std::find_if(changing.begin(), changing.end(), [&](const AxisLook* look) {
+    const auto at_fault = std::find_if(changing.begin(), changing.end(), [&](const PlannedAxis* look) {
       return look->axis->node == fits.error().node;
     });
     auto* const look = at_fault != changing.end() ? *at_fault : changing.front();
@@ -64,8 +64,8 @@ void check_bus(const show::Desk& line, const Station& of, std::vector<AxisLook*>
   }
 }
 
-void check_buses(const show::Desk& desk, std::span<const Station> stations, std::vector<AxisLook>& looks) {
-  std::map<session::Session*, std::vector<AxisLook*>> changing;
+void check_buses(const show::Desk& desk, std::span<const Station> stations, std::vector<PlannedAxis>& looks) {
+  std::map<session::Session*, std::vector<PlannedAxis*>> changing;
   std::map<session::Session*, const Station*> first;
   for (std::size_t i = 0; i < looks.size(); ++i) {
     if (!looks[i].plan || looks[i].plan->pdos_after.empty()) continue;
@@ -92,7 +92,7 @@ Value needs_value(const AxisPlan& plan) {
 /// A table as JSON has it; an empty list where there is none.
 Value rows_or_none(const Value& table) { return table.is_null() ? Value(List()) : table; }
 
-Record json_of(const AxisLook& look) {
+Record json_of(const PlannedAxis& look) {
   Record out{{"axis", look.axis->name},
              {"bus", look.axis->bus},
              {"node", look.axis->node},
@@ -111,7 +111,7 @@ Record json_of(const AxisLook& look) {
 }
 
 /// Its differences, and below them what they ask for.
-void add_text(const AxisLook& look, Record& out) {
+void add_text(const PlannedAxis& look, Record& out) {
   const auto title = title_of(*look.axis);
   if (!look.plan) {
     out.push_back({look.axis->name, "not known; see the error", Show::text, title});
@@ -129,12 +129,12 @@ void add_text(const AxisLook& look, Record& out) {
                    fmt::format("{}: not in the file, and not as the factory left it", look.axis->name)});
 }
 
-std::size_t axes_to_do(std::span<const AxisLook> looks) {
+std::size_t axes_to_do(std::span<const PlannedAxis> looks) {
   return static_cast<std::size_t>(
       std::count_if(looks.begin(), looks.end(), [](const auto& look) { return look.to_do(); }));
 }
 
-std::size_t values_to_do(std::span<const AxisLook> looks) {
+std::size_t values_to_do(std::span<const PlannedAxis> looks) {
   std::size_t out = 0;
   for (const auto& look : looks)
     if (look.plan) out += look.plan->different;
@@ -151,9 +151,10 @@ std::filesystem::path wanted_file(const Cabinet& cabinet, const Axis& axis) {
   return fmt::format("{}.wanted-{}.json", cabinet.file.string(), axis.name);
 }
 
-std::vector<AxisLook> look_at_all(const show::Desk& desk, const Cabinet& cabinet,
-                                  std::span<const Station> stations, const PlanChoice& choice, bool resume) {
-  std::vector<AxisLook> out;
+std::vector<PlannedAxis> look_at_all(const show::Desk& desk, const Cabinet& cabinet,
+                                     std::span<const Station> stations, const PlanChoice& choice,
+                                     bool resume) {
+  std::vector<PlannedAxis> out;
   std::vector<Station> looked_at;
   for (const auto& station : stations) {
     if (resume && !is_cut_off(cabinet, *station.axis)) continue;
@@ -170,7 +171,7 @@ std::vector<AxisLook> look_at_all(const show::Desk& desk, const Cabinet& cabinet
   return out;
 }
 
-Record plan_record(const Cabinet& cabinet, std::span<const AxisLook> looks) {
+Record plan_record(const Cabinet& cabinet, std::span<const PlannedAxis> looks) {
   Record out{{"cabinet", cabinet.file.string(), Show::json}};
   List axes;
   for (const auto& look : looks) {
@@ -195,16 +196,16 @@ Error of_axis(const Axis& axis, Error error) {
   return error;
 }
 
-void tell_looks(show::Desk& desk, std::span<const AxisLook> looks) {
+void tell_looks(show::Desk& desk, std::span<const PlannedAxis> looks) {
   for (const auto& look : looks) {
     for (const auto& notice : look.notices) desk.notices.push_back(of_axis(*look.axis, notice));
     if (!look.plan) desk.errors.push_back(of_axis(*look.axis, look.plan.error()));
   }
 }
 
-bool any_to_do(std::span<const AxisLook> looks) { return axes_to_do(looks) > 0; }
+bool any_to_do(std::span<const PlannedAxis> looks) { return axes_to_do(looks) > 0; }
 
-Error something_to_do(const Cabinet& cabinet, std::span<const AxisLook> looks) {
+Error something_to_do(const Cabinet& cabinet, std::span<const PlannedAxis> looks) {
   const auto axes = axes_to_do(looks);
   return make_error(Errc::negative,
                     fmt::format("{} value{} of {} ax{} differ from {}", values_to_do(looks),

@@ -10,7 +10,7 @@
 namespace servoctl::cabinet {
 
 /// What came of the look at one axis.
-struct AxisLook {
+struct PlannedAxis {
   const Axis* axis = nullptr;
   Result<AxisPlan> plan;
   std::vector<std::string> notices;
@@ -21,24 +21,24 @@ struct AxisLook {
 /// PDOs that would come to share a CAN-ID are refused, for the axis that would get it. Of an axis at which an
 /// apply was cut off Errc::refused, unless `resume`: then only those are looked at, for what was to be
 /// written.
-std::vector<AxisLook> look_at_all(const show::Desk& desk, const Cabinet& cabinet,
-                                  std::span<const Station> stations, const PlanChoice& choice,
-                                  bool resume = false);
+std::vector<PlannedAxis> look_at_all(const show::Desk& desk, const Cabinet& cabinet,
+                                     std::span<const Station> stations, const PlanChoice& choice,
+                                     bool resume = false);
 
 /// What is to be done, axis by axis, as text and for JSON `{cabinet, axes[{axis node bus family differences
 /// unlisted needs error}], different}`.
-report::Record plan_record(const Cabinet& cabinet, std::span<const AxisLook> looks);
+report::Record plan_record(const Cabinet& cabinet, std::span<const PlannedAxis> looks);
 
 /// Errors and notices of all looks, with the names of their axes.
-void tell_looks(show::Desk& desk, std::span<const AxisLook> looks);
+void tell_looks(show::Desk& desk, std::span<const PlannedAxis> looks);
 
 /// The error, and the notice, with the name of the axis where its node is meant.
 Error of_axis(const Axis& axis, Error error);
 std::string of_axis(const Axis& axis, const std::string& notice);
 
-bool any_to_do(std::span<const AxisLook> looks);
+bool any_to_do(std::span<const PlannedAxis> looks);
 /// The exit code 1 of a plan by which there is something to do.
-Error something_to_do(const Cabinet& cabinet, std::span<const AxisLook> looks);
+Error something_to_do(const Cabinet& cabinet, std::span<const PlannedAxis> looks);
 
 /// Where the values of an axis from before an apply are kept, and what was to be written to it; both beside
 /// the cabinet file.

@@ -26,7 +26,7 @@ void expect_no_errors(const Fleet& fleet) {
   for (const auto& error : fleet.desk.errors) ADD_FAILURE() << error.message << "; " << error.hint;
 }
 
-session::Values wanted_of(const AxisLook& look) {
+session::Values wanted_of(const PlannedAxis& look) {
   session::Values out;
   for (const auto& entry : look.plan->wanted.entries) out.emplace(entry.object, *entry.bytes);
   return out;

@@ -52,7 +52,7 @@ class Saved {
     if (!answer) return out;
     const auto* table = std::get_if<report::Table>(&report::find(*answer, "differences")->data());
     for (const auto& row : table->rows)
-      out.push_back(std::get<std::string>(row[0].data()) + " " + std::get<std::string>(row[1].data()));
+      out.push_back(std::get<std::string>(row[0].data()) + " " + std::get<std::string>(row[2].data()));
     EXPECT_EQ(out.empty(), fleet.desk.errors.empty());
     return out;
   }

@@ -188,7 +188,7 @@ class Fleet {
     return std::next(lines_.begin(), static_cast<long>(bus))->bus->requests;
   }
 
-  std::vector<AxisLook> look(const PlanChoice& choice = {.unlisted = false}) {
+  std::vector<PlannedAxis> look(const PlanChoice& choice = {.unlisted = false}) {
     return look_at_all(desk, cabinet, stations(), choice);
   }
   /// Values that differ, of all axes; an error is a failure of the test.
