@@ -1,7 +1,7 @@
 # Completion of servoctl for bash; written by `servoctl completion bash`.
 _servoctl_scan() {
   local word skip=''
-  command='' drive=${SERVOCTL_DRIVE-} source='' options='--bus --node --drive --timeout --retries --json --output --lang --yes --force-family --read-only --dry-run --trace --help'
+  command='' drive=${SERVOCTL_DRIVE-} source='' options='--bus --node --drive --cabinet --timeout --retries --json --output --lang --yes --quiet --force-family --read-only --dry-run --trace --help'
   for word in "$@"; do
     if [ -n "$skip" ]; then
       case $skip in -d|--drive) drive=$word ;; esac
@@ -9,12 +9,12 @@ _servoctl_scan() {
       continue
     fi
     case $word in
-      --bus|-b|--node|-n|--drive|-d|--timeout|--retries|--output|-o|--lang|--trace|--type|--to|--transfer|--from|--format|--only|--turn|--for|--turns|--accel|--csv|--limit|--max-torque|--max-following-error|--window|--master-node|--speed|--search|--offset|--within|--nameplate|--guard|--life|--inhibit|--event|--cob-id|--sync-start|--count|--longest|--junit|--expect|--tolerance|--stop-within|--repeat|--spread|--encoder|--title|--tests|--period|--counter|--every|--svg|--service|--object|--bitrate|--var) skip=$word ;;
+      --bus|-b|--node|-n|--drive|-d|--cabinet|--timeout|--retries|--output|-o|--lang|--trace|--type|--to|--transfer|--from|--format|--only|--family|--name|--for|--axis|--turn|--turns|--accel|--csv|--limit|--max-torque|--max-following-error|--window|--master-node|--speed|--search|--offset|--within|--nameplate|--guard|--life|--inhibit|--event|--cob-id|--sync-start|--count|--longest|--junit|--expect|--tolerance|--stop-within|--repeat|--spread|--encoder|--title|--tests|--period|--counter|--every|--svg|--service|--object|--bitrate|--var) skip=$word ;;
       -*) ;;
       *)
         case $command in
           '') command=$word ;;
-          param|fault|units|nmt|state|pdo|test|sync|eds) command="$command $word" ;;
+          param|cabinet|fault|units|nmt|state|pdo|test|sync|eds) command="$command $word" ;;
         esac ;;
     esac
   done
@@ -23,6 +23,7 @@ _servoctl_scan() {
       -b|--bus) source='buses' ;;
       -n|--node) source='=all' ;;
       -d|--drive) source='families' ;;
+      --cabinet) source='files' ;;
       --timeout) source='none' ;;
       --retries) source='none' ;;
       -o|--output) source='=text json jsonl' ;;
@@ -34,8 +35,11 @@ _servoctl_scan() {
       --from) source='files' ;;
       --format) source='=json dcf csv batch' ;;
       --only) source='none' ;;
-      --turn) source='none' ;;
+      --family) source='none' ;;
+      --name) source='none' ;;
       --for) source='none' ;;
+      --axis) source='none' ;;
+      --turn) source='none' ;;
       --turns) source='none' ;;
       --accel) source='none' ;;
       --csv) source='files' ;;
@@ -78,8 +82,9 @@ _servoctl_scan() {
     return
   fi
   case $command in
-    '') source='=scan info status read write objects param backup diff verify restore clone store defaults fault enable disable quick-stop mode jog move home torque units nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion' ;;
+    '') source='=scan info status read write objects param backup cabinet diff verify restore clone store defaults fault enable disable quick-stop mode jog move home torque units nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion' ;;
     param) source='=list get set search explain' ;;
+    cabinet) source='=init check show plan apply backup diff' ;;
     fault) source='=show list reset clear-history' ;;
     units) source='=show learn forget' ;;
     nmt) source='=start stop preop reset reset-comm watch' ;;
@@ -97,6 +102,10 @@ _servoctl_scan() {
     'param search') source='none' ;;
     'param explain') source='parameters' ;;
     'backup') source='files' ;;
+    'cabinet init') source='files' ;;
+    'cabinet check') source='files' ;;
+    'cabinet show') source='none' ;;
+    'cabinet diff') source='files' ;;
     'diff') source='files' ;;
     'verify') source='files' ;;
     'restore') source='files' ;;
@@ -129,14 +138,21 @@ _servoctl_scan() {
     'eds check') source='files' ;;
     'run') source='files' ;;
     'sim') source='none' ;;
-    'help') source='=scan info status read write objects param backup diff verify restore clone store defaults fault enable disable quick-stop mode jog move home torque units nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion' ;;
+    'help') source='=scan info status read write objects param backup cabinet diff verify restore clone store defaults fault enable disable quick-stop mode jog move home torque units nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion' ;;
     'completion') source='=bash zsh fish objects parameters families' ;;
   esac
   case $command in
+    'scan') options+=' --long' ;;
+    'status') options+=' --long' ;;
     'read') options+=' --type --to --transfer' ;;
     'write') options+=' --type --from --transfer --keep --unlock' ;;
     'param set') options+=' --keep --unlock' ;;
     'backup') options+=' --format --only' ;;
+    'cabinet init') options+=' --family --name' ;;
+    'cabinet show') options+=' --watch --for' ;;
+    'cabinet plan') options+=' --axis --only --no-unlisted' ;;
+    'cabinet apply') options+=' --axis --only --no-keep --unlock --all-or-nothing --resume' ;;
+    'cabinet backup') options+=' --axis' ;;
     'diff') options+=' --batch --skip-invalid' ;;
     'verify') options+=' --skip-invalid' ;;
     'restore') options+=' --only --with-address --no-rollback --force --skip-invalid --keep --unlock --resume' ;;
@@ -174,7 +190,7 @@ _servoctl_scan() {
     'sync start') options+=' --period --counter --for' ;;
     'watch') options+=' --every --for --changes --plot' ;;
     'scope') options+=' --for --map --every --csv --svg --plot' ;;
-    'monitor') options+=' --for --service --object --ask --bitrate --raw' ;;
+    'monitor') options+=' --for --service --object --ask --bitrate --table --raw' ;;
     'decode') options+=' --raw --service --object' ;;
     'replay') options+=' --speed --only --master' ;;
     'run') options+=' --var --frames --check' ;;

@@ -16,7 +16,7 @@ function __servoctl_path # the words that are neither options nor their values
     for word in (commandline -opc)[2..]
         if test $skip = 1
             set skip 0
-        else if contains -- $word --bus -b --node -n --drive -d --timeout --retries --output -o --lang --trace --type --to --transfer --from --format --only --turn --for --turns --accel --csv --limit --max-torque --max-following-error --window --master-node --speed --search --offset --within --nameplate --guard --life --inhibit --event --cob-id --sync-start --count --longest --junit --expect --tolerance --stop-within --repeat --spread --encoder --title --tests --period --counter --every --svg --service --object --bitrate --var
+        else if contains -- $word --bus -b --node -n --drive -d --cabinet --timeout --retries --output -o --lang --trace --type --to --transfer --from --format --only --family --name --for --axis --turn --turns --accel --csv --limit --max-torque --max-following-error --window --master-node --speed --search --offset --within --nameplate --guard --life --inhibit --event --cob-id --sync-start --count --longest --junit --expect --tolerance --stop-within --repeat --spread --encoder --title --tests --period --counter --every --svg --service --object --bitrate --var
             set skip 1
         else if not string match -q -- '-*' $word
             set path $path $word
@@ -62,22 +62,26 @@ end
 
 complete -c servoctl -f
 complete -c servoctl -l bus -s b -x -a '(__servoctl_buses)' -d 'bus: can0, local:NAME, sim:gsd600@1 (default $SERVOCTL_BUS)'
-complete -c servoctl -l node -s n -x -a 'all' -d 'node-ID, a list 1,3,5-8 or all (default $SERVOCTL_NODE)'
+complete -c servoctl -l node -s n -x -a 'all' -d 'node-ID, a list 1,3,5-8, axes by name, or all (default $SERVOCTL_NODE)'
 complete -c servoctl -l drive -s d -x -a '(servoctl completion families 2>/dev/null; __servoctl_sheets)' -d 'drive family, an .eds, .dcf or .xml file, or online: the drive itself (default $SERVOCTL_DRIVE)'
+complete -c servoctl -l cabinet -r -F -d 'cabinet file: axes by name (default $SERVOCTL_CABINET, or cabinet.toml here or above)'
 complete -c servoctl -l timeout -x -d 'longest wait for one answer (default 500ms)'
 complete -c servoctl -l retries -x -d 'retries of an unanswered read (default 1); a write is never repeated'
 complete -c servoctl -l json -d 'one JSON document instead of text'
 complete -c servoctl -l output -s o -x -a 'text json jsonl' -d 'text, json, or jsonl for one document per sample'
 complete -c servoctl -l lang -x -a 'en zh' -d 'language of names: en or zh (default $SERVOCTL_LANG)'
 complete -c servoctl -l yes -s y -d 'answer yes to every question'
+complete -c servoctl -l quiet -s q -d 'no notices and no progress on stderr; errors stay'
 complete -c servoctl -l force-family -d 'continue although the drive'\''s identity contradicts -d; --yes does not imply it'
 complete -c servoctl -l read-only -d 'refuse everything that changes a drive'
 complete -c servoctl -l dry-run -d 'show the frames, send nothing that changes a drive'
 complete -c servoctl -l trace -r -F -d 'write every frame to a file (candump -L format)'
 complete -c servoctl -l help -s h -d 'show the help of the command'
-complete -c servoctl -n __servoctl_at -a scan -d 'Find the nodes on the bus and what they are'
+complete -c servoctl -n __servoctl_at -a scan -d 'Find the nodes on the bus: what they are, and how'
+complete -c servoctl -n '__servoctl_in scan' -l long -d 'on CAN: the identity in numbers, instead of the state'
 complete -c servoctl -n __servoctl_at -a info -d 'Show the identity of a node'
-complete -c servoctl -n __servoctl_at -a status -d 'Show the state of a drive: NMT or AL, CiA 402, mode, fault'
+complete -c servoctl -n __servoctl_at -a status -d 'Show the state of drives, one line each: NMT or AL, CiA 402, mode, fault'
+complete -c servoctl -n '__servoctl_in status' -l long -d 'every bit of the statusword, and more, in several lines a node'
 complete -c servoctl -n __servoctl_at -a read -d 'Read objects of a node'
 complete -c servoctl -n '__servoctl_in read' -x -a '(__servoctl_names objects)'
 complete -c servoctl -n '__servoctl_in read' -l type -x -a 'bool i8 i16 i24 i32 i64 u8 u16 u24 u32 u64 f32 f64 string bytes domain' -d 'data type, if the dictionary does not have it'
@@ -105,6 +109,31 @@ complete -c servoctl -n __servoctl_at -a backup -d 'Save the settings of a drive
 complete -c servoctl -n '__servoctl_in backup' -r -F
 complete -c servoctl -n '__servoctl_in backup' -l format -x -a 'json dcf csv batch' -d 'json, dcf, csv or batch (default: by the file'\''s extension, else json)'
 complete -c servoctl -n '__servoctl_in backup' -l only -x -d 'communication, pdo, params, changed (not at factory value), or a group of parameters'
+complete -c servoctl -n '__servoctl_at cabinet' -a init -d 'Make a cabinet file from what is on the bus'
+complete -c servoctl -n '__servoctl_in cabinet init' -r -F
+complete -c servoctl -n '__servoctl_in cabinet init' -l family -x -d 'families of nodes: 1=gsd600,2-4=da200; without it they are guessed'
+complete -c servoctl -n '__servoctl_in cabinet init' -l name -x -d 'name of the bus in the file (default main)'
+complete -c servoctl -n '__servoctl_at cabinet' -a check -d 'Check a cabinet file without a bus'
+complete -c servoctl -n '__servoctl_in cabinet check' -r -F
+complete -c servoctl -n '__servoctl_at cabinet' -a show -d 'Show every axis of the cabinet, one line each'
+complete -c servoctl -n '__servoctl_in cabinet show' -l watch -d 'look again and again, until q or Ctrl-C'
+complete -c servoctl -n '__servoctl_in cabinet show' -l for -x -d 'how long (default: until Ctrl-C)'
+complete -c servoctl -n '__servoctl_at cabinet' -a plan -d 'Show what differs between the cabinet file and the drives'
+complete -c servoctl -n '__servoctl_in cabinet plan' -l axis -x -d 'these axes or groups only: feeder,lift (default: all)'
+complete -c servoctl -n '__servoctl_in cabinet plan' -l only -x -d 'communication, pdo, params, or a group of parameters'
+complete -c servoctl -n '__servoctl_in cabinet plan' -l no-unlisted -d 'do not read what is not in the file'
+complete -c servoctl -n '__servoctl_at cabinet' -a apply -d 'Make the drives hold what the cabinet file says'
+complete -c servoctl -n '__servoctl_in cabinet apply' -l axis -x -d 'these axes or groups only: feeder,lift (default: all)'
+complete -c servoctl -n '__servoctl_in cabinet apply' -l only -x -d 'communication, pdo, params, or a group of parameters'
+complete -c servoctl -n '__servoctl_in cabinet apply' -l no-keep -d 'write working values only; lost at power-off'
+complete -c servoctl -n '__servoctl_in cabinet apply' -l unlock -d 'unlock by the family'\''s password, lock again after'
+complete -c servoctl -n '__servoctl_in cabinet apply' -l all-or-nothing -d 'if one axis fails, put all back'
+complete -c servoctl -n '__servoctl_in cabinet apply' -l resume -d 'resume the axes whose apply was interrupted'
+complete -c servoctl -n '__servoctl_at cabinet' -a backup -d 'Save the settings of all axes to a dated folder'
+complete -c servoctl -n '__servoctl_in cabinet backup' -l axis -x -d 'these axes or groups only: feeder,lift (default: all)'
+complete -c servoctl -n '__servoctl_at cabinet' -a diff -d 'Compare two cabinet files, or backups of all axes'
+complete -c servoctl -n '__servoctl_in cabinet diff' -r -F
+complete -c servoctl -n '__servoctl_in cabinet diff' -r -F
 complete -c servoctl -n __servoctl_at -a diff -d 'Compare backups, drives, factory values and data sheets'
 complete -c servoctl -n '__servoctl_in diff' -r -F
 complete -c servoctl -n '__servoctl_in diff' -r -F
@@ -341,6 +370,7 @@ complete -c servoctl -n '__servoctl_in monitor' -l service -x -a 'nmt sync time 
 complete -c servoctl -n '__servoctl_in monitor' -l object -x -a '(__servoctl_names objects)' -d 'only frames that carry or address this object'
 complete -c servoctl -n '__servoctl_in monitor' -l ask -d 'first read the PDO mapping of the nodes given by -n'
 complete -c servoctl -n '__servoctl_in monitor' -l bitrate -x -d 'bitrate for the bus load, if the interface does not give it: 500k'
+complete -c servoctl -n '__servoctl_in monitor' -l table -d 'on a terminal: one row per CAN-ID, updated in place'
 complete -c servoctl -n '__servoctl_in monitor' -l raw -d 'show the frames as well'
 complete -c servoctl -n __servoctl_at -a decode -d 'Decode a recording: PDO and SDO with names and values, NMT, EMCY'
 complete -c servoctl -n '__servoctl_in decode' -r -F
@@ -363,10 +393,11 @@ complete -c servoctl -n '__servoctl_in run' -l frames -d 'with --dry-run: the fr
 complete -c servoctl -n '__servoctl_in run' -l check -d 'check all lines without a bus, run none'
 complete -c servoctl -n __servoctl_at -a sim -d 'Put simulated drives on a bus until Ctrl-C'
 complete -c servoctl -n __servoctl_at -a help -d 'Show the commands, or how one is used'
-complete -c servoctl -n '__servoctl_in help' -x -a 'scan info status read write objects param backup diff verify restore clone store defaults fault enable disable quick-stop mode jog move home torque units nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion'
+complete -c servoctl -n '__servoctl_in help' -x -a 'scan info status read write objects param backup cabinet diff verify restore clone store defaults fault enable disable quick-stop mode jog move home torque units nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion'
 complete -c servoctl -n __servoctl_at -a completion -d 'Print the completion script of a shell'
 complete -c servoctl -n '__servoctl_in completion' -x -a 'bash zsh fish objects parameters families'
 complete -c servoctl -n __servoctl_at -a param
+complete -c servoctl -n __servoctl_at -a cabinet
 complete -c servoctl -n __servoctl_at -a fault
 complete -c servoctl -n __servoctl_at -a units
 complete -c servoctl -n __servoctl_at -a nmt

@@ -128,11 +128,8 @@ class Wanted {
           make_error(Errc::file, fmt::format("a {} produces no heartbeat (1017h)", profile.family),
                      "leave `heartbeat` out"));
     const auto milliseconds = std::chrono::duration_cast<std::chrono::milliseconds>(*axis_->heartbeat);
-    const auto target = drive::target_at(desk_->profile, objects::kProducerHeartbeat);
-    const auto change = settings::make_change(*desk_, axis_->node, target,
-                                              fmt::format("{}", milliseconds.count()), std::nullopt);
-    if (!change) return at_place(*cabinet_, *axis_, axis_->heartbeat_at, change.error());
-    return add_all({{objects::kProducerHeartbeat, change->data}}, axis_->heartbeat_at);
+    return add_parameter({to_string(objects::kProducerHeartbeat), fmt::format("{}", milliseconds.count()),
+                          axis_->heartbeat_at});
   }
 
   Result<void> add_all(session::Values values, Place place) {

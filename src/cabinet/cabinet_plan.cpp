@@ -141,6 +141,13 @@ std::size_t values_to_do(std::span<const PlannedAxis> looks) {
   return out;
 }
 
+std::string to_do_text(std::span<const PlannedAxis> looks) {
+  const auto axes = axes_to_do(looks);
+  const auto values = values_to_do(looks);
+  if (axes == 0) return "nothing";
+  return fmt::format("{} value{} of {} ax{}", values, values == 1 ? "" : "s", axes, axes == 1 ? "is" : "es");
+}
+
 }  // namespace
 
 std::filesystem::path before_file(const Cabinet& cabinet, const Axis& axis) {
@@ -172,7 +179,7 @@ std::vector<PlannedAxis> look_at_all(const show::Desk& desk, const Cabinet& cabi
 }
 
 Record plan_record(const Cabinet& cabinet, std::span<const PlannedAxis> looks) {
-  Record out{{"cabinet", cabinet.file.string(), Show::json}};
+  Record out{{"cabinet", cabinet.file.string(), Show::json}, {"to do", to_do_text(looks), Show::text}};
   List axes;
   for (const auto& look : looks) {
     add_text(look, out);
@@ -206,11 +213,8 @@ void tell_looks(show::Desk& desk, std::span<const PlannedAxis> looks) {
 bool any_to_do(std::span<const PlannedAxis> looks) { return axes_to_do(looks) > 0; }
 
 Error something_to_do(const Cabinet& cabinet, std::span<const PlannedAxis> looks) {
-  const auto axes = axes_to_do(looks);
   return make_error(Errc::negative,
-                    fmt::format("{} value{} of {} ax{} differ from {}", values_to_do(looks),
-                                values_to_do(looks) == 1 ? "" : "s", axes, axes == 1 ? "is" : "es",
-                                cabinet.file.filename().string()),
+                    fmt::format("{} differ from {}", to_do_text(looks), cabinet.file.filename().string()),
                     "`cabinet apply` writes them");
 }
 

@@ -129,7 +129,7 @@ TEST(CabinetDiff, HoldsAFileAgainstABackup) {
     const char* const families[] = {"da200", "dm", "gsd600", "sv2", "ts"};
     for (int i = 1; i <= 5; ++i)
       text += fmt::format("[axis.axis{}]\nnode = {}\nfamily = \"{}\"\n", i, i, families[i - 1]);
-    text += fmt::format("pdos = \"pp\"\n[axis.axis5.parameters]\nFn_33 = {}\n", value);
+    text += fmt::format("pdos = \"pp\"\nheartbeat = \"500ms\"\n[axis.axis5.parameters]\nFn_33 = {}\n", value);
     ASSERT_TRUE(write_file_atomically(file, text));
   };
   write("120");

@@ -93,6 +93,10 @@ const std::map<std::string, std::string> kSamples{
     {"replay", "replay DIR/recording.log --speed 100 -n 1 -y"},
     {"drives", "drives"},
     {"cabinet check", "cabinet check tests/cli/data/cabinet.toml"},
+    {"cabinet plan", "cabinet plan --cabinet DIR/cabinet.toml"},
+    {"cabinet apply", "cabinet apply --cabinet DIR/cabinet.toml -y"},
+    {"cabinet backup", "cabinet backup --cabinet DIR/cabinet.toml"},
+    {"cabinet diff", "cabinet diff DIR/cabinet.toml DIR/cabinet.toml"},
     {"eds check", "eds check EDS"},
     {"run", "run DIR/lines.servoctl"},
     {"sim", "sim FAMILY@3"},
@@ -130,6 +134,9 @@ class Harmless : public testing::TestWithParam<std::string> {
                                              "(0000000001.004000) can0 080#\n";
     std::ofstream(dir_ / "pdos.toml") << "[TPDO1]\nmap = [\"0x6041\"]\n";
     std::ofstream(dir_ / "lines.servoctl") << "read 0x6041 -n 1\nwrite 0x6040 15 -n 1 -y\n";
+    std::ofstream(dir_ / "cabinet.toml")
+        << "[bus.main]\nurl = \"sim:" << GetParam() << "@1," << GetParam() << "@2\"\n[axis.\"a{1-2}\"]\n"
+        << "node = \"1-2\"\nfamily = \"" << GetParam() << "\"\nparameters = { \"0x6083\" = 1234 }\n";
     EXPECT_EQ(perform("backup DIR/backup.json -n 1", {}), 0) << console.err_text;
   }
   ~Harmless() override { fs::remove_all(dir_); }
