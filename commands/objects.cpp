@@ -61,6 +61,16 @@ std::string denotation_of(std::span<const od::EntryNote> notes, ObjectAddress ad
   return found == notes.end() ? std::string() : found->denotation;
 }
 
+const std::vector<od::EnumLabel>& labels_of(const drive::Meaning& meaning) {
+  static const std::vector<od::EnumLabel> kNone;
+  return meaning.labels != nullptr ? *meaning.labels : kNone;
+}
+
+void add_marks(const od::Doubts& doubts, report::List& row) {
+  row.insert(row.end(), {doubts.sign(), !doubts.assumed.empty(), show::marks_record(doubts.assumed),
+                         !doubts.contradicted.empty(), show::marks_record(doubts.contradicted)});
+}
+
 report::List row(const Context& context, const od::Object& object, const od::Entry& entry,
                  std::span<const od::EntryNote> notes) {
   // A panel parameter has its Chinese name, unit and labels in the parameter table.
@@ -69,43 +79,38 @@ report::List row(const Context& context, const od::Object& object, const od::Ent
   const auto* parameter = target.parameter;
   const auto name_zh = parameter != nullptr ? parameter->name_zh : entry.name_zh;
   const auto shown = context.chinese && !name_zh.empty() ? name_zh : entry.name;
-  static const std::vector<od::EnumLabel> kNone;
-  const auto& labels = meaning.labels != nullptr ? *meaning.labels : kNone;
   const auto unit = meaning.scale == 1 ? std::string(meaning.unit)
                                        : fmt::format("{} {}", plain_number(meaning.scale, 6), meaning.unit);
   const auto& doubts = parameter != nullptr ? parameter->doubts : entry.doubts;
   const auto& note_zh = parameter != nullptr ? parameter->note_zh : entry.note_zh;
   const auto encoding = od::name(meaning.encoding);
-  return {to_string(entry.address),
-          shown,
-          od::name(entry.type),
-          od::name(entry.access),
-          od::name(entry.pdo),
-          unit,
-          shown_default(meaning, entry),
-          default_of(entry.default_value),
-          default_of(entry.configured),
-          report::text_or_null(denotation_of(notes, entry.address)),
-          entry.address.index,
-          entry.address.sub,
-          entry.name,
-          report::text_or_null(name_zh),
-          drive::entry_name(object, entry),
-          report::text_or_null(std::string(meaning.unit)),
-          meaning.scale,
-          default_of(entry.low),
-          default_of(entry.high),
-          report::text_or_null(std::string(od::name(meaning.effect))),
-          show::labels_record(labels, false),
-          report::text_or_null(parameter != nullptr ? parameter->note : entry.note),
-          parameter != nullptr ? Value(parameter->id) : Value(),
-          report::text_or_null(std::string(encoding)),
-          report::text_or_null(note_zh),
-          doubts.sign(),
-          !doubts.assumed.empty(),
-          show::marks_record(doubts.assumed),
-          !doubts.contradicted.empty(),
-          show::marks_record(doubts.contradicted)};
+  report::List out{to_string(entry.address),
+                   shown,
+                   od::name(entry.type),
+                   od::name(entry.access),
+                   od::name(entry.pdo),
+                   unit,
+                   shown_default(meaning, entry),
+                   default_of(entry.default_value),
+                   default_of(entry.configured),
+                   report::text_or_null(denotation_of(notes, entry.address)),
+                   entry.address.index,
+                   entry.address.sub,
+                   entry.name,
+                   report::text_or_null(name_zh),
+                   drive::entry_name(object, entry),
+                   report::text_or_null(std::string(meaning.unit)),
+                   meaning.scale,
+                   default_of(entry.low),
+                   default_of(entry.high),
+                   report::text_or_null(std::string(od::name(meaning.effect))),
+                   show::labels_record(labels_of(meaning), false),
+                   report::text_or_null(parameter != nullptr ? parameter->note : entry.note),
+                   parameter != nullptr ? Value(parameter->id) : Value(),
+                   report::text_or_null(std::string(encoding)),
+                   report::text_or_null(note_zh)};
+  add_marks(doubts, out);
+  return out;
 }
 
 /// What the values of an object stand for: a line each.

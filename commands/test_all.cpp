@@ -46,9 +46,7 @@ class AllTests {
     if (!home) return fail(home.error());
     const auto inputs = trial::parse_inputs(*context_, arguments_->text("--expect"));
     if (!inputs) return fail(inputs.error());
-    if (arguments_->has("--junit") && !context_->dry_run)
-      if (const auto possible = check_writable(std::string(arguments_->text("--junit"))); !possible)
-        return fail(possible.error());
+    if (const auto possible = check_junit(); !possible) return fail(possible.error());
     if (const auto done = add(trial::test_communication(*context_, node, {})); !done)
       return fail(done.error());
     // A motor is not moved by way of a bus that has just failed.
@@ -78,6 +76,11 @@ class AllTests {
   }
 
  private:
+  Result<void> check_junit() const {
+    if (!arguments_->has("--junit") || context_->dry_run) return {};
+    return check_writable(std::string(arguments_->text("--junit")));
+  }
+
   Result<void> add(Result<TestResult> result) {
     if (!result) return fail(result.error());
     results_.push_back(std::move(*result));

@@ -45,6 +45,16 @@ void learn_family(session::Session& session, std::span<const std::uint8_t> nodes
     if (ring != nullptr) ring->learn(node, profile.rules.coe);
 }
 
+/// Whatever is told of a line speaks of axes by their names.
+void name_axes_in(const show::AxisNames& names, command::Context& context, Value& result) {
+  for (auto& error : context.errors) {
+    error.message = names.in(error.message);
+    error.hint = names.in(error.hint);
+  }
+  for (auto& notice : context.notices) notice = names.in(notice);
+  names.put_into(result);
+}
+
 }  // namespace
 
 Shell::Shell(Console& console, Options options)
@@ -212,14 +222,8 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
   // A lost interface does not come back by itself: the next line opens it again.
   if (!errors.empty() && errors.front().code == Errc::bus) lose_bus();
   auto words = errors.empty() ? std::string() : show::abort_words(run.context, errors.front());
-  const auto& names = run.settings.names;
-  for (auto& error : errors) {
-    error.message = names.in(error.message);
-    error.hint = names.in(error.hint);
-  }
-  for (auto& notice : run.context.notices) notice = names.in(notice);
   auto value = result ? *result : Value();
-  names.put_into(value);
+  name_axes_in(run.settings.names, run.context, value);
   return {.command = std::string(run.command->path),
           .settings = run.settings,
           .uses_bus = includes(run.command->needs, Needs::bus) || run.context.session != nullptr,

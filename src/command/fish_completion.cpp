@@ -9,6 +9,21 @@
 
 namespace servoctl::command {
 
+namespace {
+
+/// What follows the option or stands for the argument.
+std::string fish_arguments(const Parameter& p) {
+  const auto source = source_of(p);
+  if (source.front() == '=') return " -x -a " + shell_quoted(source.substr(1));
+  if (source == "files") return " -r -F";
+  if (source == "families") return " -x -a '(servoctl completion families 2>/dev/null; __servoctl_sheets)'";
+  if (source == "buses") return " -x -a '(__servoctl_buses)'";
+  if (source == "objects" || source == "parameters") return " -x -a '(__servoctl_names " + source + ")'";
+  return " -x";
+}
+
+}  // namespace
+
 /// fish asks bash's questions with its own words.
 std::string fish_completion() {
   std::string out = "# Completion of servoctl for fish; written by `servoctl completion fish`.\n";
@@ -75,19 +90,10 @@ end
 
 complete -c servoctl -f
 )sh";
-  const auto arguments = [](const Parameter& p) -> std::string {
-    const auto source = source_of(p);
-    if (source.front() == '=') return " -x -a " + shell_quoted(source.substr(1));
-    if (source == "files") return " -r -F";
-    if (source == "families") return " -x -a '(servoctl completion families 2>/dev/null; __servoctl_sheets)'";
-    if (source == "buses") return " -x -a '(__servoctl_buses)'";
-    if (source == "objects" || source == "parameters") return " -x -a '(__servoctl_names " + source + ")'";
-    return " -x";
-  };
   const auto option = [&](const Parameter& p, const std::string& condition) {
     out += "complete -c servoctl" + condition + " -l " + std::string(p.name.substr(2));
     if (!p.short_name.empty()) out += " -s " + std::string(p.short_name.substr(1));
-    if (p.kind != Kind::flag) out += arguments(p);
+    if (p.kind != Kind::flag) out += fish_arguments(p);
     out += " -d " + shell_quoted(p.help) + "\n";
   };
   for (const auto& p : global_options()) option(p, "");
@@ -104,7 +110,7 @@ complete -c servoctl -f
       if (p.name.starts_with("-"))
         option(p, condition);
       else if (source_of(p) != "none")
-        out += "complete -c servoctl" + condition + arguments(p) + "\n";
+        out += "complete -c servoctl" + condition + fish_arguments(p) + "\n";
     }
   }
   const auto first_all = first_words();

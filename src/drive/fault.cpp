@@ -19,6 +19,12 @@ tl::unexpected<Error> bad_cell(std::string_view file, std::uint32_t line, std::s
   return fail(file_error(file, line, fmt::format("column {}: '{}' is not {}", column, cell, expected)));
 }
 
+std::optional<std::uint16_t> parse_code(std::string_view text) {
+  const auto code = parse_integer(text);
+  if (!code || code->negative || code->magnitude > 0xFFFF) return std::nullopt;
+  return static_cast<std::uint16_t>(code->magnitude);
+}
+
 std::optional<Fault::Kind> parse_kind(std::string_view text) {
   for (const auto kind : {Fault::Kind::fault, Fault::Kind::warning, Fault::Kind::status})
     if (name(kind) == text) return kind;
@@ -36,6 +42,46 @@ std::string_view name(Fault::Kind kind) {
   return "fault";
 }
 
+namespace {
+
+Result<Fault> parse_fault(const CsvTable& table, const CsvTable::Row& row, std::string_view file) {
+  const auto cell = [&](std::string_view column) -> std::string {
+    const auto at = table.column(column);
+    return at < row.cells.size() ? row.cells[at] : std::string();
+  };
+  Fault fault;
+  if (const auto text = cell("code"); !text.empty()) {
+    fault.code = parse_code(text);
+    if (!fault.code) return bad_cell(file, row.line, "code", text, "a code of 16 bits");
+  }
+  const auto kind = parse_kind(cell("kind"));
+  if (!kind) return bad_cell(file, row.line, "kind", cell("kind"), "fault, warning or status");
+  fault.kind = *kind;
+  if (const auto text = cell("resettable"); !text.empty()) {
+    if (text != "yes" && text != "no")
+      return bad_cell(file, row.line, "resettable", text, "yes, no or empty");
+    fault.resettable = text == "yes";
+  }
+  const auto manual_line = parse_integer(cell("line"));
+  if (!manual_line) return bad_cell(file, row.line, "line", cell("line"), "a line number");
+  fault.line = static_cast<std::uint32_t>(manual_line->magnitude);
+  for (const auto& [column, text] :
+       {std::pair("extra", &fault.extra), std::pair("panel", &fault.panel), std::pair("name", &fault.name),
+        std::pair("name_zh", &fault.name_zh), std::pair("check", &fault.check),
+        std::pair("check_zh", &fault.check_zh)})
+    *text = cell(column);
+  for (const auto& [column, marks] :
+       {std::pair("assumed", &fault.doubts.assumed), std::pair("contradicted", &fault.doubts.contradicted)}) {
+    auto parsed = od::parse_marks(cell(column));
+    if (!parsed) return bad_cell(file, row.line, column, cell(column), "a list such as code 1136;extra");
+    *marks = std::move(*parsed);
+  }
+  if (fault.name.empty()) return bad_cell(file, row.line, "name", "", "a name");
+  return fault;
+}
+
+}  // namespace
+
 Result<std::vector<Fault>> parse_faults(std::string_view csv, std::string_view file) {
   const auto table = parse_csv(csv, file);
   if (!table) return fail(table.error());
@@ -44,42 +90,9 @@ Result<std::vector<Fault>> parse_faults(std::string_view csv, std::string_view f
       return bad_cell(file, 1, column, column, "a column of a faults table (docs/drive-data.md)");
   std::vector<Fault> faults;
   for (const auto& row : table->rows) {
-    const auto cell = [&](std::string_view column) -> std::string {
-      const auto at = table->column(column);
-      return at < row.cells.size() ? row.cells[at] : std::string();
-    };
-    Fault fault;
-    if (const auto text = cell("code"); !text.empty()) {
-      const auto code = parse_integer(text);
-      if (!code || code->negative || code->magnitude > 0xFFFF)
-        return bad_cell(file, row.line, "code", text, "a code of 16 bits");
-      fault.code = static_cast<std::uint16_t>(code->magnitude);
-    }
-    const auto kind = parse_kind(cell("kind"));
-    if (!kind) return bad_cell(file, row.line, "kind", cell("kind"), "fault, warning or status");
-    fault.kind = *kind;
-    if (const auto text = cell("resettable"); !text.empty()) {
-      if (text != "yes" && text != "no")
-        return bad_cell(file, row.line, "resettable", text, "yes, no or empty");
-      fault.resettable = text == "yes";
-    }
-    const auto manual_line = parse_integer(cell("line"));
-    if (!manual_line) return bad_cell(file, row.line, "line", cell("line"), "a line number");
-    fault.line = static_cast<std::uint32_t>(manual_line->magnitude);
-    fault.extra = cell("extra");
-    fault.panel = cell("panel");
-    fault.name = cell("name");
-    fault.name_zh = cell("name_zh");
-    fault.check = cell("check");
-    fault.check_zh = cell("check_zh");
-    for (const auto& [column, marks] : {std::pair("assumed", &fault.doubts.assumed),
-                                        std::pair("contradicted", &fault.doubts.contradicted)}) {
-      auto parsed = od::parse_marks(cell(column));
-      if (!parsed) return bad_cell(file, row.line, column, cell(column), "a list such as code 1136;extra");
-      *marks = std::move(*parsed);
-    }
-    if (fault.name.empty()) return bad_cell(file, row.line, "name", "", "a name");
-    faults.push_back(std::move(fault));
+    auto fault = parse_fault(*table, row, file);
+    if (!fault) return fail(fault.error());
+    faults.push_back(std::move(*fault));
   }
   return faults;
 }

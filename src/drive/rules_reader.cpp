@@ -193,18 +193,19 @@ Result<void> read_quick_stop(const TableReader& reader, Rules& rules) {
   return reader.read({{"stays_enabled", into(rules.quick_stop_stays_enabled)}});
 }
 
+bool read_homing_like(const toml::node& node, MotionRules& out) {
+  const auto* table = node.as_table();
+  if (table == nullptr) return false;
+  for (const auto& [key, value] : *table) {
+    const auto number = parse_integer(std::string_view(key.str()));
+    const auto method = number ? number->as_signed() : std::nullopt;
+    if (!method || !drive::get(value, out.homing_like[*method])) return false;
+  }
+  return true;
+}
+
 Result<void> read_motion(const TableReader& reader, Rules& rules) {
   auto& out = rules.motion;
-  const auto homing_like = [&](const toml::node& node) {
-    const auto* table = node.as_table();
-    if (table == nullptr) return false;
-    for (const auto& [key, value] : *table) {
-      const auto number = parse_integer(std::string_view(key.str()));
-      const auto method = number ? number->as_signed() : std::nullopt;
-      if (!method || !drive::get(value, out.homing_like[*method])) return false;
-    }
-    return true;
-  };
   return reader.read(
       {{"position", into(out.position)},
        {"velocity", into(out.velocity)},
@@ -230,7 +231,7 @@ Result<void> read_motion(const TableReader& reader, Rules& rules) {
         }},
        {"inputs", [&](const auto& n) { return into(out.inputs)(n) && out.inputs.size() == 3; }},
        {"no_homing", into(out.no_homing)},
-       {"homing_like", homing_like},
+       {"homing_like", [&](const toml::node& n) { return read_homing_like(n, out); }},
        {"software_limits", condition_into(out.software_limits)},
        {"software_limits_homed", into(out.software_limits_homed)},
        {"speed_limit", into(out.speed_limit)},

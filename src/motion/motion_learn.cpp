@@ -223,12 +223,8 @@ Result<void> check_units(const Motion& motion, const Learn& learn) {
   return {};
 }
 
-}  // namespace
-
-Result<MotionPlan> plan_learn(Motion& motion, const Learn& learn) {
-  const auto mode = motion.rules().velocity;
-  if (!mode) return fail(motion.error(Errc::refused, "this family has no velocity mode"));
-  if (const auto counted = check_units(motion, learn); !counted) return fail(counted.error());
+/// It can be read, and shows that the motor stands still.
+Result<void> check_monitor(Motion& motion, const Learn& learn) {
   if (const auto shown = motion.session().upload(motion.node(), learn.monitor); !shown) {
     if (shown.error().code != Errc::sdo_abort) return fail(shown.error());
     return fail(motion.error(Errc::refused,
@@ -242,6 +238,16 @@ Result<MotionPlan> plan_learn(Motion& motion, const Learn& learn) {
         fmt::format("is not energised, but {} shows {} rpm", learn.monitor_name, number_text(rpm->value)),
         "wait until the motor stands still; a wrong monitor cannot be used to measure"));
   }
+  return {};
+}
+
+}  // namespace
+
+Result<MotionPlan> plan_learn(Motion& motion, const Learn& learn) {
+  const auto mode = motion.rules().velocity;
+  if (!mode) return fail(motion.error(Errc::refused, "this family has no velocity mode"));
+  if (const auto counted = check_units(motion, learn); !counted) return fail(counted.error());
+  if (const auto still = check_monitor(motion, learn); !still) return fail(still.error());
   MotionPlan plan;
   plan.mode = *mode;
   plan.value = plan.speed = std::abs(learn.rpm) / 60 * learn.least * learn.gear;

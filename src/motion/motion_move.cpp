@@ -165,6 +165,20 @@ Result<void> check_start(Motion& motion, const MotionPlan& plan) {
                            "nothing was moved; run the command again"));
 }
 
+/// The speed that was asked for, else a part of what is allowed; empty where its unit is not known.
+Result<std::optional<Bytes>> speed_of(Motion& motion, const Move& move, ObjectAddress object,
+                                      MotionPlan& plan) {
+  if (move.speed.empty()) {
+    const auto cap = motion.speed_cap();
+    if (!cap) return fail(cap.error());
+    return motion.units().bytes(object, *cap * kDefaultPart);
+  }
+  const auto asked = motion.units().parse(object, move.speed);
+  if (!asked) return fail(asked.error());
+  plan.tell(asked->rounding);
+  return std::optional<Bytes>(asked->data);
+}
+
 }  // namespace
 
 Result<MotionPlan> plan_move(Motion& motion, const Move& move) {
@@ -177,18 +191,9 @@ Result<MotionPlan> plan_move(Motion& motion, const Move& move) {
   MotionPlan plan;
   plan.mode = *mode;
   if (const auto found = find_target(motion, move, plan); !found) return fail(found.error());
-  std::optional<Bytes> speed;
-  if (move.speed.empty()) {
-    const auto cap = motion.speed_cap();
-    if (!cap) return fail(cap.error());
-    speed = units.bytes(*speed_object, *cap * kDefaultPart);
-  } else {
-    const auto asked = units.parse(*speed_object, move.speed);
-    if (!asked) return fail(asked.error());
-    speed = asked->data;
-    plan.tell(asked->rounding);
-  }
-  const auto fast = speed ? units.physical(*speed_object, *speed) : std::nullopt;
+  auto speed = speed_of(motion, move, *speed_object, plan);
+  if (!speed) return fail(speed.error());
+  const auto fast = *speed ? units.physical(*speed_object, **speed) : std::nullopt;
   if (!fast || fast->value <= 0)
     return fail(Errc::usage, "a move needs a speed above 0", "add --speed 60rpm");
   if (const auto allowed = motion.check_speed(fast->value); !allowed) return fail(allowed.error());
@@ -197,7 +202,7 @@ Result<MotionPlan> plan_move(Motion& motion, const Move& move) {
           motion.add_ramps(plan.speed, {objects::kProfileAcceleration, objects::kProfileDeceleration}, plan);
       !ramps)
     return fail(ramps.error());
-  plan.settings.emplace_back(*speed_object, *speed);
+  plan.settings.emplace_back(*speed_object, **speed);
   if (speed_object == objects::kTargetVelocity) plan.kept_target = *speed_object;
   plan.moving = {{objects::kTargetPosition, plan.command}};
   if (motion.rules().handshake)

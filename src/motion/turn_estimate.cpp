@@ -80,6 +80,17 @@ std::string distance(double measured, double candidate) {
                      std::llround(measured));
 }
 
+/// What each part of the measurement says by itself.
+std::vector<double> parts_of(std::span<const TurnLook> looks) {
+  std::vector<double> out;
+  for (std::size_t i = 0; i < kParts; ++i) {
+    const auto begin = i * (looks.size() - 1) / kParts;
+    const auto end = (i + 1) * (looks.size() - 1) / kParts;
+    out.push_back(stretch_of(looks.subspan(begin, end - begin + 1)).increments());
+  }
+  return out;
+}
+
 }  // namespace
 
 Result<TurnMeasurement> measure_turn(std::span<const TurnLook> looks, double step) {
@@ -98,12 +109,7 @@ Result<TurnMeasurement> measure_turn(std::span<const TurnLook> looks, double ste
   out.seconds = seconds_between(looks.front(), looks.back());
   out.rpm = out.turns / out.seconds * 60;
   out.looks = looks.size();
-  std::vector<double> parts;
-  for (std::size_t i = 0; i < kParts; ++i) {
-    const auto begin = i * (looks.size() - 1) / kParts;
-    const auto end = (i + 1) * (looks.size() - 1) / kParts;
-    parts.push_back(stretch_of(looks.subspan(begin, end - begin + 1)).increments());
-  }
+  const auto parts = parts_of(looks);
   const double spread = standard_deviation(parts) / out.increments;
   if (!(spread <= kMostSpread)) {
     const auto [least, most] = std::minmax_element(parts.begin(), parts.end());

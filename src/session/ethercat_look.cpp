@@ -19,8 +19,8 @@ Result<std::vector<EtherCatNetwork::Seen>> EtherCatNetwork::look(bool sii) {
   const bool foreign = std::any_of(out.begin(), out.end(), [](const Seen& s) { return s.foreign; });
   // A node is another drive after it: that is for who asks what is there, not for a job that goes on.
   for (std::size_t i = 0; numbered_ && i < out.size(); ++i) {
-    const auto station = out[i].look.station;
-    changed_ = changed_ || (station != 0 && station != station_of(static_cast<std::uint8_t>(i + 1)));
+    const auto at = static_cast<std::uint8_t>(i + 1);
+    changed_ = changed_ || (out[i].look.station != 0 && out[i].look.station != station_of(at));
   }
   changed_ = changed_ || (numbered_ && view->count > count_);
   if (changed_ && !sii) return fail(numbered_otherwise());
@@ -32,12 +32,10 @@ Result<std::vector<EtherCatNetwork::Seen>> EtherCatNetwork::look(bool sii) {
   present_ = view->count;
   if (!numbered_) count_ = present_;
   for (std::size_t i = 0; sii && i < out.size(); ++i) {
-    const auto node = static_cast<std::uint8_t>(i + 1);
-    if (foreign) {
-      out[i].sii_error = "not read: another master works with this ring";
-      continue;
-    }
-    ethercat::SiiReader reader(node, ethercat::SlaveAddress::at_position(static_cast<std::uint16_t>(i)));
+    if (foreign) out[i].sii_error = "not read: another master works with this ring";
+    if (foreign) continue;
+    ethercat::SiiReader reader(static_cast<std::uint8_t>(i + 1),
+                               ethercat::SlaveAddress::at_position(static_cast<std::uint16_t>(i)));
     reader.start(now());
     const auto image = wire_.ask(reader);
     if (!image && (image.error().code == Errc::bus || image.error().code == Errc::interrupted))

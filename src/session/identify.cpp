@@ -22,19 +22,35 @@ Result<void> listen_for(Session& session, Duration time) {
   return {};
 }
 
+/// Of 1000h, 1018h:01 and :02, 1008h, and 1018h:03 where it was asked for.
+Identity identity_in(std::uint8_t node, std::span<const Result<Bytes>> answers, bool with_revision) {
+  Identity out;
+  out.node = node;
+  out.device_type = u32_in(answers[0]);
+  out.vendor_id = u32_in(answers[1]);
+  out.product_code = u32_in(answers[2]);
+  out.device_name = text_in(answers[3]);
+  if (with_revision) out.revision = u32_in(answers[4]);
+  return out;
+}
+
+/// As it is kept, if it has everything that is asked for; else null.
+const Identity* known_identity(Session& session, std::uint8_t node, const drive::Rules& rules,
+                               bool with_revision) {
+  const auto* found = session.identities().find(node, session.watch().boots(node));
+  const bool whole = found != nullptr && (!with_revision || found->revision) &&
+                     std::all_of(rules.identity_looks.begin(), rules.identity_looks.end(),
+                                 [&](ObjectAddress object) { return found->looked.contains(object); });
+  return whole ? found : nullptr;
+}
+
 }  // namespace
 
 std::vector<Result<Identity>> identify(Session& session, std::span<const std::uint8_t> nodes,
                                        const drive::Rules& rules) {
   const bool with_revision = std::any_of(rules.identity.begin(), rules.identity.end(),
                                          [](const auto& mark) { return mark.object == objects::kRevision; });
-  const auto known = [&](std::uint8_t node) {
-    const auto* found = session.identities().find(node, session.watch().boots(node));
-    const bool whole = found != nullptr && (!with_revision || found->revision) &&
-                       std::all_of(rules.identity_looks.begin(), rules.identity_looks.end(),
-                                   [&](ObjectAddress object) { return found->looked.contains(object); });
-    return whole ? found : nullptr;
-  };
+  const auto known = [&](std::uint8_t node) { return known_identity(session, node, rules, with_revision); };
   std::vector<ObjectAddress> objects{objects::kDeviceType, objects::kVendorId, objects::kProductCode,
                                      objects::kDeviceName};
   if (with_revision) objects.push_back(objects::kRevision);
@@ -59,13 +75,7 @@ std::vector<Result<Identity>> identify(Session& session, std::span<const std::ui
       out.emplace_back(fail(silent->error()));
       continue;
     }
-    Identity identity;
-    identity.node = node;
-    identity.device_type = u32_in(here[0]);
-    identity.vendor_id = u32_in(here[1]);
-    identity.product_code = u32_in(here[2]);
-    identity.device_name = text_in(here[3]);
-    if (with_revision) identity.revision = u32_in(here[4]);
+    auto identity = identity_in(node, here, with_revision);
     for (std::size_t i = looks_at; i < objects.size(); ++i)
       identity.looked.emplace(objects[i], here[i].has_value());
     session.identities().keep(identity, session.watch().boots(node));

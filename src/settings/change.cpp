@@ -233,18 +233,9 @@ Result<void> confirm_changes(show::Desk& desk, std::span<const Change> changes) 
   return {};
 }
 
-Result<Value> write_changes(show::Desk& desk, std::span<const Change> changes, const WriteOptions& options) {
-  std::vector<session::SdoRequest> requests;
-  for (const auto& change : changes)
-    requests.push_back({change.node, change.target.address, change.data, change.transfer});
-  KeepingNodes keeping(desk, changes);
-  if (const auto opened = keeping.open(options); !opened) return fail(opened.error());
-  const bool energises = std::any_of(changes.begin(), changes.end(), enables);
-  const auto hold = desk.session->protect(energises ? session::Care::energised : session::Care::none);
-  const auto written = session::write_all(*desk.session, requests, options.read_back || options.keep);
-  keeping.close(written);
-  for (const auto& change : changes)
-    if (enables(change)) desk.session->energised().insert(change.node);
+namespace {
+
+report::Table change_table() {
   report::Table table;
   table.columns = {{"node"},
                    {"object", "", Show::text},
@@ -266,6 +257,24 @@ Result<Value> write_changes(show::Desk& desk, std::span<const Change> changes, c
                    {"when", "takes effect", Show::text},
                    {"effect", "", Show::json},
                    {"error", "", Show::json}};
+  return table;
+}
+
+}  // namespace
+
+Result<Value> write_changes(show::Desk& desk, std::span<const Change> changes, const WriteOptions& options) {
+  std::vector<session::SdoRequest> requests;
+  for (const auto& change : changes)
+    requests.push_back({change.node, change.target.address, change.data, change.transfer});
+  KeepingNodes keeping(desk, changes);
+  if (const auto opened = keeping.open(options); !opened) return fail(opened.error());
+  const bool energises = std::any_of(changes.begin(), changes.end(), enables);
+  const auto hold = desk.session->protect(energises ? session::Care::energised : session::Care::none);
+  const auto written = session::write_all(*desk.session, requests, options.read_back || options.keep);
+  keeping.close(written);
+  for (const auto& change : changes)
+    if (enables(change)) desk.session->energised().insert(change.node);
+  auto table = change_table();
   table.json_only = std::none_of(written.begin(), written.end(), [](const auto& w) { return w.has_value(); });
   for (std::size_t i = 0; i < changes.size(); ++i) {
     table.rows.push_back(change_row(changes[i], written[i], keeping.kept(changes[i]), desk));
