@@ -52,6 +52,8 @@ class Init {
       : context_(&context), file_(std::move(file)), bus_(std::move(bus)), families_(std::move(families)) {}
 
   Result<Value> run() {
+    for (const auto& [node, family] : families_)
+      if (const auto known = context_->front_end->family(family); !known) return fail(known.error());
     const auto present = take_present();
     if (!present) return fail(present.error());
     auto found = look();

@@ -10,6 +10,7 @@
 #include "session/ethercat_network.hpp"
 #include "session/ring_state.hpp"
 #include "session/state_pause.hpp"
+#include "show/axis_names.hpp"
 #include "show/fault_records.hpp"
 #include "show/ring_table.hpp"
 
@@ -26,6 +27,14 @@ std::string network_of(session::Session& session, std::uint8_t node) {
   }
   const auto nmt = session.watch().state(node);
   return nmt ? std::string(session::name(*nmt)) : std::string();
+}
+
+/// As people of the cabinet call it.
+Error named(const Axis& axis, Error error) {
+  const show::AxisNames names({{axis.node, axis.name}});
+  error.message = names.in(error.message);
+  error.hint = names.in(error.hint);
+  return error;
 }
 
 }  // namespace
@@ -52,7 +61,7 @@ const AxisStates::Known& AxisStates::known(const Axis& axis, session::Session& s
 void AxisStates::take(AxisState& look, session::Session& session, std::span<const Result<Bytes>> answers) {
   const auto& word = answers[0];
   if (!word) {
-    look.error = word.error();
+    look.error = named(*look.axis, word.error());
     return;
   }
   look.network = network_of(session, look.axis->node);
