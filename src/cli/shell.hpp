@@ -85,6 +85,12 @@ class Shell {
   /// As CabinetHolder::get().
   Result<const cabinet::Cabinet*> cabinet(const Settings& settings) { return cabinet_.get(settings); }
 
+  /// As parts_of(), with the cabinet file of the settings; none where there is no such file, or the line does
+  /// not need it. Errors as there, and of the file.
+  Result<std::vector<LinePart>> parts_of_line(const ParsedLine& line, const Settings& settings);
+  /// As with_axis_option().
+  std::vector<std::string> name_axes(std::vector<std::string> words, const CommandMatch& match);
+
   /// The family's data, loaded once. Errors as load_profile().
   Result<const drive::Profile*> profile(const std::string& family);
   /// As BusHolder::open().
@@ -113,8 +119,6 @@ class Shell {
   session::Options session_options();
   Outcome perform_parsed(const ParsedLine& line, const Settings& settings);
   Outcome perform_part(const ParsedLine& line, LinePart part);
-  Result<std::vector<LinePart>> parts_of_line(const ParsedLine& line, const Settings& settings);
-  std::vector<std::string> name_axes(std::vector<std::string> words, const CommandMatch& match);
   Result<report::Value> execute(Run& run, const command::Arguments& arguments);
   Result<void> prepare(Run& run, const command::Arguments& arguments);
   Result<void> prepare_profile(Run& run);

@@ -2,12 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <unistd.h>
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
 #include "../source_dir.hpp"
 #include "cli/line_runner.hpp"
 #include "cli/shell.hpp"
+#include "cli/terminal/completer.hpp"
 #include "recording_console.hpp"
 
 namespace servoctl::cli {
@@ -158,6 +160,24 @@ TEST_F(AxisLines, ThePromptTakesAnAxisForTheLinesThatFollow) {
   EXPECT_EQ(run("use table"), 0) << all();
   EXPECT_EQ(run("status --json"), 0) << all();
   EXPECT_TRUE(says(R"("axis":"table")")) << all();
+}
+
+TEST_F(AxisLines, ABatchFileIsCheckedByTheFamiliesOfItsAxes) {
+  const auto lines = [&](const std::string& text) {
+    std::ofstream(folder / "lines.servoctl") << text;
+    return run("run " + (folder / "lines.servoctl").string() + " --check");
+  };
+  EXPECT_EQ(lines("param set feeder1 Pn0202=500\nuse table\nread statusword\n"), 0) << all();
+  EXPECT_EQ(lines("param set feeder1 Pn9999=500\n"), 2) << all();
+  EXPECT_EQ(lines("param set table Pn0202=500\n"), 2) << all();  // Of another family.
+  EXPECT_EQ(lines("status -n feedr1\n"), 2) << all();
+}
+
+TEST_F(AxisLines, AreOfferedWhereNodesAre) {
+  const auto offered = complete("status -n ", *shell).words;
+  for (const auto* name : {"all", "feeder1", "feeders", "table", "送料"})
+    EXPECT_NE(std::find(offered.begin(), offered.end(), name), offered.end()) << name;
+  EXPECT_EQ(complete("use ta", *shell).words, std::vector<std::string>{"table"});
 }
 
 }  // namespace

@@ -35,14 +35,23 @@ class Check {
     if (!next) return fail(next.error());
     settings_ = std::move(*next);
     if (is_choice(words) || asks_for_help(words)) return {};
-    const auto parsed = parse_line(words);
+    const auto parsed = parse_line(shell_->name_axes(words, match_command(words)));
     if (!parsed) return fail(parsed.error());
     const auto settings = apply_options(settings_, parsed->arguments);
     if (!settings) return fail(settings.error());
+    auto parts = shell_->parts_of_line(*parsed, *settings);
+    if (!parts) return fail(parts.error());
+    if (parts->empty()) return check_part(*parsed, *settings);
+    for (const auto& part : *parts)
+      if (const auto right = check_part(*parsed, part.settings); !right) return right;
+    return {};
+  }
+
+  Result<void> check_part(const ParsedLine& line, const Settings& settings) {
     command::Context context;
-    if (const auto ready = prepare(*parsed, *settings, context); !ready) return ready;
-    if (parsed->command->check == nullptr) return {};
-    return parsed->command->check(context, parsed->arguments);
+    if (const auto ready = prepare(line, settings, context); !ready) return ready;
+    if (line.command->check == nullptr) return {};
+    return line.command->check(context, line.arguments);
   }
 
   Result<void> prepare(const ParsedLine& line, const Settings& settings, command::Context& context) {

@@ -57,7 +57,7 @@ class Candidates {
       case Kind::parameter: return add_parameters();
       case Kind::family: return add_families();
       case Kind::bus: return add_buses();
-      case Kind::nodes: return add("all");
+      case Kind::nodes: return add_axes();
       case Kind::file: out_.files = true; return;
       case Kind::command:
         for (const auto* command : command::registry()) add(split(command->path, ' ').front());
@@ -73,6 +73,13 @@ class Candidates {
     for (const auto& interface : can::can_interfaces()) add(interface);
     for (const auto word : {"sim:", "local:"}) add(word);
     for (const auto& url : session::ethercat_urls()) add(url);
+  }
+
+  void add_axes() {
+    add("all");
+    const auto cabinet = shell_->cabinet(shell_->defaults());
+    if (!cabinet || *cabinet == nullptr) return;
+    for (const auto& name : (*cabinet)->names()) add_name(name);
   }
 
   Completions take() { return std::move(out_); }
@@ -147,7 +154,7 @@ bool add_prompt_words(Candidates& out, const std::vector<std::string>& words) {
   if (words.size() != 1) return false;
   if (words.front() == "drive") out.add_families();
   if (words.front() == "bus") out.add_buses();
-  if (words.front() == "use") out.add("all");
+  if (words.front() == "use") out.add_axes();
   return words.front() == "drive" || words.front() == "bus" || words.front() == "use";
 }
 
