@@ -4,6 +4,7 @@
 #include "command/command.hpp"
 #include "command/duration_option.hpp"
 #include "pdo/pdo_use.hpp"
+#include "show/live_pdo.hpp"
 #include "show/sample_writer.hpp"
 #include "traffic/listening.hpp"
 #include "traffic/rhythm_table.hpp"
@@ -77,6 +78,7 @@ void show(Context& context, show::SampleWriter& writer, const Watched& entry, co
       show::write_values(view, data, json);
     });
   }
+  if (auto* live = writer.view()) return show::show_values(*live, view, data, context.chinese);
   auto line = fmt::format("{:11.6f} {:3} {} ", seconds, view.node, view.name);
   show::append_values(view, data, context.chinese, line);
   writer.add_line(line);
@@ -93,8 +95,14 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   auto& session = *context.session;
   const auto begin = session.now();
   show::SampleWriter writer(context);
+  const auto live = context.open_view(show::pdo_layout());
+  writer.show_in(live.get());
   traffic::Listener listener;
-  listener.on_pause = [&] { writer.flush(); };
+  listener.is_over = [&] { return live && live->is_over(); };
+  listener.on_pause = [&] {
+    writer.flush();
+    if (live) live->refresh(session.now());
+  };
   listener.on_frame = [&](const can::Frame& frame, TimePoint time) {
     if (frame.remote || frame.error) return;
     for (auto& entry : *watched) {
@@ -130,7 +138,8 @@ const Command kPdoWatch{
     .summary = "Show PDOs as they arrive, decoded by the drive's mapping",
     .details =
         "Reads the mapping of the nodes and then listens: one line per PDO, with the names, values and units "
-        "of its objects. At the end (--for, or Ctrl-C) it shows how often each came, and the measured "
+        "of its objects; on a terminal a table of the objects that is updated in place (keys: space pauses, s sorts, "
+        "q quits). At the end (--for, or Ctrl-C) it shows how often each came, and the measured "
         "periods: mean, shortest, longest, standard deviation. RPDOs are shown if a master sends them.",
     .parameters = kParameters,
     .needs = Needs::node | Needs::can,

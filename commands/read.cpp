@@ -13,7 +13,7 @@ using namespace command;
 
 constexpr Parameter kParameters[] = {
     {.name = "object",
-     .help = "0x6041, 6099h.1, statusword, Pn0202; 0x1018: a record; '0x60*'",
+     .help = "0x6041, 6099h.1, statusword, Pn0202, 0x1018 (a record), '0x60*'",
      .kind = Kind::object,
      .required = true,
      .many = true},

@@ -8,7 +8,7 @@
 namespace servoctl {
 
 /// What comes in through standard input, or through another descriptor, which stays open. In the place of
-/// std::cin: to make the standard streams ready costs each start 67 page faults (bench/RESULTS.md).
+/// std::cin: to make the standard streams ready costs each start 26 page faults (bench/RESULTS.md).
 class StandardInput {
  public:
   explicit StandardInput(int descriptor = STDIN_FILENO) : descriptor_(descriptor) {}

@@ -19,6 +19,10 @@ class SampleWriter {
   SampleWriter(const SampleWriter&) = delete;
   SampleWriter& operator=(const SampleWriter&) = delete;
 
+  /// Samples that are lines are rows of this table instead; it outlives the last of them. May be null.
+  void show_in(LiveView* view) { view_ = view; }
+  LiveView* view() const { return view_; }
+
   /// Whether samples are records now; else they are lines of text.
   bool wants_records() const { return desk_->wants_records || desk_->keeps_samples; }
 
@@ -51,6 +55,7 @@ class SampleWriter {
   }
 
   Desk* desk_;
+  LiveView* view_ = nullptr;
   std::string lines_;
   std::string kept_ = "[";
 };

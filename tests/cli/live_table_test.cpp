@@ -39,9 +39,9 @@ TEST(LiveTable, HasARowForEachKeyInTheOrderTheyCame) {
   table.update();
   const auto lines = table.lines(80, 24);
   ASSERT_EQ(lines.size(), 4U);
-  EXPECT_EQ(lines[0], "node   object                  value");
-  EXPECT_EQ(lines[1], "    1  Position actual value   12 inc  █▁");
-  EXPECT_EQ(lines[2], "    2  Position actual value   98 inc  ▅");
+  EXPECT_EQ(lines[0], " node  object                 value");
+  EXPECT_EQ(lines[1], "    1  Position actual value  12 inc  █▁");
+  EXPECT_EQ(lines[2], "    2  Position actual value  98 inc  ▅");
   EXPECT_EQ(lines[3], "space: pause  s: sort  q: quit");
 }
 
@@ -84,15 +84,15 @@ TEST(LiveTable, SortsByOneColumnAfterTheOther) {
     for (std::size_t i = 1; i < 4; ++i) out += std::string(trim(lines[i].substr(0, 5))) + " ";
     return out + lines[0].substr(0, lines[0].find_last_not_of(' ') + 1);
   };
-  EXPECT_EQ(nodes(), "10 9 2  node  object       value");
+  EXPECT_EQ(nodes(), "10 9 2  node  object      value");
   table.sort_by_next();
-  EXPECT_EQ(nodes(), "2 9 10 node*  object       value") << "numbers by their size";
+  EXPECT_EQ(nodes(), "2 9 10 node*  object      value") << "numbers by their size";
   table.sort_by_next();
-  EXPECT_EQ(nodes(), "2 10 9  node  object*      value");
+  EXPECT_EQ(nodes(), "2 10 9  node  object*     value");
   table.sort_by_next();
-  EXPECT_EQ(nodes(), "10 2 9  node  object       value*");
+  EXPECT_EQ(nodes(), "10 2 9  node  object      value*");
   table.sort_by_next();
-  EXPECT_EQ(nodes(), "10 9 2  node  object       value");
+  EXPECT_EQ(nodes(), "10 9 2  node  object      value");
 }
 
 TEST(LiveTable, ShowsNothingNewWhileItIsPaused) {

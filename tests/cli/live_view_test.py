@@ -169,6 +169,17 @@ def monitor_table():
     check("the summary follows", view.shows("bus load") or view.shows("services"))
 
 
+def watched_pdos():
+    run("nmt", "start")
+    view = View((80, 24), "pdo", "watch")
+    view.wait_for("TPDO1")
+    view.wait_for("Statusword")
+    view.press(b"q")
+    check("q is no error", view.ended() == 0)
+    check("the summary follows", view.shows("count"))
+    run("nmt", "preop")
+
+
 drive = subprocess.Popen([servoctl, "sim", "gsd600@1"], env=env, stdout=subprocess.DEVNULL)
 try:
     deadline = time.monotonic() + 10
@@ -177,6 +188,7 @@ try:
     watch((80, 24), (200, 50))
     watch((200, 50), (80, 24))
     monitor_table()
+    watched_pdos()
     piped = run("watch", "statusword", "--every", "20ms", "--for", "200ms")
     check("in a pipe there are lines", len(re.findall(r"^ +\d\.\d{3}  Statusword ", piped.stdout, re.M)) >= 5)
     check("and nothing but text", "\x1b" not in piped.stdout + piped.stderr)
