@@ -84,6 +84,24 @@ void show(Context& context, show::SampleWriter& writer, const Watched& entry, co
   writer.add_line(line);
 }
 
+/// Why nothing came, on CAN.
+void tell_silence(Context& context, std::span<const Watched> watched) {
+  const bool silent = std::all_of(watched.begin(), watched.end(),
+                                  [](const Watched& entry) { return entry.rhythm.count() == 0; });
+  if (silent)
+    context.notices.emplace_back(
+        "no PDO came: nodes send them when operational (`nmt start`), synchronous ones at SYNC (`sync "
+        "start`), others when a value changes or by their event timer");
+  const bool on_request = std::any_of(watched.begin(), watched.end(), [](const Watched& entry) {
+    const auto& pdo = entry.view.pdo;
+    return pdo.direction == canopen::PdoDirection::transmit && (pdo.type == 252 || pdo.type == 253) &&
+           entry.rhythm.count() == 0;
+  });
+  if (on_request)
+    context.notices.emplace_back(
+        "TPDOs of transmission types 252 and 253 are sent only on a remote frame; servoctl sends none");
+}
+
 Result<Value> run(Context& context, const Arguments& arguments) {
   const auto length = duration_option(arguments, "--for");
   if (!length) return fail(length.error());
@@ -112,20 +130,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
     }
   };
   if (const auto ended = traffic::listen(session, *length, listener); !ended) return fail(ended.error());
-  const bool silent = std::all_of(watched->begin(), watched->end(),
-                                  [](const Watched& entry) { return entry.rhythm.count() == 0; });
-  if (silent)
-    context.notices.emplace_back(
-        "no PDO came: nodes send them when operational (`nmt start`), synchronous ones at SYNC (`sync "
-        "start`), others when a value changes or by their event timer");
-  const bool on_request = std::any_of(watched->begin(), watched->end(), [](const Watched& entry) {
-    const auto& pdo = entry.view.pdo;
-    return pdo.direction == canopen::PdoDirection::transmit && (pdo.type == 252 || pdo.type == 253) &&
-           entry.rhythm.count() == 0;
-  });
-  if (on_request)
-    context.notices.emplace_back(
-        "TPDOs of transmission types 252 and 253 are sent only on a remote frame; servoctl sends none");
+  tell_silence(context, *watched);
   if (!context.keeps_samples) return Value(summary(*watched));
   return Value(report::Record{{"pdos", summary(*watched)}, {"samples", writer.take_kept()}});
 }
