@@ -1,11 +1,16 @@
 #include <fmt/format.h>
 #include <algorithm>
+#include <optional>
+#include <set>
+#include <utility>
 
 #include "command/command.hpp"
 #include "command/duration_option.hpp"
 #include "pdo/pdo_use.hpp"
+#include "session/ethercat_network.hpp"
 #include "show/live_pdo.hpp"
 #include "show/sample_writer.hpp"
+#include "traffic/image_pdos.hpp"
 #include "traffic/listening.hpp"
 #include "traffic/rhythm_table.hpp"
 
@@ -28,26 +33,34 @@ constexpr Parameter kParameters[] = {
 struct Watched {
   show::PdoView view;
   Rhythm rhythm = {};
+  TimePoint last = {};              ///< On a ring: when the cycle was sent that was taken last.
+  std::optional<Bytes> shown = {};  ///< On a ring: what the last line showed.
 };
 
-/// The PDOs of all nodes that were asked for and are in use.
+/// The PDOs of one node that were asked for and are in use.
+Result<void> add_pdos(Context& context, const Arguments& arguments, std::uint8_t node,
+                      std::vector<Watched>& out) {
+  const bool ring = context.session->ethercat() != nullptr;
+  const auto views = ring ? traffic::ImagePdos::read(context, node) : pdo::read_views(context, node);
+  if (!views) return fail(views.error());
+  for (const auto& name : arguments.all("pdo")) {
+    const auto view = pdo::find_view(*views, node, name);
+    if (!view) return fail(view.error());
+    if (!ring && !(*view)->pdo.is_valid())
+      return fail(Errc::negative, fmt::format("node {}: {} is not in use", node, (*view)->name),
+                  "bit 31 of its COB-ID is set; `pdo enable` clears it");
+    out.push_back({**view});
+  }
+  if (arguments.has("pdo")) return {};
+  for (const auto& view : *views)
+    if (ring || view.pdo.is_valid()) out.push_back({view});
+  return {};
+}
+
 Result<std::vector<Watched>> pdos_of(Context& context, const Arguments& arguments) {
   std::vector<Watched> out;
-  for (const auto node : context.nodes) {
-    const auto views = pdo::read_views(context, node);
-    if (!views) return fail(views.error());
-    for (const auto& name : arguments.all("pdo")) {
-      const auto view = pdo::find_view(*views, node, name);
-      if (!view) return fail(view.error());
-      if (!(*view)->pdo.is_valid())
-        return fail(Errc::negative, fmt::format("node {}: {} is not in use", node, (*view)->name),
-                    "bit 31 of its COB-ID is set; `pdo enable` clears it");
-      out.push_back({**view});
-    }
-    if (arguments.has("pdo")) continue;
-    for (const auto& view : *views)
-      if (view.pdo.is_valid()) out.push_back({view});
-  }
+  for (const auto node : context.nodes)
+    if (const auto added = add_pdos(context, arguments, node, out); !added) return fail(added.error());
   return out;
 }
 
@@ -63,10 +76,8 @@ report::Table summary(std::span<const Watched> watched) {
   return table;
 }
 
-void show(Context& context, show::SampleWriter& writer, const Watched& entry, const can::Frame& frame,
-          Duration time) {
+void show(Context& context, show::SampleWriter& writer, const Watched& entry, ByteSpan data, Duration time) {
   const auto& view = entry.view;
-  const auto data = frame.payload();
   const auto seconds = std::chrono::duration<double>(time).count();
   if (writer.wants_records()) {
     return writer.add_record([&](report::JsonWriter& json) {
@@ -82,6 +93,20 @@ void show(Context& context, show::SampleWriter& writer, const Watched& entry, co
   auto line = fmt::format("{:11.6f} {:3} {} ", seconds, view.node, view.name);
   show::append_values(view, data, context.chinese, line);
   writer.add_line(line);
+}
+
+/// What the cycles of a ring brought. Of those that all carry the same, the first is shown.
+void take_cycles(Context& context, show::SampleWriter& writer, std::span<Watched> watched, TimePoint begin) {
+  const traffic::ImagePdos image(*context.session);
+  for (auto& entry : watched) {
+    auto cycle = image.take(entry.view, entry.last);
+    if (!cycle) continue;
+    entry.last = cycle->time;
+    entry.rhythm.add(cycle->time);
+    if (entry.shown == cycle->data) continue;
+    show(context, writer, entry, cycle->data, cycle->time - begin);
+    entry.shown = std::move(cycle->data);
+  }
 }
 
 /// Why nothing came, on CAN.
@@ -102,17 +127,21 @@ void tell_silence(Context& context, std::span<const Watched> watched) {
         "TPDOs of transmission types 252 and 253 are sent only on a remote frame; servoctl sends none");
 }
 
-Result<Value> run(Context& context, const Arguments& arguments) {
-  const auto length = duration_option(arguments, "--for");
-  if (!length) return fail(length.error());
-  auto watched = pdos_of(context, arguments);
-  if (!watched) return fail(watched.error());
-  if (watched->empty())
-    return fail(Errc::negative, "none of the PDOs is in use",
-                "`pdo show` lists them; `pdo enable` enables one");
+/// Drives on a ring whose process data have ended meanwhile.
+void tell_ended(Context& context, std::span<const Watched> watched) {
+  std::set<std::uint8_t> nodes;
+  for (const auto& entry : watched) nodes.insert(entry.view.node);
+  for (const auto node : nodes)
+    if (context.session->ethercat()->image_of(node) == nullptr)
+      context.errors.push_back(drive_error(Errc::negative, node, "its process data have ended",
+                                           fmt::format("`status -n {}` shows its state and why", node)));
+}
+
+/// Shows what comes until it is ended; of each PDO it keeps how often it came.
+Result<void> listen(Context& context, show::SampleWriter& writer, std::span<Watched> watched,
+                    const std::optional<Duration>& length) {
   auto& session = *context.session;
   const auto begin = session.now();
-  show::SampleWriter writer(context);
   const auto live = context.open_view(show::pdo_layout());
   writer.show_in(live.get());
   traffic::Listener listener;
@@ -123,14 +152,33 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   };
   listener.on_frame = [&](const can::Frame& frame, TimePoint time) {
     if (frame.remote || frame.error) return;
-    for (auto& entry : *watched) {
+    for (auto& entry : watched) {
       if (entry.view.can_id() != canopen::can_id_of(frame)) continue;
       entry.rhythm.add(time);
-      show(context, writer, entry, frame, time - begin);
+      show(context, writer, entry, frame.payload(), time - begin);
     }
   };
-  if (const auto ended = traffic::listen(session, *length, listener); !ended) return fail(ended.error());
-  tell_silence(context, *watched);
+  for (auto& entry : watched) entry.last = begin;
+  if (session.ethercat() != nullptr) listener.on_step = [&] { take_cycles(context, writer, watched, begin); };
+  auto ended = traffic::listen(session, length, listener);
+  writer.show_in(nullptr);
+  return ended;
+}
+
+Result<Value> run(Context& context, const Arguments& arguments) {
+  const auto length = duration_option(arguments, "--for");
+  if (!length) return fail(length.error());
+  auto watched = pdos_of(context, arguments);
+  if (!watched) return fail(watched.error());
+  if (watched->empty())
+    return fail(Errc::negative, "none of the PDOs is in use",
+                "`pdo show` lists them; `pdo enable` enables one");
+  show::SampleWriter writer(context);
+  if (const auto ended = listen(context, writer, *watched, *length); !ended) return fail(ended.error());
+  if (context.session->ethercat() != nullptr)
+    tell_ended(context, *watched);
+  else
+    tell_silence(context, *watched);
   if (!context.keeps_samples) return Value(summary(*watched));
   return Value(report::Record{{"pdos", summary(*watched)}, {"samples", writer.take_kept()}});
 }
@@ -143,16 +191,16 @@ const Command kPdoWatch{
     .summary = "Show PDOs as they arrive, decoded by the drive's mapping",
     .details =
         "Reads the mapping of the nodes and then listens: one line per PDO, with the names, values and units "
-        "of its objects; on a terminal a table of the objects that is updated in place (keys: space pauses, s sorts, "
-        "q quits). At the end (--for, or Ctrl-C) it shows how often each came, and the measured "
-        "periods: mean, shortest, longest, standard deviation. RPDOs are shown if a master sends them.",
+        "of its objects; on a terminal a table of the objects that is updated in place (keys: space pauses, s "
+        "sorts, q quits). At the end (--for, or Ctrl-C) it shows how often each came, and the measured "
+        "periods: mean, shortest, longest, standard deviation. RPDOs are shown if a master sends them. Over "
+        "EtherCAT a drive has to be in OP (`state op` before, at the prompt or in a batch file): shown are the "
+        "PDOs assigned, one line per change, and every cycle is counted.",
     .parameters = kParameters,
-    .needs = Needs::node | Needs::can,
+    .needs = Needs::node,
     .effect = Effect::reads,
     .run = run,
     .goes_on = true,
-    .elsewhere =
-        "`watch` and `scope` show values over time; in SAFE-OP and OP those of mapped inputs come by process data",
 };
 
 }  // namespace servoctl::commands

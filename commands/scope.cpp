@@ -11,7 +11,6 @@
 #include "command/duration_option.hpp"
 #include "pdo/scope_mapping.hpp"
 #include "report/svg.hpp"
-#include "session/hearing.hpp"
 #include "traffic/listening.hpp"
 #include "traffic/sampler.hpp"
 
@@ -39,11 +38,11 @@ constexpr Parameter kParameters[] = {
     {.name = "--plot", .help = "plot them here", .kind = Kind::flag},
 };
 
-/// So long after a TPDO has brought an object it is not read by SDO: the next one is on its way.
+/// So long after an object came by itself it is not read by SDO: the next one is on its way.
 constexpr Duration kPdoPatience = std::chrono::milliseconds(100);
 
-/// Samples as fast as the bus and the drives allow: takes every value a TPDO brings, and reads by SDO, one
-/// after the other, what none brings. Each value has the time of its own frame.
+/// Samples as fast as the bus and the drives allow: takes every value that comes by itself, and reads by SDO,
+/// one after the other, what does not. Each value has the time of its own frame.
 class Scope {
  public:
   Scope(Context& context, traffic::Sampler& sampler) : session_(context.session), sampler_(&sampler) {
@@ -53,16 +52,17 @@ class Scope {
 
   Result<void> run(Duration length) {
     begin_ = session_->now();
-    const auto end = begin_ + length;
+    end_ = begin_ + length;
     due_.assign(records_.size(), begin_);
-    const session::Hearing hearing(*session_, [&](const can::Frame& frame, TimePoint time) {
-      for (const auto& sample : sampler_->on_frame(frame, time))
-        if (time < end) add(sample, time + kPdoPatience);
-    });
     traffic::Listener listener;
+    listener.on_pause = [&] { gather(); };
     listener.next = [&] { return *std::min_element(due_.begin(), due_.end()); };
-    listener.on_time = [&](TimePoint now) { return look(now); };
+    listener.on_time = [&](TimePoint now) {
+      gather();
+      return look(now);
+    };
     auto ended = traffic::listen(*session_, length, listener);
+    gather();
     seconds_ = std::chrono::duration<double>(session_->now() - begin_).count();
     interrupted_ = session_->options().cancelled && session_->options().cancelled();
     if (!ended && ended.error().code == Errc::interrupted) ended = {};
@@ -82,14 +82,23 @@ class Scope {
     due_[sample.channel] = next;
   }
 
+  /// What came before the beginning belongs to no record.
+  void gather() {
+    for (const auto& sample : sampler_->gather())
+      if (sample.time >= begin_ && sample.time < end_) add(sample, sample.time + kPdoPatience);
+  }
+
   /// A drive that does not give the objects at the first look ends it, and so does one that gives something
   /// else than numbers; later on a gap stays.
   Result<void> look(TimePoint now) {
     std::vector<std::size_t> wanted;
     for (std::size_t i = 0; i < due_.size(); ++i)
       if (due_[i] <= now) wanted.push_back(i);
+    if (wanted.empty()) return {};
     const bool first = std::exchange(first_, false);
-    for (const auto& sample : sampler_->read(wanted)) {
+    const auto samples = sampler_->read(wanted);
+    gather();
+    for (const auto& sample : samples) {
       const auto i = sample.channel;
       const bool failed = !sample.bytes.has_value();
       if (failed && (first || sample.bytes.error().code == Errc::interrupted))
@@ -97,9 +106,9 @@ class Scope {
       if (first)
         if (const auto number = traffic::check_number(sampler_->channels()[i], *sample.bytes); !number)
           return number;
-      // A TPDO came meanwhile.
+      // One came by itself meanwhile.
       if (due_[i] > now) continue;
-      // After the first look the TPDOs get their chance, where there are any.
+      // After the first look those that come by themselves get their chance.
       const bool wait = first && sampler_->is_carried(i);
       add(sample, wait ? session_->now() + kPdoPatience : session_->now());
     }
@@ -119,6 +128,7 @@ class Scope {
   std::vector<traffic::Sample> last_;
   std::vector<TimePoint> due_;  ///< When each channel is to be read by SDO.
   TimePoint begin_{};
+  TimePoint end_{};
   double seconds_ = 0;
   bool first_ = true;
   bool interrupted_ = false;

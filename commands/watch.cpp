@@ -4,7 +4,6 @@
 
 #include "command/command.hpp"
 #include "command/duration_option.hpp"
-#include "session/hearing.hpp"
 #include "show/records.hpp"
 #include "show/sample_writer.hpp"
 #include "traffic/listening.hpp"
@@ -171,8 +170,6 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   Watching watching(context, *sampler, arguments.has("--changes"));
   const auto begin = session.now();
   auto next = begin;
-  const session::Hearing hearing(
-      session, [&](const can::Frame& frame, TimePoint time) { (void)sampler->on_frame(frame, time); });
   traffic::Listener listener;
   listener.next = [&] { return next; };
   listener.on_pause = [&] { watching.refresh(); };

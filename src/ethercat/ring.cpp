@@ -184,8 +184,10 @@ void Ring::lose(std::uint8_t index) {
 }
 
 void Ring::on_time(TimePoint now) {
-  for (std::size_t number = 0; number < flights_.size(); ++number) {
-    if (flights_[number].open == 0 || now < flights_[number].deadline) continue;
+  for (std::size_t number = 0, seen = 0, flying = flying_; seen < flying; ++number) {
+    if (flights_[number].open == 0) continue;
+    ++seen;
+    if (now < flights_[number].deadline) continue;
     ++statistics_.lost;
     for (std::size_t i = 0; i < slots_.size(); ++i)
       if (slots_[i].state == State::in_flight && slots_[i].flight == number)
@@ -195,9 +197,11 @@ void Ring::on_time(TimePoint now) {
 
 TimePoint Ring::deadline() const {
   TimePoint out = kNever;
-  if (flying_ == 0) return out;
-  for (const auto& flight : flights_)
-    if (flight.open != 0) out = std::min(out, flight.deadline);
+  for (std::size_t number = 0, seen = 0; seen < flying_; ++number) {
+    if (flights_[number].open == 0) continue;
+    ++seen;
+    out = std::min(out, flights_[number].deadline);
+  }
   return out;
 }
 

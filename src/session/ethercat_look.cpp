@@ -1,4 +1,5 @@
 // What a network sees of its slaves without asking any of them for an object.
+#include <fmt/format.h>
 #include <algorithm>
 #include <utility>
 
@@ -25,8 +26,8 @@ Result<std::vector<EtherCatNetwork::Seen>> EtherCatNetwork::look(bool sii) {
   changed_ = changed_ || (numbered_ && view->count > count_);
   if (changed_ && !sii) return fail(numbered_otherwise());
   if (sii && (changed_ || view->count != count_) && !must_go_on()) {
-    for (const auto& node : nodes_)
-      if (node) forget_mailbox(*node, drive_error(Errc::timeout, node->number, "the ring was numbered anew"));
+    for (auto* node : known_)
+      forget_mailbox(*node, drive_error(Errc::timeout, node->number, "the ring was numbered anew"));
     changed_ = numbered_ = false;
   }
   present_ = view->count;
@@ -45,6 +46,44 @@ Result<std::vector<EtherCatNetwork::Seen>> EtherCatNetwork::look(bool sii) {
     else
       out[i].sii_error = image.error().message;
   }
+  return out;
+}
+
+Result<bool> EtherCatNetwork::lacks_objects(std::uint8_t node) {
+  if (const auto* known = find(node); known != nullptr && known->coe) return false;
+  ethercat::SiiReader reader(node, ethercat::SlaveAddress::at_position(static_cast<std::uint16_t>(node - 1)));
+  reader.start_head(ethercat::kSiiHeader, now());
+  const auto head = wire_.ask(reader);
+  if (!head && (head.error().code == Errc::bus || head.error().code == Errc::interrupted))
+    return fail(head.error());
+  if (!head) return false;
+  constexpr std::size_t kConfiguration = 14;
+  const auto sii = ethercat::parse_sii(*head);
+  const auto checksum = ethercat::sii_checksum(ByteSpan(*head).first(kConfiguration));
+  if (sii.is_empty() || checksum != (*head)[kConfiguration]) return false;
+  return !sii.mailbox.exists() || (sii.protocols & ethercat::kProtocolCoe) == 0;
+}
+
+Result<std::vector<std::uint8_t>> EtherCatNetwork::nodes_with_objects() {
+  const auto seen = look(false);
+  if (!seen) return fail(seen.error());
+  const bool foreign = std::any_of(seen->begin(), seen->end(), [](const Seen& s) { return s.foreign; });
+  std::vector<std::uint8_t> out;
+  std::vector<std::uint8_t> without;
+  for (std::size_t i = 0; i < seen->size(); ++i) {
+    const auto node = static_cast<std::uint8_t>(i + 1);
+    const auto lacks = foreign ? Result<bool>(false) : lacks_objects(node);
+    if (!lacks) return fail(lacks.error());
+    (*lacks ? without : out).push_back(node);
+  }
+  if (out.empty())
+    return fail(Errc::negative,
+                fmt::format("{}: by their SII none of the {} slaves has CoE", url_, seen->size()),
+                "`scan` shows what they are; a node named with -n is asked all the same");
+  if (!without.empty())
+    notices_.push_back(fmt::format("-n all leaves out node{} {}: no CoE, by {} SII",
+                                   without.size() == 1 ? "" : "s", fmt::join(without, ", "),
+                                   without.size() == 1 ? "its" : "their"));
   return out;
 }
 

@@ -58,13 +58,16 @@ EtherCatNetwork::EtherCatNetwork(std::unique_ptr<ethernet::Port> port, std::stri
 
 EtherCatNetwork::~EtherCatNetwork() {
   wire_.set_cancelled({});
-  for (const auto& node : nodes_)
-    if (node && node->raised) (void)end_exchange(node->number);
+  for (const auto* node : known_)
+    if (node->raised) (void)end_exchange(node->number);
 }
 
 EtherCatNode& EtherCatNetwork::of(std::uint8_t node) {
   auto& place = nodes_[node & 0x7FU];
-  if (!place) place = std::make_unique<EtherCatNode>(node);
+  if (!place) {
+    place = std::make_unique<EtherCatNode>(node);
+    known_.push_back(place.get());
+  }
   return *place;
 }
 
@@ -90,13 +93,13 @@ Result<void> EtherCatNetwork::recover(TimePoint deadline) {
 }
 
 void EtherCatNetwork::serve(ethercat::Ring& ring, TimePoint now) {
-  for (const auto& node : nodes_)
-    if (node) serve_node(*node, ring, now);
+  for (auto* node : known_) serve_node(*node, ring, now);
   watch(ring, now);
 }
 
 void EtherCatNetwork::serve_node(EtherCatNode& node, ethercat::Ring& ring, TimePoint now) {
   if (node.image) node.image->serve(ring, now);
+  for (auto* listener : node.listeners) listener->note();
   if (node.image && node.clock) node.clock->serve(ring, *node.image);
   if (!node.coe) return;
   if (node.coe->deadline() <= now) node.coe->on_time(now);
@@ -117,8 +120,7 @@ void EtherCatNetwork::take_emergencies(EtherCatNode& node, TimePoint now) {
 
 TimePoint EtherCatNetwork::deadline() const {
   auto out = watching_.count ? kNever : watching_.next;
-  for (const auto& node : nodes_) {
-    if (!node) continue;
+  for (const auto* node : known_) {
     if (node->image) out = std::min(out, node->image->deadline());
     if (node->coe) out = std::min(out, node->coe->deadline());
   }
@@ -148,8 +150,8 @@ Result<void> EtherCatNetwork::request_state(std::uint8_t number, NodeState state
   auto& node = of(number);
   if (*target == AlState::safeop || *target == AlState::op)
     return EtherCatExchange(*this, node).begin(*target);
-  if (auto ended = end_exchange(number); !ended) return ended;
-  // INIT is the way out of a mailbox that is of no use, and of BOOT.
+  // INIT is the way out of a mailbox that is of no use, and of BOOT, from which nothing leads to PRE-OP.
+  if (auto ended = end_exchange(number); !ended && *target != AlState::init) return ended;
   const auto ready = *target == AlState::init ? approach(node) : prepare(node);
   if (!ready) return ready;
   if (const auto there = go_to(node, *target); !there) return fail(there.error());
@@ -162,12 +164,11 @@ Result<void> EtherCatNetwork::ask_state(std::uint8_t node) {
   auto& asked = of(node);
   if (const auto ready = prepare(asked); !ready) return ready;
   watching_.next = now();
-  return wire_.flush();
+  return wire_.flush(now());
 }
 
 bool EtherCatNetwork::must_go_on() const {
-  return std::any_of(nodes_.begin(), nodes_.end(),
-                     [](const auto& node) { return node && node->exchanges(); });
+  return std::any_of(known_.begin(), known_.end(), [](const auto* node) { return node->exchanges(); });
 }
 
 Result<void> EtherCatNetwork::arm_watchdog(std::uint8_t node, const LifeSign& sign) {
@@ -206,8 +207,8 @@ void EtherCatNetwork::send_last_word(std::uint8_t node, ObjectAddress object, st
 }
 
 std::unique_ptr<ProcessValues> EtherCatNetwork::process_values(std::uint8_t node,
-                                                               std::span<const ObjectAddress>) {
-  return std::make_unique<EtherCatValues>(of(node));
+                                                               std::span<const ObjectAddress> objects) {
+  return std::make_unique<EtherCatValues>(of(node), objects);
 }
 
 std::vector<std::string> EtherCatNetwork::take_notices() {

@@ -76,6 +76,10 @@ class EtherCatNetwork final : public Network, private EtherCatTenant {
   /// nodes anew where the ring has changed. Errc::bus when nothing comes back, nobody is there, or, without
   /// `sii`, the ring has changed since it was numbered.
   Result<std::vector<Seen>> look(bool sii);
+  /// The nodes that objects can be asked of, by their SII: couplers and terminals have no CoE, and a notice
+  /// names those that are left out. One whose SII tells nothing is in. Changes no state; where another master
+  /// works no SII is read, and all are in. Errors as look(); Errc::negative when none is left.
+  Result<std::vector<std::uint8_t>> nodes_with_objects();
   /// Slaves that were there when it was counted last; 0 before.
   std::size_t count() const { return present_; }
   /// What the family of a node says of it, for where its SII does not.
@@ -128,6 +132,8 @@ class EtherCatNetwork final : public Network, private EtherCatTenant {
     std::optional<std::size_t> counted;
   };
 
+  Result<bool> lacks_objects(std::uint8_t node);
+
   // EtherCatTenant
   void serve(ethercat::Ring& ring, TimePoint now) override;
   TimePoint deadline() const override;
@@ -169,6 +175,7 @@ class EtherCatNetwork final : public Network, private EtherCatTenant {
 
   std::string url_;
   std::array<std::unique_ptr<EtherCatNode>, 128> nodes_;
+  std::vector<EtherCatNode*> known_;  ///< Those of `nodes_` that there are.
   std::array<bool, 128> taken_over_{};
   std::size_t count_ = 0;    ///< Slaves when they were numbered.
   std::size_t present_ = 0;  ///< When they were counted last.

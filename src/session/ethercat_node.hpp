@@ -17,6 +17,7 @@
 namespace servoctl::session {
 
 class EtherCatObjectChannel;
+class EtherCatValues;
 
 /// Station addresses that servoctl gives: 1001h to the first slave.
 constexpr std::uint16_t station_of(std::uint8_t node) { return static_cast<std::uint16_t>(0x1000U + node); }
@@ -55,7 +56,8 @@ struct EtherCatNode {
   bool raised = false;                       ///< servoctl has taken it above PRE-OP.
   std::vector<Assignment> assigned;
   Duration watchdog = std::chrono::milliseconds(100);
-  TimePoint output_at{};  ///< When it took an output last that was set by object.
+  TimePoint output_at{};                   ///< When it took an output last that was set by object.
+  std::vector<EtherCatValues*> listeners;  ///< Told whenever its image was served.
 
   // What was heard of it.
   std::optional<ethercat::AlStatus> al;

@@ -29,10 +29,9 @@ void EtherCatObjectChannel::start_download(ObjectAddress object, Bytes data, Tim
 }
 
 Result<void> EtherCatObjectChannel::on_time(TimePoint now) {
+  // Everything else was served by the last step.
   if (way_ == Way::waiting)
     if (const auto went = set_out(); !went) return went;
-  const auto flushed = network_->wire_.flush();
-  if (!flushed) return flushed;
   if (way_ == Way::output || way_ == Way::input) serve_image(now);
   return {};
 }
@@ -48,10 +47,10 @@ Result<void> EtherCatObjectChannel::set_out() {
     }
     until_ = network_->now() + timeout_;
   }
-  if (start_image()) return {};
+  const auto now = network_->now();
   // One transfer at a time; whoever is before has its own limit.
-  if (!node_->coe->client().busy()) start_mailbox(network_->now());
-  return {};
+  if (!start_image() && !node_->coe->client().busy()) start_mailbox(now);
+  return network_->wire_.flush(now);
 }
 
 void EtherCatObjectChannel::start_mailbox(TimePoint now) {

@@ -30,8 +30,8 @@ void EtherCatNetwork::ask_all(ethercat::Ring& ring, TimePoint now) {
       ring.post({ethercat::Command::brd, ethercat::physical_address(0, reg::kAlStatus), Bytes(2), true});
   if (!watching_.count) return;
   watching_.counted.reset();
-  for (const auto& node : nodes_) {
-    if (!node || (!node->coe && !node->gone)) continue;
+  for (const auto* node : known_) {
+    if (!node->coe && !node->gone) continue;
     const auto ticket =
         ring.post(ethercat::read_registers(node->address(), reg::kAlStatus, reg::kAlStatusSize));
     if (ticket) watching_.nodes.push_back({node->number, *ticket});

@@ -16,10 +16,9 @@ Result<void> EtherCatWire::send_frames(TimePoint now) {
   return {};
 }
 
-Result<void> EtherCatWire::flush() {
-  const auto time = now();
-  settle(time);
-  return send_frames(time);
+Result<void> EtherCatWire::flush(TimePoint now) {
+  settle(now);
+  return send_frames(now);
 }
 
 TimePoint EtherCatWire::next_event() const {
@@ -27,7 +26,7 @@ TimePoint EtherCatWire::next_event() const {
 }
 
 Result<bool> EtherCatWire::step(TimePoint deadline) {
-  if (const auto sent = flush(); !sent) return fail(sent.error());
+  if (const auto sent = flush(now()); !sent) return fail(sent.error());
   const auto frame = port_->receive(std::min({deadline, ring_.deadline(), tenant_->deadline()}));
   if (!frame) return fail(frame.error());
   stepped_at_ = *frame ? std::max(stepped_at_, port_->arrived()) : now();

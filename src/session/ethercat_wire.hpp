@@ -50,7 +50,7 @@ class EtherCatWire {
   void set_cancelled(std::function<bool()> cancelled) { cancelled_ = std::move(cancelled); }
 
   /// Serves the tenant and sends what is to be sent. Errc::bus when the port does not take it.
-  Result<void> flush();
+  Result<void> flush(TimePoint now);
   /// Waits until `deadline` at most, and takes in one frame at most. True when one arrived.
   Result<bool> step(TimePoint deadline);
   /// When step() has something to do although nothing arrives.

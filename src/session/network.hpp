@@ -79,8 +79,21 @@ class ProcessValues {
   ProcessValues& operator=(const ProcessValues&) = delete;
   virtual ~ProcessValues() = default;
 
+  struct Arrival {
+    ObjectAddress object;
+    Bytes value;
+    TimePoint
+        time;  ///< When the frame that brought it arrived; on a ring when the one was sent that fetched it.
+  };
+
   /// The value that came since `since`, each one once; empty when none has: the object is to be read then.
   virtual std::optional<Bytes> take(ObjectAddress object, TimePoint since) = 0;
+  /// Whether the node sends the object, or a part of it, by itself now.
+  virtual bool carries(ObjectAddress object) const = 0;
+  /// From now on every value is kept until take_all(), in every wait.
+  virtual void keep_all() = 0;
+  /// What came since the last call, in order of time; nothing before keep_all().
+  virtual std::vector<Arrival> take_all() = 0;
 };
 
 /// What was heard of each node (1..127) in all waits since the network was opened.

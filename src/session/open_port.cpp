@@ -81,6 +81,13 @@ std::vector<std::string> ethercat_urls() {
   return out;
 }
 
+std::vector<std::string> ethercat_links() {
+  std::vector<std::string> out;
+  for (const auto& interface : ethernet::ethernet_interfaces())
+    if (ethernet::has_link(interface)) out.push_back(std::string(kScheme) + interface);
+  return out;
+}
+
 bool is_ethercat(std::string_view url) { return url.starts_with(kScheme); }
 
 Result<std::unique_ptr<ethernet::Port>> open_port(std::string_view url, const BusOptions& options) {

@@ -20,6 +20,8 @@ bool is_pcap(const std::filesystem::path& file);
 
 /// What URLs of such wires begin with on this machine: `coe:eth0`, `coe:local:`, `coe:sim:`.
 std::vector<std::string> ethercat_urls();
+/// The Ethernet ports of this machine with somebody at the other end of their cable: `coe:eth0`.
+std::vector<std::string> ethercat_links();
 
 /// Opens a wire with an EtherCAT ring by URL, as its master: `coe:eth0`, `coe:local:NAME`,
 /// `coe:sim:sv2@1,sv2@2?state=FILE`.

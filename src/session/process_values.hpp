@@ -14,4 +14,8 @@ namespace servoctl::session {
 std::unique_ptr<ProcessValues> process_values(Session& session, const drive::Profile* profile,
                                               std::uint8_t node, std::span<const ObjectAddress> objects);
 
+/// Reads the mapping of these nodes, all at the same time, where Network::process_values() has to know it: on
+/// CAN. Of one that does not tell it nothing comes. `profile` may be null.
+void learn_pdos(Session& session, const drive::Profile* profile, std::span<const std::uint8_t> nodes);
+
 }  // namespace servoctl::session

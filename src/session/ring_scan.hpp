@@ -32,7 +32,7 @@ struct RingScan {
 /// Looks at the ring: registers and SII of every slave. No state is changed and no address given. Objects
 /// (1000h, 1008h to 100Ah, 1018h) are read only of slaves in PRE-OP or above, and only where every slave has
 /// the address that servoctl gives it. Nothing but registers is read where another master works. Errc::bus
-/// when no frame comes back or nobody is there.
+/// when frames do not come back or nobody is there.
 Result<RingScan> scan_ring(Session& session, EtherCatNetwork& ring);
 
 }  // namespace servoctl::session

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
-#include <numeric>
 
 #include "canopen/node_list.hpp"
 #include "drive/standard_objects.hpp"
@@ -88,13 +87,7 @@ Result<std::vector<Identity>> scan(Session& session, std::span<const std::uint8_
 }
 
 Result<std::vector<std::uint8_t>> nodes_present(Session& session) {
-  if (auto* ring = session.ethercat()) {
-    const auto seen = ring->look(false);
-    if (!seen) return fail(seen.error());
-    std::vector<std::uint8_t> out(seen->size());
-    std::iota(out.begin(), out.end(), std::uint8_t{1});
-    return out;
-  }
+  if (auto* ring = session.ethercat()) return ring->nodes_with_objects();
   const auto found = scan(session, canopen::every_node_id());
   if (!found) return fail(found.error());
   if (found->empty())

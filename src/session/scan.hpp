@@ -18,7 +18,7 @@ namespace servoctl::session {
 Result<std::vector<Identity>> scan(Session& session, std::span<const std::uint8_t> nodes,
                                    std::vector<Error>* away = nullptr);
 
-/// The node-IDs that answer scan(); on EtherCAT the positions of the slaves, of which nothing is asked.
+/// The node-IDs that answer scan(); on EtherCAT EtherCatNetwork::nodes_with_objects().
 /// Errc::timeout when none does, Errc::bus when the bus is lost.
 Result<std::vector<std::uint8_t>> nodes_present(Session& session);
 

@@ -34,7 +34,8 @@ struct SdoRequest {
   ObjectAddress object;
   std::optional<Bytes> data = {};
   canopen::Transfer transfer = canopen::Transfer::automatic;
-  std::size_t size = 0;  ///< Bytes the object has, when known; for answers that do not say it.
+  std::size_t size = 0;        ///< Bytes the object has, when known; for answers that do not say it.
+  TimePoint* ended = nullptr;  ///< Where to note when its answer came, or when it was given up; may be null.
 };
 
 struct Options {

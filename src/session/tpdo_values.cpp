@@ -11,7 +11,7 @@ TpdoValues::TpdoValues(CanNetwork& network, std::span<const canopen::Pdo> pdos,
   for (const auto object : objects) values_[object];
   for (const auto& pdo : pdos) {
     const bool carries = std::any_of(pdo.entries.begin(), pdo.entries.end(), [&](const auto& entry) {
-      return entry.bits % 8 == 0 && values_.count(entry.object) != 0;
+      return !entry.is_gap() && values_.count(entry.object) != 0;
     });
     if (pdo.direction == canopen::PdoDirection::transmit && pdo.is_valid() && carries) pdos_.push_back(pdo);
   }
@@ -21,6 +21,13 @@ std::optional<Bytes> TpdoValues::take(ObjectAddress object, TimePoint since) {
   const auto known = values_.find(object);
   if (known == values_.end() || !known->second || known->second->time < since) return std::nullopt;
   return std::exchange(known->second, std::nullopt)->bytes;
+}
+
+bool TpdoValues::carries(ObjectAddress object) const {
+  return std::any_of(pdos_.begin(), pdos_.end(), [&](const canopen::Pdo& pdo) {
+    return std::any_of(pdo.entries.begin(), pdo.entries.end(),
+                       [&](const auto& entry) { return entry.object == object; });
+  });
 }
 
 void TpdoValues::on_frame(const can::Frame& frame, TimePoint time) {
@@ -33,8 +40,9 @@ void TpdoValues::on_frame(const can::Frame& frame, TimePoint time) {
     auto parts = canopen::unpack_pdo(pdo.entries, frame.payload());
     for (std::size_t i = 0; parts && i < parts->size(); ++i) {
       const auto place = values_.find(pdo.entries[i].object);
-      if (place != values_.end() && pdo.entries[i].bits % 8 == 0)
-        place->second = Value{std::move((*parts)[i]), time};
+      if (place == values_.end()) continue;
+      if (keeps_all_) arrivals_.push_back({place->first, (*parts)[i], time});
+      if (pdo.entries[i].bits % 8 == 0) place->second = Value{std::move((*parts)[i]), time};
     }
   }
 }

@@ -3,6 +3,7 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "canopen/pdo.hpp"
@@ -14,10 +15,14 @@ namespace servoctl::session {
 /// frame.
 class TpdoValues final : public ProcessValues {
  public:
-  /// A PDO that carries none of the objects, is not valid, or carries only a part of an object is left out.
+  /// A PDO that carries none of the objects, or is not valid, is left out. What is no whole number of bytes
+  /// is a part of an object: take() does not give it, take_all() does.
   TpdoValues(CanNetwork& network, std::span<const canopen::Pdo> pdos, std::span<const ObjectAddress> objects);
 
   std::optional<Bytes> take(ObjectAddress object, TimePoint since) override;
+  bool carries(ObjectAddress object) const override;
+  void keep_all() override { keeps_all_ = true; }
+  std::vector<Arrival> take_all() override { return std::exchange(arrivals_, {}); }
 
  private:
   struct Value {
@@ -28,6 +33,8 @@ class TpdoValues final : public ProcessValues {
 
   std::vector<canopen::Pdo> pdos_;
   std::map<ObjectAddress, std::optional<Value>> values_;
+  bool keeps_all_ = false;
+  std::vector<Arrival> arrivals_;
   Hearing hearing_;
 };
 

@@ -121,6 +121,7 @@ void TransferRun::finish(Lane& channel, Result<Bytes> result) {
     result.error().hint = session_->network().silence_hint(request.node);
   auto& place = results_[channel.current];
   place = std::move(result);
+  if (request.ended != nullptr) *request.ended = session_->network().stepped_at();
   --open_;
   const auto& options = session_->options();
   if (options.list_progress && requests_.size() >= kLongList)

@@ -20,7 +20,10 @@ constexpr std::uint32_t kLastPdoId = 0x57F;
 
 /// The bits of an entry as a number; at most 64.
 std::uint64_t bits_at(ByteSpan data, std::size_t first, std::size_t count) {
-  const auto whole = load_le(data.first(std::min<std::size_t>(data.size(), 8))) >> first;
+  const auto from = data.subspan(std::min(first / 8, data.size()));
+  const auto shift = first % 8;
+  auto whole = load_le(from.first(std::min<std::size_t>(from.size(), 8))) >> shift;
+  if (shift != 0 && from.size() > 8) whole |= std::uint64_t{from[8]} << (64 - shift);
   return count >= 64 ? whole : whole & ((std::uint64_t{1} << count) - 1);
 }
 
@@ -90,7 +93,7 @@ PdoView make_view(const drive::Profile* profile, bool chinese, std::uint8_t node
   out.name = canopen::name(out.pdo.direction, out.pdo.number);
   std::size_t at = 0;
   for (const auto& entry : out.pdo.entries) {
-    if (!entry.is_gap() && entry.bits > 0 && at + entry.bits <= 64)
+    if (!entry.is_gap() && entry.bits > 0 && entry.bits <= 64)
       out.fields.push_back(make_field(profile, chinese, node, entry, at));
     at += entry.bits;
   }

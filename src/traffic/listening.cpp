@@ -24,6 +24,7 @@ Result<void> listen(session::Session& session, std::optional<Duration> length, c
     const auto frame = network == nullptr ? std::optional<can::Frame>() : network->frame();
     const auto now = session.received_at();
     if (frame && now < end && listener.on_frame) listener.on_frame(*frame, now);
+    if (listener.on_step) listener.on_step();
     if (!*stepped || now >= shown + kSlice) {
       if (listener.on_pause) listener.on_pause();
       shown = now;

@@ -12,6 +12,8 @@ namespace servoctl::traffic {
 struct Listener {
   /// Told each frame of a CAN bus; on another network there are none.
   std::function<void(const can::Frame& frame, TimePoint time)> on_frame = {};
+  /// Called after each step, for what comes in no frame of its own: process data of a ring.
+  std::function<void()> on_step = {};
   /// Called whenever nothing more is waiting, and every 50 ms.
   std::function<void()> on_pause = {};
   /// Called when `next` (asked each time) has come.

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "base/csv.hpp"
 #include "base/number.hpp"
-#include "canopen/cob_id.hpp"
-#include "canopen/sdo_frame.hpp"
 #include "session/measure.hpp"
+#include "session/process_values.hpp"
 #include "show/records.hpp"
 
 namespace servoctl::traffic {
@@ -73,74 +73,61 @@ Result<Sampler> Sampler::make(show::Desk& desk, std::span<const std::string> nam
       if (label.empty()) label = to_string(target->address);
       out.channels_.push_back({node, *target, std::move(label), desk.nodes.size() > 1});
     }
-  out.brought_.resize(out.channels_.size());
-  out.answered_.resize(out.channels_.size());
   add_bridges(desk, out.channels_);
-  out.find_pdos();
+  out.begin_hearing();
   return out;
 }
 
-void Sampler::find_pdos() {
-  const auto answers = session::read_pdos(*desk_->session, desk_->profile, desk_->nodes);
-  for (std::size_t i = 0; i < answers.size(); ++i) {
-    if (!answers[i]) continue;
-    for (const auto& pdo : *answers[i]) {
-      if (!pdo.is_valid() || pdo.direction != canopen::PdoDirection::transmit) continue;
-      const auto view = show::make_view(desk_->profile, desk_->chinese, desk_->nodes[i], pdo);
-      for (std::size_t c = 0; c < channels_.size(); ++c)
-        for (const auto& field : view.fields)
-          if (channels_[c].node == view.node && channels_[c].target.address == field.entry.object)
-            sources_.push_back({c, view.can_id(), field, pdo.bits()});
-    }
+void Sampler::begin_hearing() {
+  session::learn_pdos(*desk_->session, desk_->profile, desk_->nodes);
+  for (const auto node : desk_->nodes) {
+    std::vector<ObjectAddress> objects;
+    for (const auto& channel : channels_)
+      if (channel.node == node) objects.push_back(channel.target.address);
+    sources_.push_back({node, desk_->session->network().process_values(node, objects)});
+    sources_.back().values->keep_all();
   }
 }
 
-std::vector<Sample> Sampler::on_frame(const can::Frame& frame, TimePoint time) {
+std::vector<Sample> Sampler::gather() {
   std::vector<Sample> out;
-  if (frame.remote || frame.error) return out;
-  const auto data = frame.payload();
-  const auto can_id = canopen::can_id_of(frame);
-  if (!frame.extended && frame.id > canopen::kSdoAnswer &&
-      frame.id <= canopen::kSdoAnswer + canopen::kLastNode && data.size() >= 4)
-    for (std::size_t i = 0; i < channels_.size(); ++i)
-      if (channels_[i].node + canopen::kSdoAnswer == frame.id &&
-          channels_[i].target.address == canopen::sdo_object(frame))
-        answered_[i] = time;
-  for (const auto& source : sources_) {
-    if (source.can_id != can_id || data.size() * 8 < source.bits) continue;
-    const canopen::PdoEntry skipped{{0x0001, 0}, static_cast<std::uint8_t>(source.field.first_bit)};
-    const canopen::PdoEntry entries[] = {skipped, source.field.entry};
-    out.push_back({source.channel, time, canopen::unpack_pdo(entries, data)->back(), true});
-    brought_[source.channel] = out.back();
-  }
+  for (const auto& source : sources_)
+    for (auto& arrival : source.values->take_all())
+      for (std::size_t i = 0; i < channels_.size(); ++i)
+        if (channels_[i].node == source.node && channels_[i].target.address == arrival.object)
+          out.push_back({i, arrival.time, arrival.value, true});
   return out;
 }
 
 bool Sampler::is_carried(std::size_t channel) const {
-  return std::any_of(sources_.begin(), sources_.end(), [&](const Source& s) { return s.channel == channel; });
+  return std::any_of(sources_.begin(), sources_.end(), [&](const Source& source) {
+    return source.node == channels_[channel].node &&
+           source.values->carries(channels_[channel].target.address);
+  });
 }
 
 std::vector<Sample> Sampler::read(std::span<const std::size_t> wanted) {
-  auto& session = *desk_->session;
+  std::vector<TimePoint> ended(wanted.size());
   std::vector<session::SdoRequest> requests;
-  const auto begin = session.now();
-  for (const auto i : wanted) {
-    requests.push_back({.node = channels_[i].node, .object = channels_[i].target.address});
-    answered_[i] = begin;
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    const auto& channel = channels_[wanted[k]];
+    requests.push_back({.node = channel.node, .object = channel.target.address, .ended = &ended[k]});
   }
-  auto answers = session.transfer(requests);
+  auto answers = desk_->session->transfer(requests);
   std::vector<Sample> out;
   for (std::size_t k = 0; k < wanted.size(); ++k)
-    out.push_back({wanted[k], answers[k] ? answered_[wanted[k]] : session.now(), std::move(answers[k])});
+    out.push_back({wanted[k], answers[k] ? ended[k] : desk_->session->now(), std::move(answers[k])});
   return out;
 }
 
 std::vector<Sample> Sampler::take() {
+  std::vector<std::optional<Sample>> brought(channels_.size());
+  for (auto& sample : gather()) brought[sample.channel] = std::move(sample);
   std::vector<Sample> out(channels_.size());
   std::vector<std::size_t> missing;
   for (std::size_t i = 0; i < channels_.size(); ++i)
-    if (brought_[i])
-      out[i] = *std::exchange(brought_[i], std::nullopt);
+    if (brought[i])
+      out[i] = std::move(*brought[i]);
     else
       missing.push_back(i);
   for (auto& sample : read(missing)) out[sample.channel] = std::move(sample);

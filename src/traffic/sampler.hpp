@@ -1,12 +1,13 @@
 #pragma once
 
-#include <optional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "base/series.hpp"
 #include "base/statistics.hpp"
-#include "show/pdo_book.hpp"
+#include "session/network.hpp"
+#include "show/desk.hpp"
 #include "show/reading.hpp"
 
 namespace servoctl::traffic {
@@ -23,47 +24,42 @@ struct Channel {
 /// A value of a channel.
 struct Sample {
   std::size_t channel = 0;
-  TimePoint time{};  ///< When the frame that brought it arrived; of a failed read, when that was over.
+  TimePoint time{};  ///< As of a session::ProcessValues; of a read, when it was over.
   Result<Bytes> bytes = Bytes{};
-  bool by_pdo = false;  ///< A TPDO brought it.
+  bool by_pdo = false;  ///< A TPDO brought it, or a cycle of process data.
 };
 
-/// Looks at objects of drives: takes what TPDOs bring, and reads by SDO what they do not.
+/// Looks at objects of drives: takes what they send by themselves, and reads by SDO what they do not.
 class Sampler {
  public:
   /// The objects of all nodes of the desk. Errc::usage for an unknown name. Asks the nodes for their PDO
   /// mapping; one that does not tell it is read by SDO alone.
   static Result<Sampler> make(show::Desk& desk, std::span<const std::string> names);
 
-  /// Every frame that is received, in every wait (see session::Hearing). The values it brings, when it is a
-  /// TPDO with some of the objects.
-  std::vector<Sample> on_frame(const can::Frame& frame, TimePoint time);
+  /// What came by itself since the call before, in all waits.
+  std::vector<Sample> gather();
   /// Reads these channels, all nodes at the same time; in the order of `wanted`.
   std::vector<Sample> read(std::span<const std::size_t> wanted);
-  /// A value of each channel: the last one a TPDO brought since the call before, else read now.
+  /// A value of each channel: the last one that came by itself since the call before, else read now.
   std::vector<Sample> take();
 
   std::span<const Channel> channels() const { return channels_; }
-  /// Whether some TPDO carries the channel.
+  /// Whether the node sends it by itself now.
   bool is_carried(std::size_t channel) const;
 
  private:
   explicit Sampler(show::Desk& desk) : desk_(&desk) {}
-  void find_pdos();
+  void begin_hearing();
 
-  /// Where a channel is found in a TPDO.
+  /// What one node sends by itself.
   struct Source {
-    std::size_t channel = 0;
-    std::uint32_t can_id = 0;
-    show::PdoField field;
-    std::size_t bits = 0;  ///< Of the whole PDO.
+    std::uint8_t node = 0;
+    std::unique_ptr<session::ProcessValues> values;
   };
 
   show::Desk* desk_;
   std::vector<Channel> channels_;
   std::vector<Source> sources_;
-  std::vector<std::optional<Sample>> brought_;
-  std::vector<TimePoint> answered_;  ///< When the SDO answer of each channel last came.
 };
 
 /// Errc::usage for a channel whose object is known to be no number.

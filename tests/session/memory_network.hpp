@@ -252,6 +252,15 @@ class MemoryNetwork::Values final : public ProcessValues {
     Bytes out;
     return node->objects->read(object, out) == 0 ? std::optional(std::move(out)) : std::nullopt;
   }
+  bool carries(ObjectAddress object) const override { return taken_.count(object) != 0; }
+  void keep_all() override {}
+  std::vector<Arrival> take_all() override {
+    std::vector<Arrival> out;
+    for (const auto& [object, time] : taken_)
+      if (auto value = take(object, TimePoint::min()))
+        out.push_back({object, std::move(*value), taken_[object]});
+    return out;
+  }
 
  private:
   MemoryNetwork* network_;
