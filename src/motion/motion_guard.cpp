@@ -145,6 +145,7 @@ bool MotionGuard::needs_process_data() const {
 Result<void> MotionGuard::start_node() {
   state_before_ = session_->watch().state(node_);
   const bool needed = needs_process_data() || units_->profile().rules.nmt.disables_outside_operational;
+  held_before_ = needs_process_data() && state_before_ == session::NodeState::operational;
   if (!needed || state_before_ == session::NodeState::operational) return {};
   started_ = true;
   if (rehearsal_ != nullptr) {

@@ -89,6 +89,8 @@ class MotionGuard {
   void tell_foreign_writes();
   void disarm();
   void put_node_back();
+  bool is_in_op();
+  void return_to_op();
   void verify();
   void note(const std::string& what, const Error& error);
 
@@ -99,7 +101,8 @@ class MotionGuard {
   session::Protection::Hold hold_;
   std::vector<Changed> changed_;
   std::optional<WatchdogPlan> watchdog_;
-  bool started_ = false;  ///< It was told to become operational.
+  bool started_ = false;      ///< It was told to become operational.
+  bool held_before_ = false;  ///< Process data were exchanged with it in OP already.
   std::optional<session::NodeState> state_before_;
   bool energised_ = false;  ///< It was commanded up, so it may be.
   bool lost_ = false;       ///< The drive or the bus does not answer any more.

@@ -40,11 +40,37 @@ void MotionGuard::put_node_back() {
          sent.error());
 }
 
+bool MotionGuard::is_in_op() {
+  const auto heard = session_->watch().heartbeats(node_);
+  if (!session_->network().ask_state(node_)) return false;
+  (void)session_->wait([&] { return session_->watch().heartbeats(node_) != heard; },
+                       session_->now() + kEndPatience);
+  return session_->watch().state(node_) == session::NodeState::operational;
+}
+
+/// The user had it in OP. It goes there anew, so that every output is preset: 607Ah from where it stands now.
+/// One that has left OP by itself is not taken there again.
+void MotionGuard::return_to_op() {
+  auto& network = session_->network();
+  const bool still_there = !lost_ && is_in_op();
+  const auto ended = network.end_exchange(node_);
+  if (lost_ || powered_) return;
+  const auto back = !ended        ? ended
+                    : still_there ? network.request_state(node_, session::NodeState::operational)
+                                  : fail(Errc::negative, "it left it during the motion");
+  if (!back)
+    result_.notes.push_back(fmt::format(
+        "it was in {} before and is in {} now: {}", network.state_word(session::NodeState::operational),
+        network.state_word(session_->watch().state(node_).value_or(session::NodeState::unknown)),
+        back.error().message));
+}
+
 /// Halt where there is one, target to zero, a quick stop when that does not help, then 07h and 00h.
 PowerDownPlan MotionGuard::way_down() {
   PowerDownPlan plan;
   plan.node = node_;
   plan.aim = PowerAim::stop_and_disable;
+  plan.keeps_exchange = held_before_;
   const auto& rules = units_->profile().rules.motion;
   auto& gentle = plan.gentle.emplace();
   gentle.halt = rules.halt;
@@ -177,7 +203,9 @@ MotionEnd MotionGuard::end() {
   if (energised_) bring_down();
   put_back();
   put_node_back();
-  disarm();
+  if (held_before_) return_to_op();
+  if (!held_before_ || lost_ || powered_) disarm();
+  watchdog_.reset();
   verify();
   tell_foreign_writes();
   if (!result_.verified) session_->energised().insert(node_);

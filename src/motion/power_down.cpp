@@ -220,7 +220,7 @@ std::vector<PowerDownResult> take_down(session::Session& session, std::vector<Po
     out.push_back(drive->result());
     const bool seen = out.back().statusword && !drive::is_energised(out.back().state());
     if (out.back().written && seen && out.back().outcome) session.energised().erase(drive->node());
-    if (out.back().is_without_power())
+    if (out.back().is_without_power() && !drive->plan().keeps_exchange)
       if (const auto ended = session.network().end_exchange(drive->node()); !ended)
         out.back().notes.push_back("it could not be set back to PRE-OP: " + ended.error().message);
   }

@@ -43,6 +43,7 @@ struct PowerDownPlan {
   double standstill = 0;
   /// Gives the words for what is sent beside controlwords; set by take_down().
   const session::Network* network = nullptr;
+  bool keeps_exchange = false;            ///< Process data go on behind it; else they end with its power.
   std::function<void()> on_silence = {};  ///< Called once, when the drive does not answer for the first time.
 };
 
@@ -87,6 +88,7 @@ class PowerDown final : public Dialogue {
   void on_end(const Error& error) override;
 
   const PowerDownResult& result() const { return result_; }
+  const PowerDownPlan& plan() const { return plan_; }
 
  private:
   enum class State : std::uint8_t {

@@ -15,7 +15,7 @@ Result<SiiFault> sii_fault_of(const CellSpec& spec);
 /// from 1.
 ///   fault=CODE@TIME, counts=N      as on CAN
 ///   delay=TIME       answers of the mailboxes come this late
-///   silent=TIME      from then on no frame comes back
+///   silent=TIME      from then on frames do not come back
 ///   lose=N           every Nth frame does not come back; what it asked for was done
 ///   short=N          every Nth frame comes back with working counters that are one too low
 ///   mailbox=full     what the master writes into a mailbox stays there

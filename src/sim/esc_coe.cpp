@@ -42,6 +42,11 @@ EscCoe::Answer EscCoe::on_request(ByteSpan request, std::size_t most) {
   }
   if (service == kSdoRequest) {
     if (data.size() < kSdoSize) return {{}, kTooShort};
+    const Bytes asked(data.begin(), data.begin() + 4);
+    if (asleep_ && asked == Bytes{0x40, 0x41, 0x60, 0x00}) {
+      out.messages.push_back(message(kSdoResponse, Bytes{0x4B, 0x41, 0x60, 0x00, 0, 0, 0, 0}));
+      return out;
+    }
     auto answer = server_.on_request(data, most - kCoeHead);
     const auto as = answer && answer->abort ? options_.abort_service : std::uint8_t{kSdoResponse};
     if (answer) out.messages.push_back(message(as, answer->message));

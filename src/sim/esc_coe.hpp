@@ -33,12 +33,15 @@ class EscCoe final : public EscProtocol {
   static Bytes emergency(const Emergency& emergency);
   /// PRE-OP begins or ends.
   void reset() { server_.reset(); }
+  /// From now on its statusword reads 0, or no longer.
+  void set_asleep(bool asleep) { asleep_ = asleep; }
 
  private:
   EscSdoServer server_;
   EscSdoInfo info_;
   Options options_;
   EscFaults* faults_;
+  bool asleep_ = false;
 };
 
 }  // namespace servoctl::sim

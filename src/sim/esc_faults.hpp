@@ -18,6 +18,7 @@ struct EscFaults {
   bool no_repeat = false;              ///< Asked for a message again, it confirms and has none.
   bool refuses_free_run = false;       ///< OP only with SYNC0 (AL status 0027h).
   bool refuses_mapped_writes = false;  ///< In OP it takes no SDO of what its outputs carry (0601 0006h).
+  bool sleeps_outside_op = false;      ///< Its drive state machine runs in OP only: 6041h reads 0 elsewhere.
   Duration state_delay{};              ///< From the request of a state to what comes of it.
 };
 

@@ -65,7 +65,25 @@ EscSdoServer::Answer EscSdoServer::abort(std::uint32_t code) {
   return {std::move(out), true};
 }
 
+namespace {
+
+/// 1C00h, what each sync manager is for (ETG.1000.6, 5.6.7.2), of a family whose dictionary does not list it:
+/// mailboxes out and in, process data out and in.
+std::optional<Bytes> sync_manager_use(ObjectAddress object) {
+  constexpr std::uint16_t kSyncManagerUse = 0x1C00;
+  constexpr std::uint8_t kUses = 4;
+  if (object.index != kSyncManagerUse || object.sub > kUses) return std::nullopt;
+  return Bytes{object.sub == 0 ? kUses : object.sub};
+}
+
+}  // namespace
+
 std::uint32_t EscSdoServer::read(Bytes& out) {
+  if (auto use = complete_ ? std::nullopt : sync_manager_use(object_)) {
+    if (store_->read(object_, out) != abort_code::kNoObject) return store_->read(object_, out);
+    out = std::move(*use);
+    return 0;
+  }
   return complete_ ? whole_.read(object_.index, object_.sub, out) : store_->read(object_, out);
 }
 

@@ -61,7 +61,10 @@ void EscSlave::on_time(TimePoint now) {
     if (state() == EscState::op) states_.fall_to(EscState::safe_op, al_code::kWatchdog);
     master_lost_ = false;
   }
-  if (now >= fall_.time) states_.fall_to(fall_.to, std::exchange(fall_, {}).code);
+  if (now >= fall_.time) {
+    const auto fall = std::exchange(fall_, {});
+    states_.fall_to(fall.to, fall.code);
+  }
   work(now);
 }
 

@@ -84,6 +84,7 @@ std::uint16_t EscSlave::check_synchronisation() const {
 bool EscSlave::outputs_arrive() const { return outputs_seen_ || process_data_.output_size() == 0; }
 
 void EscSlave::on_state(EscState from, EscState to) {
+  coe_.set_asleep(faults_.sleeps_outside_op && to != EscState::op);
   if (from == EscState::op) leave_op(master_lost_);
   if (from >= EscState::safe_op && to < EscState::safe_op) {
     registers().stop_watchdog();

@@ -39,6 +39,7 @@ std::uint16_t EscStates::refusal(unsigned wanted) const {
     case static_cast<unsigned>(EscState::init):
     case static_cast<unsigned>(EscState::pre_op): return al_code::kNone;
     case static_cast<unsigned>(EscState::boot):
+      if (state_ == EscState::boot) return al_code::kNone;  // Its error is acknowledged.
       return state_ == EscState::init ? al_code::kNoBoot : al_code::kInvalidChange;
     case static_cast<unsigned>(EscState::safe_op):
       return state_ == EscState::init ? al_code::kInvalidChange : al_code::kNone;

@@ -99,6 +99,23 @@ TEST_F(EtherCatMotion, MoveHomeAndTorqueDoSoToo) {
   expect_left_alone(run(torque, plan_torque, run_torque));
 }
 
+TEST_F(EtherCatMotion, ADriveThatRunsItsStateMachineInOpOnlyIsLookedAtAgainThere) {
+  slave().faults().sleeps_outside_op = true;
+  EXPECT_EQ(session_->upload(1, objects::kStatusword).value(), (Bytes{0, 0}));
+  Motion motion(*session_, profile(), 1, options_);
+  ASSERT_TRUE(motion.prepare());
+  const auto items = motion.look(false);
+  ASSERT_TRUE(items) << items.error().message;
+  const auto state =
+      std::find_if(items->begin(), items->end(), [](const auto& i) { return i.what == "state"; });
+  ASSERT_NE(state, items->end());
+  EXPECT_EQ(state->weight, PreflightItem::Weight::note) << state->text;
+  EXPECT_NE(state->text.find("it is looked at again in OP"), std::string::npos) << state->text;
+  const auto done = run(jog_for("60rpm", 1s), plan_jog, run_jog);
+  EXPECT_TRUE(done.outcome) << done.outcome.error().message;
+  expect_safe();
+}
+
 TEST_F(EtherCatMotion, TheWatchdogIsThatOfTheSyncManager) {
   const auto plan = plan_watchdog(*session_, profile(), 1, {});
   ASSERT_TRUE(plan);
@@ -152,6 +169,54 @@ TEST_F(EtherCatMotion, CtrlCEndsItInPreOpWithoutPower) {
   expect_safe();
   EXPECT_EQ(slave().state(), sim::EscState::pre_op);
   EXPECT_EQ(changed(), std::vector<std::string>{});
+}
+
+TEST_F(EtherCatMotion, ADriveThatWasInOpIsBackInOpBehindAMotionWithItsTargetWhereItStands) {
+  ASSERT_TRUE(network().request_state(1, session::NodeState::operational));
+  const auto done = jog();
+  EXPECT_TRUE(done.outcome) << done.outcome.error().message;
+  EXPECT_TRUE(done.end.verified);
+  EXPECT_EQ(done.end.notes, std::vector<std::string>{});
+  expect_safe();
+  EXPECT_EQ(slave().state(), sim::EscState::op);
+  ASSERT_TRUE(network().must_go_on());
+  pass(500ms);
+  EXPECT_EQ(slave().state(), sim::EscState::op);
+  expect_safe();
+  EXPECT_EQ(session_->upload(1, objects::kTargetPosition).value(),
+            session_->upload(1, objects::kPositionActual).value());
+  EXPECT_EQ(session_->upload(1, objects::kTargetVelocity).value(), (Bytes{0, 0, 0, 0}));
+}
+
+TEST_F(EtherCatMotion, ADriveThatWasInOpAndFellOutOfItIsNotTakenThereAgain) {
+  ASSERT_TRUE(network().request_state(1, session::NodeState::operational));
+  options_.on_sample = [this, planned = false](const MotionSample& sample) mutable {
+    if (!std::exchange(planned, true))
+      slave().plan_fall({sample.time + 400ms, sim::EscState::safe_op, 0x001A});
+  };
+  const auto done = jog("60rpm", 5s);
+  ASSERT_FALSE(done.outcome);
+  expect_safe();
+  EXPECT_EQ(slave().state(), sim::EscState::pre_op);
+  EXPECT_EQ(done.end.notes, std::vector<std::string>{
+                                "it was in OP before and is in PRE-OP now: it left it during the motion"});
+}
+
+TEST_F(EtherCatMotion, ADriveInOpThatIsRefusedBeforeItHasPowerStaysInOp) {
+  ASSERT_TRUE(network().request_state(1, session::NodeState::operational));
+  Motion motion(*session_, profile(), 1, {});
+  ASSERT_TRUE(motion.prepare());
+  {
+    MotionGuard guard(*session_, motion.units(), 1);
+    WatchdogPlan plan;
+    plan.kind = WatchdogPlan::Kind::sync_manager;
+    plan.time = 100ms;
+    ASSERT_TRUE(guard.start_node());
+    ASSERT_TRUE(guard.arm(plan));
+  }
+  pass(500ms);
+  EXPECT_EQ(slave().state(), sim::EscState::op);
+  EXPECT_TRUE(network().must_go_on());
 }
 
 TEST_F(EtherCatMotion, ADriveThatWasEnabledIsHeldAndLetGo) {
