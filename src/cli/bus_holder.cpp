@@ -16,6 +16,7 @@
 #include "session/can_network.hpp"
 #include "session/link_wait.hpp"
 #include "session/open_network.hpp"
+#include "session/open_port.hpp"
 #include "session/serve_ring.hpp"
 #include "traffic/sync_end.hpp"
 
@@ -26,20 +27,25 @@ namespace {
 constexpr Duration kReconnectPause = std::chrono::milliseconds(10);
 constexpr Duration kTelling = std::chrono::seconds(1);
 
-Error no_bus() {
-  const auto interfaces = can::can_interfaces();
-  return make_error(
-      Errc::usage, "which bus?",
-      interfaces.empty()
-          ? "this machine has no CAN interface; try `--bus sim:FAMILY@1` (`drives` lists families), or "
-            "local:NAME"
-          : fmt::format("add --bus {} or set SERVOCTL_BUS", one_of(interfaces)));
-}
-
 }  // namespace
 
+std::string bus_hint(std::span<const std::string> can, std::span<const std::string> coe) {
+  std::string ring;
+  if (!coe.empty())
+    ring = fmt::format("for EtherCAT drives on {}: --bus {}",
+                       coe.size() == 1 ? "the Ethernet port with a link" : "an Ethernet port with a link",
+                       one_of(coe));
+  if (!can.empty())
+    return fmt::format("add --bus {} or set SERVOCTL_BUS{}{}", one_of(can), ring.empty() ? "" : "; ", ring);
+  return fmt::format(
+      "this machine has no CAN interface; {}{}try `--bus sim:FAMILY@1` (`drives` lists families), or "
+      "local:NAME",
+      ring, ring.empty() ? "" : "; else ");
+}
+
 Result<session::Session*> BusHolder::open(const Settings& settings) {
-  if (settings.bus.empty()) return fail(no_bus());
+  if (settings.bus.empty())
+    return fail(Errc::usage, "which bus?", bus_hint(can::can_interfaces(), session::ethercat_links()));
   const auto url = session::canonical_url(settings.bus);
   const bool traces_anew = bus_options_.trace != settings.trace;
   const bool is_open = open_.count(url) != 0;

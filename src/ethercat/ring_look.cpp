@@ -107,11 +107,12 @@ void RingLook::on_answer(const Answer& answer, TimePoint) {
 void RingLook::on_counted(const Answer& answer) {
   if (answer.lost)
     return finish(fail(
-        Errc::bus, "no frame comes back",
+        Errc::bus, "frames do not come back",
         "is this the right interface, and is its cable plugged into the IN port of the first drive, without a switch in between?"));
   if (answer.working_counter == 0)
-    return finish(fail(Errc::bus, "frames come back, but no slave processed them",
-                       "the cable leads to a switch or back to this computer, not to an EtherCAT slave"));
+    return finish(fail(
+        Errc::bus, "no EtherCAT slave is there",
+        "frames come back and nobody has touched them: the cable leads to a switch or back to this computer, not to an EtherCAT slave"));
   view_.count = answer.working_counter;
   go(State::identity);
 }

@@ -122,12 +122,12 @@ TEST_F(RingLookTest, NothingOnTheWireAndNoWireAtAllAreTwoThings) {
   const auto empty = run();
   ASSERT_FALSE(empty);
   EXPECT_EQ(empty.error().code, Errc::bus);
-  EXPECT_EQ(empty.error().message, "frames come back, but no slave processed them");
+  EXPECT_EQ(empty.error().message, "no EtherCAT slave is there");
   lost = true;
   const auto none = run();
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().code, Errc::bus);
-  EXPECT_EQ(none.error().message, "no frame comes back");
+  EXPECT_EQ(none.error().message, "frames do not come back");
   EXPECT_NE(none.error().hint, "");
 }
 

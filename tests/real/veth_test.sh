@@ -53,7 +53,7 @@ contains "an interface that is down" "bring it up: \`sudo ip link set veth0 up\`
 ip link set veth0 up
 contains "no link" "veth0 has no link" "$(on_veth0 scan)"
 ip link set veth1 up
-contains "a link and no drives" "no frame comes back" "$(on_veth0 scan)"
+contains "a link and no drives" "frames do not come back" "$(on_veth0 scan)"
 
 # 2. Simulated drives at the other end.
 serve sv2@1,sv2@2
@@ -78,7 +78,7 @@ first=$!
 wait_for "$work/watch" 0x
 # shellcheck disable=SC2016  # Expanded inside.
 other=$(unshare --net sh -c 'ip link add veth0 type veth peer name veth1 && ip link set veth0 up && ip link set veth1 up && "$0" scan -b coe:veth0 2>&1' "$servoctl")
-contains "another namespace is not locked" "no frame comes back" "$other"
+contains "another namespace is not locked" "frames do not come back" "$other"
 kill -9 "$first"; wait "$first" 2>/dev/null
 
 # 5. The right to send.
