@@ -121,7 +121,7 @@ std::vector<std::string> with_axis_option(std::vector<std::string> words, const 
                                           std::size_t after, const Cabinet& cabinet) {
   if (!includes(command.needs, Needs::node) || after >= words.size()) return words;
   for (const auto& word : words)
-    if (word == "-n" || word.starts_with("--node")) return words;
+    if (word.starts_with("-n") || word.starts_with("--node")) return words;
   const auto parts = split(std::string_view(words[after]), ',');
   if (parts.empty() ||
       !std::all_of(parts.begin(), parts.end(), [&](auto part) { return cabinet.knows(part); }))

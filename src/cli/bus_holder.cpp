@@ -48,17 +48,18 @@ Result<session::Session*> BusHolder::open(const Settings& settings) {
     return fail(Errc::usage, "which bus?", bus_hint(can::can_interfaces(), session::ethercat_links()));
   const auto url = session::canonical_url(settings.bus);
   const bool traces_anew = bus_options_.trace != settings.trace;
-  const bool is_open = open_.count(url) != 0;
-  if (traces_anew || (!settings.of_cabinet && (!is_open || open_.size() > 1))) {
-    stop_and_disable();
-    stop_sync();
-    drop();
+  for (auto* session : sessions()) {
+    const bool same = session::canonical_url(session->url()) == url;
+    if (!traces_anew && (same || settings.of_cabinet)) continue;
+    stop_and_disable(*session);
+    stop_sync(*session);
+    drop(*session);
   }
   if (!open_.empty() && !settings.trace.empty() && open_.count(url) == 0)
     return fail(Errc::usage, "--trace records one bus, and this line needs several",
                 "name the axes of one bus");
   bus_options_.trace = settings.trace;
-  names_[url] = settings.names;
+  if (!settings.names.empty()) names_[url] = settings.names;
   if (const auto found = open_.find(url); found != open_.end())
     session_ = found->second.get();
   else if (auto done = connect(settings.bus); !done)
@@ -179,14 +180,14 @@ bool BusHolder::produces_sync(session::Session& session) {
 }
 
 void BusHolder::stop_sync() {
-  for (auto* session : sessions()) {
-    if (!produces_sync(*session)) continue;
-    const auto count = session->can()->sync()->rhythm.count();
-    for (const auto& warning : traffic::end_sync(*session).warnings)
-      console_->err("warning: " + warning + "\n");
-    console_->note(
-        fmt::format("notice: SYNC is no longer produced on {}, after {}\n", session->url(), count));
-  }
+  for (auto* session : sessions()) stop_sync(*session);
+}
+
+void BusHolder::stop_sync(session::Session& session) {
+  if (!produces_sync(session)) return;
+  const auto count = session.can()->sync()->rhythm.count();
+  for (const auto& warning : traffic::end_sync(session).warnings) console_->err("warning: " + warning + "\n");
+  console_->note(fmt::format("notice: SYNC is no longer produced on {}, after {}\n", session.url(), count));
 }
 
 bool BusHolder::must_go_on() const {
@@ -245,13 +246,16 @@ bool BusHolder::wait_for(pollfd& wanted, Duration longest, const std::function<v
 }
 
 void BusHolder::stop_and_disable() {
-  for (auto* session : sessions())
-    for (const auto& [node, done] : motion::de_energise(*session)) {
-      if (done)
-        console_->note("notice: " + names(*session).in(motion::disabled_notice(node)) + "\n");
-      else
-        warn(names(*session), node, done.error().message);
-    }
+  for (auto* session : sessions()) stop_and_disable(*session);
+}
+
+void BusHolder::stop_and_disable(session::Session& session) {
+  for (const auto& [node, done] : motion::de_energise(session)) {
+    if (done)
+      console_->note("notice: " + names(session).in(motion::disabled_notice(node)) + "\n");
+    else
+      warn(names(session), node, done.error().message);
+  }
 }
 
 void BusHolder::warn(const show::AxisNames& names, std::uint8_t node, std::string_view why) {

@@ -89,6 +89,8 @@ class BusHolder {
   Result<void> connect(const std::string& url);
   Result<void> connect_again(const std::string& url, const std::set<std::uint8_t>& nodes);
   void stop_and_disable();
+  void stop_and_disable(session::Session& session);
+  void stop_sync(session::Session& session);
   void drop();
   void drop(session::Session& session);
   void on_trace_failed(const Error& error);

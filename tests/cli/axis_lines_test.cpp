@@ -78,6 +78,7 @@ TEST_F(AxisLines, ANameStandsForBusNodeAndFamily) {
 TEST_F(AxisLines, TheFirstWordAfterACommandMayBeAnAxis) {
   EXPECT_EQ(run("param get feeder1,feeder2 Pn0202 --json"), 0) << all();
   EXPECT_TRUE(says(R"("axis":"feeder1")") && says(R"("axis":"feeder2")")) << all();
+  EXPECT_EQ(run("param get -n1 feeder1 -b sim:gsd600@1"), 2) << all();  // A node is named already.
   EXPECT_EQ(run("read feeder9 statusword"), 2) << all();
 }
 
@@ -122,6 +123,8 @@ TEST_F(AxisLines, AnotherBusLetsNoDriveGo) {
   EXPECT_EQ(run("status table"), 0) << all();
   EXPECT_EQ(console.err_text, "");  // Nothing was let go.
   EXPECT_EQ(run("status feeder1 --json"), 0) << all();
+  EXPECT_TRUE(says(R"("energised":true)")) << all();
+  EXPECT_EQ(run("status -b sim:gsd600@1,gsd600@2,da200@3 -n 1 --json"), 0) << all();  // The same bus.
   EXPECT_TRUE(says(R"("energised":true)")) << all();
   EXPECT_EQ(run("status -b sim:dm@1 -n 1"), 0) << all();  // A bus of its own does, and says so by name.
   EXPECT_TRUE(says("feeder1")) << all();
