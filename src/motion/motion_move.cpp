@@ -166,8 +166,8 @@ Result<void> check_start(Motion& motion, const MotionPlan& plan) {
 }
 
 /// The speed that was asked for, else a part of what is allowed; empty where its unit is not known.
-Result<std::optional<Bytes>> speed_of(Motion& motion, const Move& move, ObjectAddress object,
-                                      MotionPlan& plan) {
+Result<std::optional<Bytes>> move_speed(Motion& motion, const Move& move, ObjectAddress object,
+                                        MotionPlan& plan) {
   if (move.speed.empty()) {
     const auto cap = motion.speed_cap();
     if (!cap) return fail(cap.error());
@@ -191,7 +191,7 @@ Result<MotionPlan> plan_move(Motion& motion, const Move& move) {
   MotionPlan plan;
   plan.mode = *mode;
   if (const auto found = find_target(motion, move, plan); !found) return fail(found.error());
-  auto speed = speed_of(motion, move, *speed_object, plan);
+  auto speed = move_speed(motion, move, *speed_object, plan);
   if (!speed) return fail(speed.error());
   const auto fast = *speed ? units.physical(*speed_object, **speed) : std::nullopt;
   if (!fast || fast->value <= 0)

@@ -45,7 +45,7 @@ struct Table {
   std::vector<List> rows;
   bool json_only = false;               ///< Nothing in it is worth reading: the errors say it all.
   std::vector<std::string> below = {};  ///< Lines that stand under it, in text only.
-  List documents = {};                  ///< One for each row, where JSON tells more than cells do.
+  List documents;                       ///< One for each row, where JSON tells more than cells do.
 };
 
 /// Quantities over time: a plot in text and on a page, `[{"name","unit","seconds","values"}]` in JSON.
