@@ -129,6 +129,24 @@ TEST_F(EtherCatTest, AWriteWhoseOutputsAreNotTakenIsNoSuccess) {
   EXPECT_EQ(slave().model().values().number(objects::kTargetVelocity), 0U);
 }
 
+TEST_F(EtherCatTest, ASlaveInBootIsToldAndInitTakesItOutOfIt) {
+  open("sv2@1");
+  network().learn(1, rules());
+  ASSERT_TRUE(network().request_state(1, NodeState::operational));
+  slave().plan_fall({session_->now(), sim::EscState::boot, 0x0013});
+  pass(milliseconds(400));
+  ASSERT_EQ(slave().state(), sim::EscState::boot);
+  const auto refused = session_->upload(1, objects::kVendorId);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, Errc::negative);
+  EXPECT_EQ(refused.error().message, "node 1: it is in BOOT and takes firmware only");
+  EXPECT_EQ(refused.error().hint, "`state init -n 1`");
+  const auto out = network().request_state(1, NodeState::initialising);
+  ASSERT_TRUE(out) << out.error().message;
+  EXPECT_EQ(slave().state(), sim::EscState::init);
+  EXPECT_TRUE(session_->upload(1, objects::kVendorId));
+}
+
 TEST_F(EtherCatTest, ASlaveThatRestartsIsTold) {
   open("sv2@1,sv2@2");
   ASSERT_TRUE(session_->upload(1, objects::kVendorId));
