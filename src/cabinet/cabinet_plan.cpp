@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "base/text.hpp"
 #include "settings/restore_journal.hpp"
 #include "show/axis_names.hpp"
 #include "show/records.hpp"
@@ -141,11 +142,21 @@ std::size_t values_to_do(std::span<const PlannedAxis> looks) {
   return out;
 }
 
+std::string count_text(std::size_t count, std::string_view one, std::string_view many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+std::string differing(std::span<const PlannedAxis> looks) {
+  return count_text(values_to_do(looks), "value", "values") + " of " +
+         count_text(axes_to_do(looks), "axis", "axes");
+}
+
 std::string to_do_text(std::span<const PlannedAxis> looks) {
-  const auto axes = axes_to_do(looks);
-  const auto values = values_to_do(looks);
-  if (axes == 0) return "nothing";
-  return fmt::format("{} value{} of {} ax{}", values, values == 1 ? "" : "s", axes, axes == 1 ? "is" : "es");
+  const auto unknown = std::count_if(looks.begin(), looks.end(), [](const auto& look) { return !look.plan; });
+  auto out = axes_to_do(looks) > 0 ? differing(looks) : unknown == 0 ? std::string("nothing") : std::string();
+  if (unknown > 0)
+    append(out, "not known of " + count_text(static_cast<std::size_t>(unknown), "axis", "axes"));
+  return out;
 }
 
 }  // namespace
@@ -213,9 +224,11 @@ void tell_looks(show::Desk& desk, std::span<const PlannedAxis> looks) {
 bool any_to_do(std::span<const PlannedAxis> looks) { return axes_to_do(looks) > 0; }
 
 Error something_to_do(const Cabinet& cabinet, std::span<const PlannedAxis> looks) {
-  return make_error(Errc::negative,
-                    fmt::format("{} differ from {}", to_do_text(looks), cabinet.file.filename().string()),
-                    "`cabinet apply` writes them");
+  return make_error(
+      Errc::negative,
+      fmt::format("{} {} from {}", differing(looks), values_to_do(looks) == 1 ? "differs" : "differ",
+                  cabinet.file.filename().string()),
+      "`cabinet apply` writes them");
 }
 
 }  // namespace servoctl::cabinet

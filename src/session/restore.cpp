@@ -1,6 +1,7 @@
 #include "session/restore.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <set>
 
 #include "canopen/pdo.hpp"
@@ -37,10 +38,12 @@ class Run {
     }
     const auto kept = storage.close(!out_.failure, out_.writes);
     for (const auto& notice : storage.notices()) out_.notices.push_back(notice);
-    if (kept)
+    if (kept) {
       out_.kept = *kept;
-    else if (!out_.failure)
+    } else if (!out_.failure) {
       out_.failure = kept.error();
+      look_again();
+    }
     return std::move(out_);
   }
 
@@ -92,6 +95,24 @@ class Run {
     if (session_->watch().boots(node_) == boots_) return {};
     return fail(drive_error(Errc::negative, node_, "it restarted during the writes",
                             "is its supply stable? Values it does not keep by itself are lost"));
+  }
+
+  /// Storing failed: a drive that restarted over it may have forgotten what was written. What is read tells;
+  /// one that does not answer any more is as it was read back last.
+  void look_again() {
+    const Deaf deaf(*session_);
+    const auto now = read_touched();
+    const auto is_other = [&](const auto& value) {
+      const auto wanted = wanted_->find(value.first);
+      return wanted != wanted_->end() && wanted->second != value.second;
+    };
+    if (std::none_of(now.begin(), now.end(), is_other)) return;
+    out_.all_written = false;
+    for (const auto object : touched_) {
+      const auto found = now.find(object);
+      if (found == now.end() || found->second != present_->at(object)) out_.astray.push_back(object);
+    }
+    out_.rolled_back = out_.astray.empty();
   }
 
   /// Reads where things stand, puts back what is not as it was, and reads again. Deaf to Ctrl-C.

@@ -83,6 +83,12 @@ int seeds(int standard) {
   return wanted == nullptr ? standard : std::atoi(wanted);
 }
 
+std::vector<int> seeds_and(int special) {
+  std::vector<int> out{special};
+  for (int seed = 1; seed <= seeds(70); ++seed) out.push_back(seed);
+  return out;
+}
+
 int requests_of_an_apply(std::size_t axes, std::size_t buses) {
   Fleet fleet(axes, buses);
   fleet.trouble({});
@@ -109,7 +115,8 @@ TEST(CabinetTrouble, LeavesEachAxisAsWantedOrAsBeforeOrNamed) {
   const auto requests = requests_of_an_apply(5, 2);
   int applied = 0;
   int failed = 0;
-  for (int seed = 1; seed <= seeds(70); ++seed) {
+  // 268: a drive that restarts while it stores has forgotten what was read back already.
+  for (int seed : seeds_and(268)) {
     SCOPED_TRACE(seed);
     TroubledFleet world(5, 2);
     world.fleet.trouble(trouble_of(static_cast<unsigned>(seed), requests),
