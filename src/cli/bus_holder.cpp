@@ -105,7 +105,7 @@ Result<void> BusHolder::connect(const std::string& url) {
 void BusHolder::on_trace_failed(const Error& error) {
   trace_failure_ = error;
   if (!flushing_)
-    console_->note(fmt::format("notice: {}; {}\n", printable(error.message), printable(error.hint)));
+    console_->err(fmt::format("notice: {}; {}\n", printable(error.message), printable(error.hint)));
 }
 
 std::optional<Error> BusHolder::take_trace_failure() {
@@ -132,7 +132,7 @@ void BusHolder::drop(session::Session& session) {
 void BusHolder::lose(session::Session& session) {
   for (const auto node : session.energised().nodes()) warn(names(session), node, session.url() + " was lost");
   if (produces_sync(session))
-    console_->note(fmt::format("notice: SYNC is no longer produced: {} was lost\n", session.url()));
+    console_->err(fmt::format("notice: SYNC is no longer produced: {} was lost\n", session.url()));
   drop(session);
 }
 
@@ -252,7 +252,7 @@ void BusHolder::stop_and_disable() {
 void BusHolder::stop_and_disable(session::Session& session) {
   for (const auto& [node, done] : motion::de_energise(session)) {
     if (done)
-      console_->note("notice: " + names(session).in(motion::disabled_notice(node)) + "\n");
+      console_->err("notice: " + names(session).in(motion::disabled_notice(node)) + "\n");
     else
       warn(names(session), node, done.error().message);
   }

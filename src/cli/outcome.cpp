@@ -56,7 +56,7 @@ int show(Console& console, const Outcome& outcome) {
 }
 
 void show_remarks(Console& console, const Outcome& outcome) {
-  if (!outcome.settings.quiet)
+  if (!outcome.settings.quiet || outcome.leaves_power)
     for (const auto& notice : outcome.notices) console.err("notice: " + printable(notice) + "\n");
   console.err(errors_text(outcome.errors));
 }

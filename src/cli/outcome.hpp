@@ -19,6 +19,7 @@ struct Outcome {
   report::Value result = {};
   std::vector<Error> errors = {};  ///< The first one makes the exit code.
   std::vector<std::string> notices = {};
+  bool leaves_power = false;  ///< Drives stay energised behind the line: no notice of it is hidden.
   std::string abort_words =
       {};  ///< What the abort code of the first error means on this drive; may be empty.
 

@@ -42,7 +42,8 @@ void RunningLine::write(std::string_view lines) { shell_->console().out(lines); 
 
 void RunningLine::tell(std::string_view text) {
   shell_->end_progress();
-  if (!settings_->quiet) shell_->console().err(settings_->names.in(text));
+  // What a question is about stands before it.
+  if (!settings_->quiet || !settings_->yes) shell_->console().err(settings_->names.in(text));
 }
 
 std::unique_ptr<show::LiveView> RunningLine::open_view(const show::LiveView::Layout& layout) {

@@ -230,6 +230,7 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
           .result = std::move(value),
           .errors = std::move(errors),
           .notices = std::move(run.context.notices),
+          .leaves_power = run.context.session != nullptr && !run.context.session->energised().empty(),
           .abort_words = std::move(words)};
 }
 

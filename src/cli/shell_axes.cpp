@@ -96,6 +96,7 @@ Value joined(Value all, Value more) {
 void add_outcome(Outcome& all, Outcome part) {
   all.result = joined(std::move(all.result), std::move(part.result));
   if (all.errors.empty()) all.abort_words = std::move(part.abort_words);
+  all.leaves_power = all.leaves_power || part.leaves_power;
   std::move(part.errors.begin(), part.errors.end(), std::back_inserter(all.errors));
   std::move(part.notices.begin(), part.notices.end(), std::back_inserter(all.notices));
   if (("," + all.settings.bus + ",").find("," + part.settings.bus + ",") == std::string::npos)
