@@ -93,6 +93,8 @@ const std::map<std::string, std::string> kSamples{
     {"replay", "replay DIR/recording.log --speed 100 -n 1 -y"},
     {"drives", "drives"},
     {"cabinet check", "cabinet check tests/cli/data/cabinet.toml"},
+    {"cabinet init", "cabinet init DIR/made.toml"},
+    {"cabinet show", "cabinet show --cabinet DIR/cabinet.toml"},
     {"cabinet plan", "cabinet plan --cabinet DIR/cabinet.toml"},
     {"cabinet apply", "cabinet apply --cabinet DIR/cabinet.toml -y"},
     {"cabinet backup", "cabinet backup --cabinet DIR/cabinet.toml"},
