@@ -35,7 +35,7 @@ using OpenBus = std::function<Result<session::Session*>(const Bus&)>;
 class AxisStates {
  public:
   AxisStates(const Cabinet& cabinet, std::vector<const Axis*> axes, OpenBus open, LoadProfile load,
-            const show::Desk& desk)
+             const show::Desk& desk)
       : cabinet_(&cabinet),
         axes_(std::move(axes)),
         open_(std::move(open)),

@@ -8,8 +8,6 @@
 namespace servoctl::cabinet {
 namespace {
 
-
-
 Result<const drive::Profile*> load(const std::string& family) {
   static std::map<std::string, drive::Profile> known;
   if (known.count(family) == 0) {

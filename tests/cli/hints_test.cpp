@@ -79,7 +79,7 @@ bool lacks_words(const Words& words) {
 
 /// The line with those options of the refused line that it does not have itself.
 Words in_the_same_place(Words words, const Words& refused) {
-  const std::set<std::string> kPlace{"-n", "-d", "-b", "--bus", "--node", "--drive"};
+  const std::set<std::string> kPlace{"-n", "-d", "-b", "--bus", "--node", "--drive", "--cabinet"};
   const bool has_node = std::find(words.begin(), words.end(), "-n") != words.end();
   for (std::size_t i = 0; i + 1 < refused.size(); ++i)
     if (kPlace.count(refused[i]) > 0 && !(has_node && refused[i] == "-n") &&

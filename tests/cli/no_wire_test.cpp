@@ -120,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(Families, NoWire, testing::Values("cia402", "gsd600"),
 TEST(NetworkOfNoCan, RefusesWhatSpeaksInFramesAndNothingElse) {
   session::Session session(std::make_unique<MemoryNetwork>(), "memory", {});
   for (const auto* path :
-       {"nmt start", "nmt watch", "sync once", "sync start", "pdo send", "pdo watch", "monitor", "replay"}) {
+       {"nmt start", "nmt watch", "sync once", "sync start", "pdo send", "monitor", "replay"}) {
     const auto possible = check_network(*command::find_command(path), session);
     ASSERT_FALSE(possible) << path;
     EXPECT_EQ(possible.error().code, Errc::usage) << path;

@@ -257,8 +257,7 @@ class MemoryNetwork::Values final : public ProcessValues {
   std::vector<Arrival> take_all() override {
     std::vector<Arrival> out;
     for (const auto& [object, time] : taken_)
-      if (auto value = take(object, TimePoint::min()))
-        out.push_back({object, std::move(*value), taken_[object]});
+      if (auto value = take(object, TimePoint::min())) out.push_back({object, std::move(*value), time});
     return out;
   }
 

@@ -1,0 +1,121 @@
+// A cabinet of drives of five families: its plan names what differs.
+#include "cabinet/cabinet_plan.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+
+#include "drive/drive_settings.hpp"
+#include "fleet_checks.hpp"
+#include "session/write.hpp"
+#include "settings/comparison.hpp"
+
+namespace servoctl::cabinet {
+namespace {
+
+TEST(CabinetPlan, NamesExactlyWhatDiffers) {
+  Fleet fleet(10, 2);
+  ASSERT_TRUE(fleet.apply());
+  std::mt19937 random(7);
+  std::size_t changed = 0;
+  for (int round = 0; round < 12; ++round) {
+    SCOPED_TRACE(round);
+    const auto before = fleet.look();
+    for (std::size_t i = 0; i < fleet.size(); ++i) {
+      ASSERT_TRUE(before[i].plan);
+      EXPECT_EQ(before[i].plan->different, 0U);
+      for (const auto& entry : before[i].plan->wanted.entries)
+        if (random() % 3 == 0) changed += change_at_the_panel(fleet, i, entry.object) ? 1U : 0U;
+    }
+    const auto looks = fleet.look();
+    for (std::size_t i = 0; i < fleet.size(); ++i) {
+      ASSERT_TRUE(looks[i].plan);
+      std::set<std::string> differ;
+      for (const auto& [object, data] : wanted_of(looks[i]))
+        if (fleet.drive(i).value(object) != data) differ.insert(to_string(object));
+      EXPECT_EQ(objects_of(looks[i].plan->differences), differ) << looks[i].axis->name;
+      EXPECT_EQ(looks[i].plan->different, differ.size());
+    }
+    ASSERT_TRUE(fleet.apply());
+    expect_no_errors(fleet);
+  }
+  EXPECT_GT(changed, 60U);
+}
+
+TEST(CabinetPlan, ListsApartWhatIsNeitherInTheFileNorFromTheFactory) {
+  Fleet fleet(5);
+  ASSERT_TRUE(fleet.apply());
+  for (const auto& look : fleet.look({.unlisted = true})) {
+    ASSERT_TRUE(look.plan) << look.plan.error().message;
+    EXPECT_EQ(look.plan->unlisted_count, 0U)
+        << look.axis->family << " " << report::to_text(look.plan->unlisted);
+  }
+  for (std::size_t i = 0; i < fleet.size(); ++i) {
+    const auto& profile = family_of(fleet.cabinet.axes[i].family);
+    const auto listed = wanted_of(fleet.look()[i]);
+    std::set<std::string> changed;
+    for (const auto& setting : drive::settings_of(profile)) {
+      const auto object = setting.entry->address;
+      const bool free = setting.left_out.empty() && listed.count(object) == 0 && object.index >= 0x2000 &&
+                        setting.entry->default_value && !settings::is_address(&profile, object);
+      if (free && changed.size() < 3 && change_at_the_panel(fleet, i, object))
+        changed.insert(to_string(object));
+    }
+    const auto look = fleet.look({.unlisted = true})[i];
+    EXPECT_EQ(objects_of(look.plan->unlisted), changed) << profile.family;
+    EXPECT_EQ(look.plan->different, 0U);
+    EXPECT_EQ(fleet.look({.unlisted = false})[i].plan->unlisted_count, 0U);
+  }
+}
+
+TEST(CabinetPlan, RefusesAnotherDriveAndTellsBothSerialNumbers) {
+  Fleet fleet(5);
+  bool told = false;
+  for (std::size_t i = 0; i < fleet.size(); ++i) {
+    fleet.cabinet.axes[i].serial = 4711;
+    const auto look = fleet.look()[i];
+    ASSERT_FALSE(look.plan) << look.axis->family;
+    EXPECT_EQ(look.plan.error().code, Errc::refused);
+    EXPECT_NE(look.plan.error().message.find("4711"), std::string::npos) << look.plan.error().message;
+    const auto found = fleet.session(i).upload(fleet.cabinet.axes[i].node, {0x1018, 4});
+    if (!found) continue;
+    told = true;
+    EXPECT_NE(look.plan.error().message.find(fmt::format("{}", load_le(*found))), std::string::npos);
+    fleet.cabinet.axes[i].serial = static_cast<std::uint32_t>(load_le(*found));
+    EXPECT_TRUE(fleet.look()[i].plan);
+  }
+  EXPECT_TRUE(told);
+  std::swap(fleet.cabinet.axes[0].family, fleet.cabinet.axes[2].family);
+  std::swap(fleet.cabinet.axes[0].parameters, fleet.cabinet.axes[2].parameters);
+  const auto swapped = fleet.look()[2];
+  ASSERT_FALSE(swapped.plan);
+  EXPECT_EQ(swapped.plan.error().code, Errc::refused);
+}
+
+TEST(CabinetPlan, TellsWhatTheFileSaysWrongWithItsLine) {
+  Fleet fleet(5);
+  auto& parameters = fleet.cabinet.axes[2].parameters;
+  const auto good = parameters;
+  const auto refusal = [&] {
+    const auto look = fleet.look()[2];
+    return look.plan ? std::string("taken") : look.plan.error().message;
+  };
+  parameters = {{"Pn9999", "1", {7, 1}}};
+  EXPECT_NE(refusal().find("cabinet.toml:7:1: axis axis3: "), std::string::npos) << refusal();
+  parameters = {{"Pn0214", "99999", {8, 1}}};
+  EXPECT_NE(refusal().find("cabinet.toml:8:1"), std::string::npos) << refusal();
+  parameters = {{"Pn0214", "450", {8, 1}}, {"0x2001:F", "451", {9, 1}}};
+  EXPECT_NE(refusal().find("another value in line 8"), std::string::npos) << refusal();
+  parameters = {{"0x6040", "6", {8, 1}}};
+  EXPECT_NE(refusal().find("not a setting"), std::string::npos) << refusal();
+  fleet.cabinet.axes[3].heartbeat = 100ms;
+  fleet.cabinet.axes[3].heartbeat_at = {33, 4};
+  EXPECT_NE(fleet.look()[3].plan.error().message.find("cabinet.toml:33:4: axis axis4: a sv2 produces no"),
+            std::string::npos);
+  parameters = good;
+  EXPECT_EQ(refusal(), "taken");
+}
+
+}  // namespace
+}  // namespace servoctl::cabinet
