@@ -79,6 +79,18 @@ Result<std::vector<LinePart>> parts_by_number(const Cabinet& cabinet, const cabi
   return std::vector{on_bus(cabinet, settings, bus)};
 }
 
+/// A file that lies in some folder above must not decide where a plain number writes or moves.
+Result<void> check_plain(const Cabinet& cabinet, const cabinet::Bus& bus, const command::Command& command,
+                         const command::Arguments& arguments, const Settings& settings) {
+  const bool changes = command.effect_with(arguments) > command::Effect::reads && !settings.dry_run;
+  if (!changes || settings.nodes.empty()) return {};
+  return fail(
+      Errc::usage,
+      fmt::format("which bus? '{}' changes a drive, and the line names neither an axis nor a bus",
+                  command.path),
+      fmt::format("add --bus {} ({}, by {}), or name the axes", bus.name, bus.url, cabinet.file.string()));
+}
+
 }  // namespace
 
 Result<const Cabinet*> CabinetHolder::get(const Settings& settings) {
@@ -144,7 +156,12 @@ Result<std::vector<LinePart>> parts_of(const Cabinet& cabinet, const command::Co
     if (!axes) return fail(axes.error());
     return parts_by_axis(cabinet, *axes, arguments, settings);
   }
-  if (cabinet.buses.size() == 1) return parts_by_number(cabinet, cabinet.buses.front(), arguments, settings);
+  if (cabinet.buses.size() == 1) {
+    const auto& bus = cabinet.buses.front();
+    if (const auto plain = check_plain(cabinet, bus, command, arguments, settings); !plain)
+      return fail(plain.error());
+    return parts_by_number(cabinet, bus, arguments, settings);
+  }
   std::vector<LinePart> out;
   for (const auto& bus : cabinet.buses) out.push_back(on_bus(cabinet, settings, bus));
   const bool looks = command.effect <= command::Effect::reads && settings.nodes.empty();

@@ -139,6 +139,17 @@ TEST_F(AxisLines, TheBusesOfTheFileAreNamesAndDefaults) {
   EXPECT_TRUE(says("which bus? cabinet.toml has 2")) << all();
 }
 
+TEST_F(AxisLines, APlainNumberWritesAndMovesOnlyOnABusThatTheLineNames) {
+  write("[bus.main]\nurl = \"sim:gsd600@1\"\n[axis.feeder]\nnode = 1\nfamily = \"gsd600\"\nturn = 10000\n");
+  EXPECT_EQ(run("read statusword -n 1"), 0) << all();
+  EXPECT_EQ(run("jog 60rpm --for 1s -n 1 --yes"), 2) << all();
+  EXPECT_TRUE(says("which bus? 'jog' changes a drive") && says("--bus main (sim:gsd600@1")) << all();
+  EXPECT_EQ(run("param set Pn0202=500 -n 1"), 2) << all();
+  EXPECT_EQ(run("param set Pn0202=500 -n 1 -b main"), 0) << all();
+  EXPECT_EQ(run("jog feeder 60rpm --for 200ms --yes"), 0) << all();
+  EXPECT_EQ(run("enable -n all --yes"), 0) << all();
+}
+
 TEST_F(AxisLines, ErrorsAndHintsSpeakOfTheAxis) {
   write("[bus.main]\nurl = \"sim:gsd600@1\"\n[axis.lift]\nnode = 7\nfamily = \"gsd600\"\n");
   EXPECT_EQ(run("read statusword -n lift --timeout 50ms"), 4) << all();
