@@ -134,9 +134,8 @@ Result<void> read_parameters(const toml::node& node, std::string_view file, std:
     if (!text)
       return reader.fail_at(value, fmt::format("the value of '{}' is no number and no text", key.str()));
     const Place at{key.source().begin.line, key.source().begin.column};
-    const auto same = [&](const Setting& other) {
-      return drive::canonical_id(other.name) == drive::canonical_id(key.str());
-    };
+    const auto id = drive::canonical_id(key.str());
+    const auto same = [&id](const Setting& other) { return drive::canonical_id(other.name) == id; };
     if (const auto twice = std::find_if(out.begin(), out.end(), same); twice != out.end())
       return reader.fail_at(value, fmt::format("'{}' and '{}' are the same", twice->name, key.str()));
     out.push_back({std::string(key.str()), std::move(*text), at});
