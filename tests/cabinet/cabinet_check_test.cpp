@@ -8,7 +8,7 @@
 namespace servoctl::cabinet {
 namespace {
 
-Result<const drive::Profile*> load(const std::string& family) {
+Result<const drive::Profile*> checked_family(const std::string& family) {
   static std::map<std::string, drive::Profile> known;
   if (known.count(family) == 0) {
     auto profile = drive::load_profile(family, kFolders);
@@ -23,7 +23,7 @@ std::string found(std::string_view toml) {
   const auto cabinet = parse_cabinet(toml, "c.toml");
   EXPECT_TRUE(cabinet) << cabinet.error().message;
   std::string out;
-  for (const auto& error : check_cabinet(*cabinet, load)) {
+  for (const auto& error : check_cabinet(*cabinet, checked_family)) {
     EXPECT_EQ(error.code, Errc::file);
     out += error.message + "\n";
   }
