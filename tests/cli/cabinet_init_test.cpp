@@ -53,10 +53,11 @@ class CabinetInit : public testing::Test {
   std::unique_ptr<Shell> shell;
 };
 
-constexpr const char* kFive = "sim:gsd600@1,dm@2,da200@3,ts@4,sv2@5";
+constexpr const char* kFiveFamilies = "sim:gsd600@1,dm@2,da200@3,ts@4,sv2@5";
 
 TEST_F(CabinetInit, WritesAFileByWhichNothingIsToBeDoneOnAnyFamily) {
-  EXPECT_EQ(run(std::string("cabinet init FILE --family 1=gsd600,2=dm,3=da200,4=ts,5=sv2 -b ") + kFive), 0)
+  EXPECT_EQ(
+      run(std::string("cabinet init FILE --family 1=gsd600,2=dm,3=da200,4=ts,5=sv2 -b ") + kFiveFamilies), 0)
       << all();
   EXPECT_EQ(run("cabinet init FILE --name ring --family 1-2=sv2 -b coe:sim:sv2@1,sv2@2"), 0) << all();
   EXPECT_EQ(run("cabinet check"), 0) << all();
