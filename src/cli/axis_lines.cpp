@@ -79,11 +79,11 @@ Result<std::vector<LinePart>> parts_by_number(const Cabinet& cabinet, const cabi
   return std::vector{on_bus(cabinet, settings, bus)};
 }
 
-/// A file that lies in some folder above must not decide where a plain number writes or moves.
+/// A file that lies in some folder above must not decide where a line without a name writes or moves.
 Result<void> check_plain(const Cabinet& cabinet, const cabinet::Bus& bus, const command::Command& command,
                          const command::Arguments& arguments, const Settings& settings) {
   const bool changes = command.effect_with(arguments) > command::Effect::reads && !settings.dry_run;
-  if (!changes || settings.nodes.empty()) return {};
+  if (!changes) return {};
   return fail(
       Errc::usage,
       fmt::format("which bus? '{}' changes a drive, and the line names neither an axis nor a bus",
@@ -151,6 +151,8 @@ Result<std::vector<LinePart>> parts_of(const Cabinet& cabinet, const command::Co
   }
   if (const auto* bus = cabinet.bus(settings.bus)) return parts_by_number(cabinet, *bus, arguments, settings);
   if (!settings.bus.empty() || !includes(command.needs, Needs::bus)) return std::vector<LinePart>();
+  // Simulated drives do not go where the real ones are unless somebody says so.
+  if (command.opens_bus) return std::vector<LinePart>();
   if (equals_nocase(settings.nodes, "all") && includes(command.needs, Needs::node) && !command.to_all) {
     const auto axes = cabinet.select("all");
     if (!axes) return fail(axes.error());
@@ -164,7 +166,7 @@ Result<std::vector<LinePart>> parts_of(const Cabinet& cabinet, const command::Co
   }
   std::vector<LinePart> out;
   for (const auto& bus : cabinet.buses) out.push_back(on_bus(cabinet, settings, bus));
-  const bool looks = command.effect <= command::Effect::reads && settings.nodes.empty();
+  const bool looks = command.effect_with(arguments) <= command::Effect::reads && settings.nodes.empty();
   if (looks) return out;
   std::vector<std::string> names;
   for (const auto& bus : cabinet.buses) names.push_back("--bus " + bus.name);

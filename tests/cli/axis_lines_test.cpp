@@ -148,6 +148,11 @@ TEST_F(AxisLines, APlainNumberWritesAndMovesOnlyOnABusThatTheLineNames) {
   EXPECT_EQ(run("param set Pn0202=500 -n 1 -b main"), 0) << all();
   EXPECT_EQ(run("jog feeder 60rpm --for 200ms --yes"), 0) << all();
   EXPECT_EQ(run("enable -n all --yes"), 0) << all();
+  EXPECT_EQ(run("disable feeder"), 0) << all();
+  for (const auto* line : {"sync once --yes", "nmt start -n all --yes", "sim gsd600@9"}) {
+    EXPECT_EQ(run(line), 2) << line << all();
+    EXPECT_TRUE(says("which bus?")) << line << all();
+  }
 }
 
 TEST_F(AxisLines, ErrorsAndHintsSpeakOfTheAxis) {
