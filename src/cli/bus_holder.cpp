@@ -221,7 +221,8 @@ Duration BusHolder::serve_beside() {
   for (auto* session : sessions()) {
     if (session == session_ || !(session->network().must_go_on() || produces_sync(*session))) continue;
     (void)session->listen();
-    out = std::min(out, std::max(Duration::zero(), session->next_event() - session->now()));
+    if (const auto next = session->next_event(); next != kNever)
+      out = std::min(out, std::max(Duration::zero(), next - session->now()));
   }
   serving_beside_ = false;
   return out;

@@ -219,6 +219,8 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
       errors.push_back(std::move(*failure));
     }
   }
+  auto* session = run.context.session;
+  const bool leaves_power = session != nullptr && !session->energised().empty();
   // A lost interface does not come back by itself: the next line opens it again.
   if (!errors.empty() && errors.front().code == Errc::bus) lose_bus();
   auto words = errors.empty() ? std::string() : show::abort_words(run.context, errors.front());
@@ -230,7 +232,7 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
           .result = std::move(value),
           .errors = std::move(errors),
           .notices = std::move(run.context.notices),
-          .leaves_power = run.context.session != nullptr && !run.context.session->energised().empty(),
+          .leaves_power = leaves_power,
           .abort_words = std::move(words)};
 }
 

@@ -59,7 +59,8 @@ Result<bool> Session::step(TimePoint deadline, const std::function<bool()>& conc
 
 Result<bool> Session::step_network(TimePoint deadline) {
   if (options_.beside)
-    if (const auto free = options_.beside(); free < deadline - now()) deadline = now() + free;
+    if (const auto free = options_.beside(); free != Duration::max())
+      deadline = std::min(deadline, now() + free);
   auto stepped = network_->step(deadline);
   received_at_ = network_->stepped_at();
   if (interleave_ != nullptr && stepped && *stepped) interleave_->taken_in_ |= interleave_->in_job();
