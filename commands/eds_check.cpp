@@ -30,7 +30,7 @@ Result<std::string> text_of(const Context& context, const std::string& path) {
   if (context.stays_open)
     return fail(Errc::usage, "standard input contains the command lines, and no file for this one",
                 "name a file");
-  return StandardInput().take_rest(od::kMostEsiBytes);
+  return standard_input().take_rest(od::kMostEsiBytes);
 }
 
 report::Table findings_of(const od::EdsFile& file) {

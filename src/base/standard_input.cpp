@@ -35,4 +35,9 @@ std::string StandardInput::take_rest(std::size_t most) {
   return out;
 }
 
+StandardInput& standard_input() {
+  static StandardInput input;
+  return input;
+}
+
 }  // namespace servoctl

@@ -29,4 +29,7 @@ class StandardInput {
   std::size_t taken_ = 0;  ///< Of the buffer.
 };
 
+/// That of the process: whoever reads it finds what those before it have left.
+StandardInput& standard_input();
+
 }  // namespace servoctl

@@ -38,7 +38,7 @@ void open_standard_descriptors() {
 
 /// Lines from a pipe or file: stops at the first that fails, whose exit code is the answer.
 int run_pipe(Shell& shell) {
-  StandardInput input;
+  auto& input = standard_input();
   LineRunner runner(shell);
   std::string line;
   int code = 0;
@@ -63,7 +63,7 @@ std::vector<std::string> as_run(std::vector<std::string> words, std::size_t at) 
   return words;
 }
 
-std::string standard_text() { return StandardInput().take_rest(); }
+std::string standard_text() { return standard_input().take_rest(); }
 
 int run_lines(Shell& shell, const std::vector<std::string>& words, StandardConsole& console) {
   const auto first = match_command(words).first;
