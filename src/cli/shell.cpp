@@ -119,6 +119,7 @@ Outcome Shell::help(const std::vector<std::string>& words, Settings settings) {
 }
 
 Result<Value> Shell::execute(Run& run, const command::Arguments& arguments) {
+  run.turn = arguments.text("--turn");
   if (const auto ready = prepare(run, arguments); !ready) return fail(ready.error());
   auto& context = run.context;
   context.nodes_typed = run.settings.nodes_typed;
@@ -139,7 +140,8 @@ Result<void> Shell::prepare(Run& run, const command::Arguments& arguments) {
   const auto& command = *run.command;
   if (const auto allowed = check_allowed(command, arguments, run.settings); !allowed) return allowed;
   if (!run.settings.drive.empty() || includes(command.needs, Needs::dictionary))
-    if (const auto ready = prepare_profile(run); !ready) return ready;
+    if (const auto ready = prepare_profile(run, command.effect_with(arguments) > Effect::reads); !ready)
+      return ready;
   if (!includes(command.needs, Needs::bus) || command.opens_bus) return name_nodes(run);
   // What is wrong in the line itself is told before a bus is opened.
   if (includes(command.needs, Needs::node) && run.settings.nodes.empty()) return fail(no_node(command));
@@ -201,6 +203,7 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
   auto& errors = run.context.errors;
   hear_second_node(run);
   if (!result) errors.insert(errors.begin(), result.error());
+  learn_from(run);
   for (auto& notice : take_notices(run.context.profile, run.settings.chinese))
     run.context.notices.push_back(std::move(notice));
   if (const auto left_out = console_->take_left_out(); left_out > 0)

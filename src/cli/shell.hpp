@@ -20,6 +20,7 @@
 #include "cli/terminal/console.hpp"
 #include "cli/terminal/progress.hpp"
 #include "session/session.hpp"
+#include "show/known_drive.hpp"
 #include "sim/sim_bus.hpp"
 
 namespace servoctl::cli {
@@ -114,6 +115,15 @@ class Shell {
     std::vector<const cabinet::Axis*> axes;  ///< That the nodes are; empty where they are just nodes.
     command::Context context;
     RunningLine line;
+    bool family_found = false;  ///< The line does not name it.
+    std::string turn;           ///< As after --turn.
+  };
+  /// What a node is taken for.
+  struct FoundFamily {
+    std::string family;
+    bool guessed = false;
+    std::string turn = {};
+    bool operator==(const FoundFamily&) const = default;
   };
 
   session::Options session_options();
@@ -121,13 +131,21 @@ class Shell {
   Outcome perform_part(const ParsedLine& line, LinePart part);
   Result<report::Value> execute(Run& run, const command::Arguments& arguments);
   Result<void> prepare(Run& run, const command::Arguments& arguments);
-  Result<void> prepare_profile(Run& run);
+  Result<void> prepare_profile(Run& run, bool changes);
   Result<void> ask_drive(Run& run);
   Result<const drive::Profile*> device_of_node(Run& run, const Error& why);
   Result<void> prepare_nodes(Run& run);
   void hear_second_node(const Run& run);
   static Result<void> name_nodes(Run& run);
-  tl::unexpected<Error> ask_for_family(Run& run);
+  Result<void> find_family(Run& run, bool changes);
+  Result<std::string> family_of(Run& run, session::Session& session, std::uint8_t node, bool changes);
+  std::optional<show::KnownDrive> said_of(Run& run, session::Session& session,
+                                          const session::Identity& identity);
+  std::string no_family_hint() const;
+  void learn_from(Run& run);
+  void remember_family(Run& run);
+  void remember(Run& run, session::Session& session, std::uint8_t node);
+  void offer_turn(Run& run);
   Outcome help(const std::vector<std::string>& words, Settings settings);
   Outcome finish(Run& run, const Result<report::Value>& result);
 
@@ -139,6 +157,7 @@ class Shell {
   bool stays_open_ = false;
   std::optional<Error> incomplete_trace_;  ///< Told as a notice of a line; the exit code comes at the end.
   std::map<std::string, std::unique_ptr<drive::Profile>> profiles_;
+  std::map<std::string, FoundFamily> families_;  ///< Of drives, by bus, node and restarts.
   CabinetHolder cabinet_;
 };
 

@@ -1,15 +1,11 @@
 // Where the dictionary of a line comes from: a family, a file, or the drive itself.
 #include <fmt/format.h>
-#include <algorithm>
-#include <span>
 #include <utility>
 
 #include "base/text.hpp"
 #include "cli/shell.hpp"
 #include "od/data_sheet.hpp"
-#include "session/identify.hpp"
 #include "session/online_dictionary.hpp"
-#include "session/scan.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -35,44 +31,17 @@ bool asks_a_drive(const Settings& settings, const command::Command& command) {
 
 }  // namespace
 
-Result<void> Shell::prepare_profile(Run& run) {
+Result<void> Shell::prepare_profile(Run& run, bool changes) {
   if (equals_nocase(run.settings.drive, kOnline) || asks_a_drive(run.settings, *run.command))
     return ask_drive(run);
-  if (run.settings.drive.empty()) return ask_for_family(run);
+  if (run.settings.drive.empty())
+    if (const auto found = find_family(run, changes); !found) return found;
   auto loaded = profile(run.settings.drive);
   if (!loaded) loaded = device_of_node(run, loaded.error());
   if (!loaded) return fail(loaded.error());
   run.context.profile = *loaded;
   for (const auto& warning : (*loaded)->warnings) run.context.notices.push_back(warning);
   return {};
-}
-
-/// Says which families fit the node where that can be found out; a guess is offered, never taken.
-tl::unexpected<Error> Shell::ask_for_family(Run& run) {
-  const auto families = drive::find_families(options_.drive_folders);
-  std::vector<std::string> names;
-  for (const auto& family : families) names.push_back(family.name);
-  auto hint = names.empty() ? std::string("add -d FILE.eds or -d FILE.xml")
-                            : "add -d " + one_of(names) + ", or -d with an .eds or .xml file";
-  const bool can_look =
-      includes(run.command->needs, Needs::node) && !run.settings.nodes.empty() && !run.settings.bus.empty();
-  const auto nodes = can_look ? parse_nodes(run.settings.nodes)
-                              : Result<std::vector<std::uint8_t>>(std::vector<std::uint8_t>{});
-  if (nodes && !nodes->empty() && nodes->front() != 0) {
-    if (const auto opened = open(run.settings)) {
-      auto found = session::scan(**opened, *nodes);
-      if (found && !found->empty()) {
-        session::look_for_families(**opened, *found, families);
-        std::vector<std::string> guesses;
-        for (const auto& guess : session::guess_families(found->front(), families))
-          guesses.push_back(guess.family);
-        if (!guesses.empty())
-          hint = fmt::format("its identity fits {} (a guess, not proof): if the nameplate agrees, add -d {}",
-                             one_of(guesses), guesses.front());
-      }
-    }
-  }
-  return fail(Errc::usage, fmt::format("'{}' needs the drive family", run.command->path), std::move(hint));
 }
 
 /// The dictionary that the drive itself describes; asked for once, and again after a restart of the drive.

@@ -15,31 +15,17 @@ namespace {
 
 using report::Record;
 using report::Value;
-using session::Identity;
 
 constexpr std::uint64_t kVersion = 1;
 constexpr std::uintmax_t kMostBytes = 1U << 16U;
 /// More than any encoder has.
 constexpr std::uint64_t kMostCounts = std::uint64_t{1} << 40U;
 
-/// What the file keeps of an identity; the rest may change without the drive being another one.
-Identity bare(const Identity& from) {
-  Identity out;
-  out.node = from.node;
-  out.device_type = from.device_type;
-  out.vendor_id = from.vendor_id;
-  out.product_code = from.product_code;
-  out.revision = from.revision;
-  out.serial = from.serial;
-  out.device_name = from.device_name;
-  return out;
-}
-
 Record body_of(const KeptTurn& turn, std::uint8_t node) {
   return {{"servoctl_turn", kVersion},
           {"node", std::uint64_t{node}},
           {"family", turn.family},
-          {"identity", show::identity_record(bare(turn.identity))},
+          {"identity", show::identity_record(show::lasting(turn.identity))},
           {"counts", turn.counts},
           {"measured", turn.measured},
           {"uncertainty_ppm", turn.uncertainty_ppm},
@@ -80,24 +66,12 @@ Result<KeptTurn> parse(const Value& document, const std::string& file, std::uint
   return out;
 }
 
-/// Such as `its serial number (1018h:04)`; empty when it is the same drive, as far as it tells.
-std::string change_of(const Identity& before, const Identity& now) {
-  if (before.device_type != now.device_type) return "its device type (1000h)";
-  if (before.vendor_id != now.vendor_id) return "its vendor (1018h:01)";
-  if (before.product_code != now.product_code) return "its product code (1018h:02)";
-  if (before.revision != now.revision) return "its revision (1018h:03)";
-  if (before.serial != now.serial) return "its serial number (1018h:04)";
-  // A file holds no bytes that are no text.
-  const auto as_kept = [](const Identity& one) { return report::to_json(Value(one.device_name)); };
-  return as_kept(before) != as_kept(now) ? "its name (1008h)" : std::string();
-}
-
 /// Why what is kept is not to be used; empty when it is.
 std::string reason_against(const show::Desk& desk, std::uint8_t node, const KeptTurn& kept) {
   if (kept.family != desk.profile->family) return fmt::format("they were measured with -d {}", kept.family);
   const auto now = session::read_identity(*desk.session, node);
   if (!now) return now.error().message;
-  const auto change = change_of(kept.identity, *now);
+  const auto change = show::change_of(kept.identity, *now);
   return change.empty() ? change : change + " is not the one of the drive that was measured";
 }
 

@@ -138,4 +138,27 @@ std::string other_kind(const session::Identity& one, const session::Identity& ot
   return {};
 }
 
+session::Identity lasting(const session::Identity& identity) {
+  session::Identity out;
+  out.node = identity.node;
+  out.device_type = identity.device_type;
+  out.vendor_id = identity.vendor_id;
+  out.product_code = identity.product_code;
+  out.revision = identity.revision;
+  out.serial = identity.serial;
+  out.device_name = identity.device_name;
+  return out;
+}
+
+std::string change_of(const session::Identity& before, const session::Identity& now) {
+  if (before.device_type != now.device_type) return "its device type (1000h)";
+  if (before.vendor_id != now.vendor_id) return "its vendor (1018h:01)";
+  if (before.product_code != now.product_code) return "its product code (1018h:02)";
+  if (before.revision != now.revision) return "its revision (1018h:03)";
+  if (before.serial != now.serial) return "its serial number (1018h:04)";
+  // A file holds no bytes that are no text.
+  const auto as_kept = [](const session::Identity& one) { return report::to_json(Value(one.device_name)); };
+  return as_kept(before) != as_kept(now) ? "its name (1008h)" : std::string();
+}
+
 }  // namespace servoctl::show

@@ -1,0 +1,202 @@
+// Which family a line means that names none: the one that was said of the drive before, or, to read only, the
+// one that its identity suggests.
+#include <fmt/format.h>
+#include <algorithm>
+#include <utility>
+
+#include "base/calendar.hpp"
+#include "base/text.hpp"
+#include "cli/shell.hpp"
+#include "session/identify.hpp"
+#include "session/open_bus.hpp"
+#include "session/scan.hpp"
+#include "show/identity.hpp"
+#include "show/known_drive.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+using command::Effect;
+using command::Needs;
+using session::Identity;
+using session::Session;
+using show::KnownDrive;
+using show::KnownDriveFile;
+
+/// Of a drive that restarts it is found out anew: it may be another one.
+std::string key_of(Session& session, std::uint8_t node) {
+  return fmt::format("{} {} {}", session::canonical_url(session.url()), node, session.watch().boots(node));
+}
+
+/// The families that are for drives of many makers only where no other fits.
+std::vector<std::string> suggested(Session& session, Identity identity,
+                                   std::span<const drive::Family> families) {
+  session::look_for_families(session, std::span(&identity, 1), families);
+  const auto guesses = session::guess_families(identity, families);
+  const bool own = std::any_of(guesses.begin(), guesses.end(), [](const auto& one) { return !one.generic; });
+  std::vector<std::string> out;
+  for (const auto& guess : guesses)
+    if (!own || !guess.generic) out.push_back(guess.family);
+  return out;
+}
+
+/// A file is found again from another folder; the name of a family is what it is.
+std::string lasting_name(const std::string& drive) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  return fs::is_regular_file(drive, error) ? fs::absolute(drive, error).string() : drive;
+}
+
+tl::unexpected<Error> needs_family(const command::Command& command, std::string hint) {
+  return fail(Errc::usage, fmt::format("'{}' needs the drive family", command.path), std::move(hint));
+}
+
+}  // namespace
+
+/// What was said of the drive, as long as it is that drive.
+std::optional<KnownDrive> Shell::said_of(Run& run, Session& session, const Identity& identity) {
+  if (options_.state_folder.empty()) return std::nullopt;
+  const KnownDriveFile file(options_.state_folder, session.url(), identity.node);
+  auto known = file.read();
+  if (!known) run.context.notices.push_back(known.error().message + "; " + known.error().hint);
+  if (!known || !*known) return std::nullopt;
+  const auto change = show::change_of((*known)->identity, identity);
+  if (change.empty()) return std::move(*known);
+  const auto removed = file.remove();
+  run.context.notices.push_back(
+      fmt::format("node {} is not the drive that was said to be {}: {} is another; {}", identity.node,
+                  (*known)->family, change, removed ? "that is forgotten" : removed.error().message));
+  return std::nullopt;
+}
+
+/// The family of one node, told once. Errc::usage where it is open, or only a guess and something is to be
+/// changed.
+Result<std::string> Shell::family_of(Run& run, Session& session, std::uint8_t node, bool changes) {
+  const auto key = key_of(session, node);
+  auto found = families_.find(key);
+  if (found == families_.end()) {
+    const auto identity = session::read_identity(session, node);
+    if (!identity) return fail(identity.error());
+    if (const auto said = said_of(run, session, *identity)) {
+      run.context.notices.push_back(
+          fmt::format("node {} is taken for {}, as said with -d at {} for the drive of this identity", node,
+                      said->family, said->time));
+      found = families_.emplace(key, FoundFamily{said->family, false}).first;
+    } else {
+      const auto fits = suggested(session, *identity, drive::find_families(options_.drive_folders));
+      if (fits.empty()) return needs_family(*run.command, no_family_hint());
+      if (fits.size() > 1 || changes)
+        return needs_family(
+            *run.command,
+            fmt::format("the identity of node {} fits {} (a guess, not proof): if the nameplate "
+                        "agrees, add -d {}",
+                        node, one_of(fits), fits.front()));
+      run.context.notices.push_back(
+          fmt::format("node {} is taken for {}, which its identity fits: a guess, not proof; what writes or "
+                      "moves needs -d {}",
+                      node, fits.front(), fits.front()));
+      found = families_.emplace(key, FoundFamily{fits.front(), true}).first;
+    }
+  }
+  if (changes && found->second.guessed)
+    return needs_family(
+        *run.command,
+        fmt::format("node {} is taken for {} by its identity, a guess: if the nameplate agrees, "
+                    "add -d {}",
+                    node, found->second.family, found->second.family));
+  return found->second.family;
+}
+
+std::string Shell::no_family_hint() const {
+  std::vector<std::string> names;
+  for (const auto& family : drive::find_families(options_.drive_folders)) names.push_back(family.name);
+  return names.empty() ? std::string("add -d FILE.eds or -d FILE.xml")
+                       : "add -d " + one_of(names) + ", or -d with an .eds or .xml file";
+}
+
+/// Says what the drives of the line are, where that can be found out.
+Result<void> Shell::find_family(Run& run, bool changes) {
+  const bool can_look =
+      includes(run.command->needs, Needs::node) && !run.settings.nodes.empty() && !run.settings.bus.empty();
+  if (!can_look) return needs_family(*run.command, no_family_hint());
+  auto nodes = parse_nodes(run.settings.nodes);
+  if (!nodes) return fail(nodes.error());
+  const auto opened = open(run.settings);
+  if (!opened) return fail(opened.error());
+  run.context.session = *opened;
+  if (nodes->front() == 0) nodes = session::nodes_present(**opened);
+  if (!nodes) return fail(nodes.error());
+  std::string family;
+  for (const auto node : *nodes) {
+    const auto one = family_of(run, **opened, node, changes);
+    if (!one) return fail(one.error());
+    if (!family.empty() && *one != family)
+      return fail(Errc::usage,
+                  fmt::format("node {} is taken for {}, node {} for {}", nodes->front(), family, node, *one),
+                  "name the nodes of one family in one line, or write a cabinet file (`cabinet init`)");
+    family = *one;
+  }
+  run.settings.drive = family;
+  run.family_found = true;
+  return {};
+}
+
+/// Behind a line, whatever became of it.
+void Shell::learn_from(Run& run) {
+  if (run.context.errors.empty())
+    remember_family(run);
+  else
+    offer_turn(run);
+}
+
+/// After a line that worked: which drives the family, and the counts, were said of.
+void Shell::remember_family(Run& run) {
+  auto* session = run.context.session;
+  const auto& settings = run.settings;
+  const bool said = !settings.drive.empty() && !run.family_found && !settings.of_cabinet &&
+                    run.context.profile != nullptr && !equals_nocase(settings.drive, "online");
+  if (!said || session == nullptr || options_.state_folder.empty() || settings.dry_run ||
+      settings.force_family || settings.bus.starts_with("replay:") || cancelled())
+    return;
+  for (const auto node : run.context.nodes) {
+    if (node == 0) continue;
+    const FoundFamily now{lasting_name(settings.drive), false, run.turn};
+    auto& known = families_[key_of(*session, node)];
+    if (known == now) continue;
+    known = now;
+    remember(run, *session, node);
+  }
+}
+
+void Shell::remember(Run& run, Session& session, std::uint8_t node) {
+  const auto& now = families_[key_of(session, node)];
+  const KnownDriveFile file(options_.state_folder, session.url(), node);
+  const auto before = file.read();
+  const bool same = before && *before && (*before)->family == now.family;
+  if (same && (now.turn.empty() || (*before)->turn == now.turn)) return;
+  const auto identity = session::read_identity(session, node);
+  if (!identity || !session::refuse_duplicate(session, node)) return;
+  KnownDrive drive{now.family, now.turn, utc_now_text(), *identity};
+  if (same && drive.turn.empty()) drive.turn = (*before)->turn;
+  if (const auto written = file.write(drive); !written)
+    run.context.notices.push_back("the family is not remembered: " + written.error().message);
+}
+
+/// Where counts per revolution are missing: those that were once given for this drive are offered, not taken.
+void Shell::offer_turn(Run& run) {
+  const auto& errors = run.context.errors;
+  auto* session = run.context.session;
+  if (errors.empty() || errors.front().hint.find("--turn") == std::string::npos || !run.turn.empty() ||
+      session == nullptr || options_.state_folder.empty() || run.context.nodes.size() != 1)
+    return;
+  const auto node = run.context.nodes.front();
+  const auto known = KnownDriveFile(options_.state_folder, session->url(), node).read();
+  if (!known || !*known || (*known)->turn.empty()) return;
+  const auto identity = session::read_identity(*session, node);
+  if (!identity || !show::change_of((*known)->identity, *identity).empty()) return;
+  run.context.notices.push_back(fmt::format(
+      "--turn {} was given for this drive at {}: add it if motor, encoder and gear are those of then",
+      (*known)->turn, (*known)->time));
+}
+
+}  // namespace servoctl::cli

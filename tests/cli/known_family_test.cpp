@@ -1,0 +1,136 @@
+// The family is asked once: what is remembered of a drive, offered, and forgotten when it is another drive.
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+#include "../source_dir.hpp"
+#include "cli/line_runner.hpp"
+#include "cli/shell.hpp"
+#include "recording_console.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+class KnownFamily : public testing::Test {
+ protected:
+  KnownFamily() : folder(fs::temp_directory_path() / ("servoctl-known-" + std::to_string(::getpid()))) {
+    fs::create_directories(folder / "state");
+    options.drive_folders = {fs::path(source_dir()) / "eds"};
+    options.clock = sim::SimBus::Clock::virtual_time;
+    options.state_folder = folder / "state";
+    options.defaults.bus = "sim:gsd600@1,da200@2,gsd600@3";
+    options.defaults.yes = true;
+  }
+  ~KnownFamily() override { fs::remove_all(folder); }
+
+  /// As another process would, later.
+  int run(std::string_view line) {
+    console.out_text.clear();
+    console.err_text.clear();
+    return LineRunner(*std::make_unique<Shell>(console, options)).run(line);
+  }
+  std::string all() const { return console.out_text + console.err_text; }
+  bool says(std::string_view what) const { return all().find(what) != std::string::npos; }
+  std::size_t files() const {
+    return static_cast<std::size_t>(
+        std::distance(fs::directory_iterator(folder / "state"), fs::directory_iterator()));
+  }
+  fs::path only_file() const { return fs::directory_iterator(folder / "state")->path(); }
+  void change_file(std::string_view from, std::string_view to) const {
+    std::stringstream text;
+    text << std::ifstream(only_file()).rdbuf();
+    auto changed = text.str();
+    const auto at = changed.find(from);
+    ASSERT_NE(at, std::string::npos) << changed;
+    std::ofstream(only_file()) << changed.replace(at, from.size(), to);
+  }
+
+  fs::path folder;
+  Shell::Options options;
+  RecordingConsole console;
+};
+
+TEST_F(KnownFamily, AReadGoesOnWithAGuessAndAWriteDoesNot) {
+  EXPECT_EQ(run("param get Pn0202 -n 1"), 0) << all();
+  EXPECT_TRUE(says("a guess, not proof; what writes or moves needs -d gsd600")) << all();
+  EXPECT_EQ(files(), 0U) << "nobody said it";
+  EXPECT_EQ(run("param set Pn0202 40Hz -n 1"), 2);
+  EXPECT_TRUE(says("add -d gsd600")) << all();
+  EXPECT_EQ(run("jog 30rpm --for 1s --turn 10000 -n 1"), 2);
+  EXPECT_TRUE(says("needs the drive family")) << all();
+}
+
+TEST_F(KnownFamily, AGuessThatWasTakenForReadsIsNoneForWritesInTheSameSession) {
+  Shell shell(console, options);
+  shell.stay_open(true);
+  EXPECT_EQ(LineRunner(shell).run("param get Pn0202 -n 1"), 0) << all();
+  EXPECT_EQ(LineRunner(shell).run("param set Pn0202 40Hz -n 1"), 2) << all();
+  EXPECT_EQ(LineRunner(shell).run("param set Pn0202 40Hz -n 1 -d gsd600"), 0) << all();
+  EXPECT_EQ(LineRunner(shell).run("param set Pn0202 30Hz -n 1"), 0) << all();
+}
+
+TEST_F(KnownFamily, WhatWasSaidHoldsForTheDriveAndIsTold) {
+  EXPECT_EQ(run("param get Pn0202 -n 1 -d gsd600"), 0) << all();
+  EXPECT_FALSE(says("notice")) << all();
+  EXPECT_EQ(files(), 1U);
+  EXPECT_EQ(run("param set Pn0202 40Hz -n 1"), 0) << all();
+  EXPECT_TRUE(says("node 1 is taken for gsd600, as said with -d at ")) << all();
+  EXPECT_EQ(run("param set Pn0202 40Hz -n 3"), 2) << "of node 3 nobody said anything: " << all();
+}
+
+TEST_F(KnownFamily, ALineThatFailedSaysNothing) {
+  EXPECT_NE(run("param set Pn0202 40Hz -n 2 -d gsd600"), 0);
+  EXPECT_NE(run("param get Pn9999 -n 1 -d gsd600"), 0);
+  EXPECT_EQ(run("param set Pn0202 40Hz -n 1 -d gsd600 --dry-run"), 0) << all();
+  EXPECT_EQ(files(), 0U);
+}
+
+TEST_F(KnownFamily, IsForgottenWhenTheDriveIsAnother) {
+  EXPECT_EQ(run("param get Pn0202 -n 1 -d gsd600"), 0) << all();
+  change_file("\"serial\":0", "\"serial\":7");
+  EXPECT_EQ(run("param set Pn0202 40Hz -n 1"), 2) << all();
+  EXPECT_TRUE(says("its serial number (1018h:04) is another; that is forgotten")) << all();
+  EXPECT_EQ(files(), 0U);
+}
+
+TEST_F(KnownFamily, ADamagedFileIsToldAndNotBelieved) {
+  EXPECT_EQ(run("param get Pn0202 -n 1 -d gsd600"), 0) << all();
+  std::ofstream(only_file()) << "{\"servoctl_drive\":1,\"node\":1,\"fam";
+  EXPECT_EQ(run("param set Pn0202 40Hz -n 1"), 2) << all();
+  EXPECT_TRUE(says("delete the file")) << all();
+}
+
+TEST_F(KnownFamily, NodesOfTwoFamiliesAreNotOneLine) {
+  EXPECT_EQ(run("param get Pn0202 -n 1,2"), 2);
+  EXPECT_TRUE(says("node 1 is taken for gsd600, node 2 for da200")) << all();
+  EXPECT_EQ(run("param get Pn0202 -n 1,3"), 0) << all();
+}
+
+TEST_F(KnownFamily, CountsThatWereGivenAreOfferedAndNotTaken) {
+  EXPECT_EQ(run("jog 30rpm --for 1s --turn 10000 -n 1 -d gsd600"), 0) << all();
+  EXPECT_EQ(run("jog 30rpm --for 1s -n 1"), 2) << "no motion by a number of another day: " << all();
+  EXPECT_TRUE(says("--turn 10000 was given for this drive at ")) << all();
+  EXPECT_EQ(run("param get Pn0202 -n 1 -d gsd600"), 0);
+  EXPECT_EQ(run("jog 30rpm --for 1s -n 1"), 2);
+  EXPECT_TRUE(says("--turn 10000")) << "a line without --turn does not forget it: " << all();
+  change_file("\"serial\":0", "\"serial\":7");
+  EXPECT_EQ(run("jog 30rpm --for 1s -n 1 -d gsd600"), 2);
+  EXPECT_FALSE(says("was given for this drive")) << all();
+}
+
+TEST_F(KnownFamily, AFileIsRememberedByItsWholePath) {
+  const auto eds = fs::path(source_dir()) / "eds/vmmore/gsd600.eds";
+  EXPECT_EQ(run("read 0x2001:3 -n 1 -d " + fs::relative(eds).string()), 0) << all();
+  change_file(fs::canonical(eds).string(), "/nowhere.eds");
+  EXPECT_NE(run("param get 0x2001:3 -n 1"), 0);
+  EXPECT_TRUE(says("/nowhere.eds")) << all();
+}
+
+}  // namespace
+}  // namespace servoctl::cli
