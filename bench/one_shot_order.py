@@ -1,7 +1,8 @@
-"""What a one-shot command executes, as a linker script: `one_shot_order.py MAP TRACE...`.
+"""What a one-shot command executes, as a linker script: `one_shot_order.py LAST MAP TRACE...`.
 
 MAP is what the linker says of a program that was not linked as PIE, each TRACE what `valgrind --tool=lackey
---trace-mem=yes` wrote of a run of it. Sections stand in the order in which they are first executed.
+--trace-mem=yes` wrote of a run of it. Sections stand in the order in which they are first executed; behind them those of
+SocketCAN that LAST, the script of before, has.
 """
 import bisect
 import collections
@@ -34,7 +35,7 @@ def executed(trace, found, starts, order):
             order.setdefault(at)
 
 
-def main(map_file, *traces):
+def main(last, map_file, *traces):
     found = sections(map_file)
     starts = [s[0] for s in found]
     names = collections.Counter(s[2] for s in found)
@@ -43,13 +44,18 @@ def main(map_file, *traces):
         executed(trace, found, starts, order)
     print("/* What a one-shot command executes, in the order of its first use. Written by bench/one_shot_order.sh. */")
     print("SECTIONS\n{\n  .text.one_shot :\n  {")
+    lines = {}
     for at in order:
         _, _, name, file = found[at]
         if name == ".text":
             continue
         # Every command has a `run` in an anonymous namespace.
         member = re.sub(r".*\((.*)\)$", r"\1", file).split("/")[-1] if names[name] > 1 else ""
-        print(f"    *{member}({name})")
+        lines[f"    *{member}({name})"] = True
+    for line in open(last):
+        if "SocketCan" in line or "socketcan" in line:
+            lines.setdefault(line.rstrip())
+    print("\n".join(lines))
     print("  }\n}\nINSERT BEFORE .text;")
 
 

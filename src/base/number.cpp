@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/decade.hpp"
 #include "base/text.hpp"
 
 namespace servoctl {
@@ -82,7 +83,7 @@ std::string with_decimals(double value, int decimals) {
 }
 
 /// Digits before the point; 0 or less: so many zeros follow it.
-int magnitude_of(double value) { return static_cast<int>(std::floor(std::log10(std::abs(value)))) + 1; }
+int magnitude_of(double value) { return decade_of(value) + 1; }
 
 bool has_plain_form(double value) {
   return std::isfinite(value) && std::abs(value) < kGreatest && std::abs(value) >= kLeast;

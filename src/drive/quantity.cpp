@@ -69,7 +69,7 @@ Result<Quantity> from_physical(const Meaning& meaning, const NumberWithUnit& giv
   if (meaning.encoding != od::Encoding::plain) return encoded(meaning, raw);
   if (od::is_real(meaning.type)) return Quantity{od::Value(raw), {}};
   if (std::abs(raw) > 9.0e18) return too_large(text);
-  const double whole = std::nearbyint(raw);
+  const double whole = static_cast<double>(std::llrint(raw));
   const double step = meaning.scale / *factor;
   if (steps == Steps::exact && std::abs(raw - whole) > kWhole)
     return fail(Errc::usage,

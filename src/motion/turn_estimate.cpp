@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
+#include "base/decade.hpp"
 #include "base/number.hpp"
 
 namespace servoctl::motion {
@@ -27,7 +29,8 @@ double seconds_between(const TurnLook& a, const TurnLook& b) {
 }
 
 double way_between(const TurnLook& a, const TurnLook& b) {
-  return std::remainder(b.position - a.position, kWrap);
+  const double moved = b.position - a.position;
+  return moved - kWrap * std::round(moved / kWrap);
 }
 
 /// Of a stretch of looks.
@@ -67,8 +70,15 @@ bool is_near(double measured, double candidate) {
   return std::abs(measured / candidate - 1) <= kTurnTolerance;
 }
 
+/// By its ratio: which power it is.
+int nearest_power_of_two(double measured) {
+  int digits = 0;
+  (void)std::frexp(measured * std::numbers::sqrt2, &digits);
+  return digits - 1;
+}
+
 double nearest_decimal(double measured) {
-  const double power = std::pow(10, std::floor(std::log10(measured)));
+  const double power = power_of_ten(decade_of(measured));
   double out = 10 * power;
   for (const double mantissa : kRound)
     if (std::abs(mantissa * power - measured) < std::abs(out - measured)) out = mantissa * power;
@@ -143,7 +153,7 @@ Result<TurnCounts> counts_behind(double measured, double uncertainty, const Turn
                                  std::llround(measured), percent(uncertainty), told),
                      "leave --nameplate out, or check the motor's nameplate");
   }
-  const int bits = static_cast<int>(std::lround(std::log2(measured)));
+  const int bits = nearest_power_of_two(measured);
   if (const double power = std::ldexp(1, bits); is_near(measured, power))
     return TurnCounts{power, fmt::format("2^{}, {}", bits, distance(measured, power))};
   const double decimal = nearest_decimal(measured);

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 
+#include "base/decade.hpp"
 #include "od/esi_value.hpp"
 
 namespace servoctl::od {
@@ -63,7 +63,7 @@ std::optional<EsiUnit> esi_unit(std::string_view text) {
   if (name.empty()) return std::nullopt;
   if (const auto prefix = prefix_of(power); !prefix.empty() && takes_prefix(name))
     return EsiUnit{std::string(prefix) + name, 1};
-  return EsiUnit{std::move(name), std::pow(10.0, power)};
+  return EsiUnit{std::move(name), power_of_ten(power)};
 }
 
 }  // namespace servoctl::od

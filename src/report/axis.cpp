@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/decade.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
 
@@ -23,7 +24,7 @@ Extent widened(Extent extent) {
 /// The smallest round step of which no more than `most` - 1 lie in the extent.
 double step_of(const Extent& extent, std::size_t most) {
   const double least = (extent.high - extent.low) / static_cast<double>(std::max<std::size_t>(most, 2) - 1);
-  const double power = std::pow(10.0, std::floor(std::log10(least)));
+  const double power = power_of_ten(decade_of(least));
   for (const double factor : {1.0, 2.0, 5.0})
     if (factor * power >= least * (1 - 1e-9)) return factor * power;
   return 10 * power;
@@ -66,9 +67,9 @@ std::optional<Extent> time_extent(std::span<const Series> series) {
 
 std::string Ticks::text(double value) const {
   if (std::abs(value) < step / 2) return "0";
-  const double places = std::floor(std::log10(step) + 1e-9);
+  const int places = decade_of(step * (1 + 1e-9));
   if (places < -6 || std::abs(value) >= 1e9) return fmt::format("{:.4g}", value);
-  return fmt::format("{:.{}f}", value, places < 0 ? static_cast<int>(-places) : 0);
+  return fmt::format("{:.{}f}", value, std::max(-places, 0));
 }
 
 Ticks ticks_of(const Extent& extent, std::size_t most) { return marks(extent, step_of(extent, most)); }
