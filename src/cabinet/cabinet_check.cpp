@@ -129,7 +129,7 @@ class AxisCheck {
   void check_limit(std::string_view name, const std::string& text,
                    std::initializer_list<std::string_view> units) {
     if (text.empty()) return;
-    const auto motor = axis_->load ? drive::in_revolutions(*axis_->load, text) : std::nullopt;
+    const auto motor = axis_->load ? drive::size_in_revolutions(*axis_->load, text) : std::nullopt;
     const auto said = motor.value_or(text);
     const auto number = drive::split_unit(said);
     const bool fits =

@@ -56,6 +56,10 @@ std::optional<std::string> in_revolutions(const LoadUnit& load, std::string_view
   return std::nullopt;
 }
 
+std::optional<std::string> size_in_revolutions(const LoadUnit& load, std::string_view text) {
+  return in_revolutions({load.unit, std::abs(load.per_rev)}, text);
+}
+
 std::optional<LoadValue> of_load(const LoadUnit& load, double value, std::string_view unit) {
   for (const auto per : kPerTime)
     if (const auto revolutions = conversion(unit, fmt::format("rev{}", per)))

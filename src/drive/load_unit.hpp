@@ -24,6 +24,8 @@ Result<LoadUnit> parse_load_unit(std::string_view text, double gear);
 /// The text in revolutions of the motor where it is a number with the load's unit (`20mm` is `10rev`, `5mm/s`
 /// is `2.5rev/s`), or one that converts to it (`2cm`); empty where it is not.
 std::optional<std::string> in_revolutions(const LoadUnit& load, std::string_view text);
+/// The same of what has no direction, such as a limit or a ramp: whichever way the load runs, its sign stays.
+std::optional<std::string> size_in_revolutions(const LoadUnit& load, std::string_view text);
 
 /// A number in a unit of the motor's angle, speed or acceleration (`deg`, `rpm`, `rev/s^2`) in the load's.
 struct LoadValue {

@@ -90,7 +90,7 @@ Result<void> Motion::add_ramps(double speed, std::initializer_list<ObjectAddress
   for (const auto object : objects) {
     if (!units_->has(object)) continue;
     if (!options_.acceleration.empty()) {
-      const auto asked = units_->parse(object, options_.acceleration);
+      const auto asked = units_->parse(object, options_.acceleration, MotionUnits::Kind::size);
       if (!asked) return fail(asked.error());
       plan.settings.emplace_back(object, asked->data);
       plan.tell(asked->rounding);

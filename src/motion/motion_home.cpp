@@ -100,7 +100,9 @@ Result<void> add(const Motion& motion, ObjectAddress object, const std::string& 
   if (text.empty()) return {};
   if (!motion.units().has(object))
     return fail(motion.error(Errc::usage, fmt::format("this family has no object {}", to_string(object))));
-  const auto data = motion.units().parse(object, text);
+  const bool is_way = object == objects::kHomeOffset;
+  const auto data =
+      motion.units().parse(object, text, is_way ? MotionUnits::Kind::way : MotionUnits::Kind::size);
   if (!data) return fail(data.error());
   plan.settings.emplace_back(object, data->data);
   plan.tell(data->rounding);

@@ -157,7 +157,7 @@ Result<MotionPlan> plan_jog(Motion& motion, const Jog& jog) {
   if (!mode) return fail(motion.error(Errc::refused, "this family has no velocity mode"));
   MotionPlan plan;
   plan.mode = *mode;
-  const auto data = motion.units().parse(objects::kTargetVelocity, jog.speed);
+  const auto data = motion.units().parse(objects::kTargetVelocity, jog.speed, MotionUnits::Kind::way);
   if (!data) return fail(data.error());
   const auto& speed = data->value;
   if (speed.value == 0) return fail(Errc::usage, "a speed of 0 moves nothing", "give a speed other than 0");

@@ -50,7 +50,8 @@ Result<void> Motion::read_limits() {
     *row.out = *value;
   }
   if (options_.acceleration.empty()) return {};
-  const auto ramp = units_->parse(objects::kProfileAcceleration, options_.acceleration);
+  const auto ramp =
+      units_->parse(objects::kProfileAcceleration, options_.acceleration, MotionUnits::Kind::size);
   if (!ramp) return fail(ramp.error());
   if (ramp->value.value > 0) return {};
   return fail(Errc::usage, fmt::format("--accel: '{}' is not a ramp", options_.acceleration),
@@ -59,7 +60,7 @@ Result<void> Motion::read_limits() {
 
 Result<double> Motion::parse_limit(ObjectAddress object, std::string_view option,
                                    const std::string& text) const {
-  const auto value = units_->parse_physical(object, text);
+  const auto value = units_->parse_physical(object, text, MotionUnits::Kind::size);
   if (!value) {
     auto error = value.error();
     error.message = fmt::format("{}: {}", option, error.message);

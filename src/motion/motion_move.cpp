@@ -125,7 +125,7 @@ double step_of(const MotionUnits& units, double place) {
 /// The target, counted from where the motor stands when it is relative.
 Result<void> find_target(Motion& motion, const Move& move, MotionPlan& plan) {
   const auto& units = motion.units();
-  const auto asked = units.parse_physical(objects::kTargetPosition, move.target);
+  const auto asked = units.parse_physical(objects::kTargetPosition, move.target, MotionUnits::Kind::way);
   if (!asked) return fail(asked.error());
   const auto answer = motion.session().upload(motion.node(), objects::kPositionActual);
   if (!answer) return fail(answer.error());
@@ -173,7 +173,7 @@ Result<std::optional<Bytes>> move_speed(Motion& motion, const Move& move, Object
     if (!cap) return fail(cap.error());
     return motion.units().bytes(object, *cap * kDefaultPart);
   }
-  const auto asked = motion.units().parse(object, move.speed);
+  const auto asked = motion.units().parse(object, move.speed, MotionUnits::Kind::size);
   if (!asked) return fail(asked.error());
   plan.tell(asked->rounding);
   return std::optional<Bytes>(asked->data);

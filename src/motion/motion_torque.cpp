@@ -76,7 +76,7 @@ Result<MotionPlan> plan_torque(Motion& motion, const Torque& torque) {
   const auto cap = motion.speed_cap();
   if (!cap) return fail(cap.error());
   if (*cap <= 0) return fail(Errc::usage, "a speed limit of 0 lets nothing move", "give --limit a speed");
-  const auto data = motion.units().parse(objects::kTargetTorque, torque.torque);
+  const auto data = motion.units().parse(objects::kTargetTorque, torque.torque, MotionUnits::Kind::way);
   if (!data) return fail(data.error());
   const auto& value = data->value;
   if (const auto allowed = check_torque(motion, value); !allowed) return fail(allowed.error());

@@ -54,18 +54,21 @@ std::optional<double> MotionUnits::turn() const {
   return known == measures_.end() ? std::nullopt : std::optional(known->second);
 }
 
-Error MotionUnits::unknown_turn(ObjectAddress object, Error error) const {
+Error MotionUnits::unusable(ObjectAddress object, std::string_view text, const std::string& motor,
+                            Error error) const {
   const auto what = meaning(object);
   if (what.measure == drive::Measure::increments_per_turn && !what.bridge)
     error.hint += fmt::format("; --turn gives the 6064h increments per revolution{}",
                               profile_->rules.learn.speed.empty() ? "" : ", `units learn` measures them");
+  if (motor != text) error.message = fmt::format("'{}' of the load: {}", text, error.message);
   return error;
 }
 
-Result<Setpoint> MotionUnits::parse(ObjectAddress object, std::string_view text) const {
+Result<Setpoint> MotionUnits::parse(ObjectAddress object, std::string_view text, Kind kind) const {
   const auto what = meaning(object);
-  const auto quantity = drive::nearest_quantity(what, for_motor(text));
-  if (!quantity) return fail(unknown_turn(object, quantity.error()));
+  const auto motor = for_motor(text, kind);
+  const auto quantity = drive::nearest_quantity(what, motor);
+  if (!quantity) return fail(unusable(object, text, motor, quantity.error()));
   auto data = od::encode(what.type, quantity->value);
   if (!data) return fail(data.error());
   Setpoint out{std::move(*data), {}, quantity->rounding ? drive::to_string(*quantity->rounding) : ""};
@@ -80,15 +83,15 @@ std::optional<Physical> MotionUnits::physical(ObjectAddress object, ByteSpan byt
   return physical_of(what, *value);
 }
 
-Result<Physical> MotionUnits::parse_physical(ObjectAddress object, std::string_view text) const {
+Result<Physical> MotionUnits::parse_physical(ObjectAddress object, std::string_view text, Kind kind) const {
   auto what = meaning(object);
-  const auto motor = for_motor(text);
+  const auto motor = for_motor(text, kind);
   auto value = drive::parse_quantity(what, motor);
   if (!value && what.encoding == od::Encoding::plain && od::is_integer(what.type)) {
     what.type = od::DataType::f64;
     if (auto between = drive::parse_quantity(what, motor)) value = std::move(between);
   }
-  if (!value) return fail(unknown_turn(object, value.error()));
+  if (!value) return fail(unusable(object, text, motor, value.error()));
   return physical_of(what, *value);
 }
 
@@ -122,8 +125,10 @@ std::string MotionUnits::unit(ObjectAddress object) const {
   return zero ? zero->unit : std::string();
 }
 
-std::string MotionUnits::for_motor(std::string_view text) const {
-  const auto turned = load_ ? drive::in_revolutions(*load_, text) : std::nullopt;
+std::string MotionUnits::for_motor(std::string_view text, Kind kind) const {
+  if (!load_) return std::string(text);
+  const auto turned =
+      kind == Kind::way ? drive::in_revolutions(*load_, text) : drive::size_in_revolutions(*load_, text);
   return turned.value_or(std::string(text));
 }
 

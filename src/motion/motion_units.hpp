@@ -38,13 +38,16 @@ class MotionUnits {
 
   bool has(ObjectAddress object) const;
   drive::Meaning meaning(ObjectAddress object) const;
+  /// Whether what a user wrote has a direction: of a load that runs the other way than its motor a way is
+  /// turned round, and a size, such as a ramp or a limit, is not.
+  enum class Kind : std::uint8_t { way, size };
   /// What to write for what a user wrote (`60rpm`); errors as drive::nearest_quantity().
-  Result<Setpoint> parse(ObjectAddress object, std::string_view text) const;
+  Result<Setpoint> parse(ObjectAddress object, std::string_view text, Kind kind) const;
   /// The number in these bytes in the unit people think in; empty when they are none.
   std::optional<Physical> physical(ObjectAddress object, ByteSpan bytes) const;
   /// What a user wrote about this object, as a number in the same unit as physical(); nothing is written, so
   /// nothing is rounded.
-  Result<Physical> parse_physical(ObjectAddress object, std::string_view text) const;
+  Result<Physical> parse_physical(ObjectAddress object, std::string_view text, Kind kind) const;
   /// The bytes for a number in the unit of physical() that servoctl itself chose: the nearest step within the
   /// object's limits, and never zero for what is not. Empty when it cannot be said in this object.
   std::optional<Bytes> bytes(ObjectAddress object, double value) const;
@@ -69,9 +72,10 @@ class MotionUnits {
 
  private:
   /// What the user wrote of the load, as it is for the motor.
-  std::string for_motor(std::string_view text) const;
-  /// The error, with what to do where nobody has told how many counts a turn has.
-  Error unknown_turn(ObjectAddress object, Error error) const;
+  std::string for_motor(std::string_view text, Kind kind) const;
+  /// The error about a number, in the user's words where `motor` is not what they wrote, with what to do
+  /// where nobody has told how many counts a turn has.
+  Error unusable(ObjectAddress object, std::string_view text, const std::string& motor, Error error) const;
 
   const drive::Profile* profile_;
   std::uint8_t node_;

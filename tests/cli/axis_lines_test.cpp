@@ -109,6 +109,31 @@ TEST_F(AxisLines, AMotionIsToldInTheUnitOfTheLoadAndMovesThatFar) {
   EXPECT_EQ(run("move 送料 20mm --yes"), 2) << all();                   // Nobody said what it moves.
 }
 
+TEST_F(AxisLines, ALoadThatRunsTheOtherWayIsMovedItsWayAndLimitedAsItIs) {
+  write(R"([bus.main]
+url = "sim:gsd600@1"
+[axis.lift]
+node = 1
+family = "gsd600"
+turn = 10000
+per_turn = "-20 mm"
+limits = { speed = "100mm/s" }
+)");
+  EXPECT_EQ(run("cabinet check"), 0) << all();
+  EXPECT_EQ(run("move lift 20mm --speed 50mm/s --accel 500mm/s2 --yes"), 0) << all();
+  EXPECT_TRUE(says("go -360 deg (20 mm) to -360 deg (20 mm) at 150 rpm")) << all();
+  EXPECT_EQ(run("read 0x6064 -n lift --json"), 0) << all();
+  EXPECT_TRUE(says(R"("value":-10000,)")) << all();
+  EXPECT_EQ(run("jog lift 50mm/s --for 100ms --yes"), 0) << all();
+  EXPECT_TRUE(says("-150 rpm (50 mm/s)")) << all();
+  EXPECT_EQ(run("jog lift 101mm/s --for 100ms --yes"), 8) << all();
+  EXPECT_EQ(run("home 35 -n lift --offset 20mm --speed 20mm/s --search 10mm/s --dry-run"), 0) << all();
+  EXPECT_TRUE(says("0x607C:0")) << all();
+  EXPECT_TRUE(says("-10000")) << all();
+  EXPECT_EQ(run("move lift 20mm --speed -50mm/s --yes"), 2) << all();
+  EXPECT_EQ(run("move lift 20mm --speed 0.0001um/s --yes"), 2) << all();
+}
+
 TEST_F(AxisLines, ALineThatContradictsTheFileIsRefused) {
   EXPECT_EQ(run("status -n feeder1 -d da200"), 2) << all();
   EXPECT_TRUE(says("feeder1 is gsd600 by cabinet.toml, not da200")) << all();
