@@ -129,7 +129,7 @@ limits = { speed = "100mm/s" }
   EXPECT_EQ(run("jog lift 101mm/s --for 100ms --yes"), 8) << all();
   EXPECT_EQ(run("home 35 -n lift --offset 20mm --speed 20mm/s --search 10mm/s --dry-run"), 0) << all();
   EXPECT_TRUE(says("0x607C:0")) << all();
-  EXPECT_TRUE(says("-10000")) << all();
+  EXPECT_TRUE(says("601#237C6000F0D8FFFF")) << all();  // -10000
   EXPECT_EQ(run("move lift 20mm --speed -50mm/s --yes"), 2) << all();
   EXPECT_EQ(run("move lift 20mm --speed 0.0001um/s --yes"), 2) << all();
 }
