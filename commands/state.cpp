@@ -91,6 +91,7 @@ Result<Value> run(Context& context, const Arguments& arguments, NodeState target
   for (const auto node : context.nodes) {
     const auto done = session::change_al_state(*context.session, ring, node, target);
     if (!done) context.errors.push_back(done.error());
+    if (done && target == NodeState::operational) ring.keep_operational(node);
     table.rows.push_back(row_of(node, ring.al_of(node), done));
   }
   return Value(std::move(table));

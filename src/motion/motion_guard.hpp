@@ -89,7 +89,6 @@ class MotionGuard {
   void tell_foreign_writes();
   void disarm();
   void put_node_back();
-  bool is_in_op();
   void return_to_op();
   void verify();
   void note(const std::string& what, const Error& error);

@@ -6,6 +6,7 @@
 
 #include "drive/standard_objects.hpp"
 #include "motion/motion_guard.hpp"
+#include "motion/kept_op.hpp"
 #include "motion/operation_mode.hpp"
 #include "session/link_wait.hpp"
 #include "session/option_scope.hpp"
@@ -40,29 +41,12 @@ void MotionGuard::put_node_back() {
          sent.error());
 }
 
-bool MotionGuard::is_in_op() {
-  const auto heard = session_->watch().heartbeats(node_);
-  if (!session_->network().ask_state(node_)) return false;
-  (void)session_->wait([&] { return session_->watch().heartbeats(node_) != heard; },
-                       session_->now() + kEndPatience);
-  return session_->watch().state(node_) == session::NodeState::operational;
-}
-
-/// The user had it in OP. It goes there anew, so that every output is preset: 607Ah from where it stands now.
-/// One that has left OP by itself is not taken there again.
 void MotionGuard::return_to_op() {
-  auto& network = session_->network();
-  const bool still_there = !lost_ && is_in_op();
-  const auto ended = network.end_exchange(node_);
-  if (lost_ || powered_) return;
-  const auto back = !ended        ? ended
-                    : still_there ? network.request_state(node_, session::NodeState::operational)
-                                  : fail(Errc::negative, "it left it during the motion");
-  if (!back)
-    result_.notes.push_back(fmt::format(
-        "it was in {} before and is in {} now: {}", network.state_word(session::NodeState::operational),
-        network.state_word(session_->watch().state(node_).value_or(session::NodeState::unknown)),
-        back.error().message));
+  if (lost_ || powered_) {
+    (void)session_->network().end_exchange(node_);
+    return;
+  }
+  if (const auto back = renew_op(*session_, node_); !back) result_.notes.push_back(back.error().message);
 }
 
 /// Halt where there is one, target to zero, a quick stop when that does not help, then 07h and 00h.

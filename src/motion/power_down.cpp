@@ -7,6 +7,7 @@
 
 #include "base/text.hpp"
 #include "drive/standard_objects.hpp"
+#include "motion/kept_op.hpp"
 #include "motion/power.hpp"
 #include "session/link_wait.hpp"
 #include "session/option_scope.hpp"
@@ -202,6 +203,19 @@ std::vector<session::PlannedMessage> planned_power_down(std::uint8_t node, Power
   return out;
 }
 
+namespace {
+
+/// Process data end with the power of a drive, unless the user has it in OP. When everything ends they end.
+void end_exchange(session::Session& session, const PowerDownPlan& plan, PowerDownResult& result) {
+  if (plan.aim != PowerAim::stop_and_disable && session.network().stays_operational(plan.node)) {
+    if (const auto back = renew_op(session, plan.node); !back) result.notes.push_back(back.error().message);
+  } else if (const auto ended = session.network().end_exchange(plan.node); !ended) {
+    result.notes.push_back("it could not be set back to PRE-OP: " + ended.error().message);
+  }
+}
+
+}  // namespace
+
 std::vector<PowerDownResult> take_down(session::Session& session, std::vector<PowerDownPlan> plans) {
   const session::Deaf deaf(session);
   std::vector<std::unique_ptr<PowerDown>> drives;
@@ -221,8 +235,7 @@ std::vector<PowerDownResult> take_down(session::Session& session, std::vector<Po
     const bool seen = out.back().statusword && !drive::is_energised(out.back().state());
     if (out.back().written && seen && out.back().outcome) session.energised().erase(drive->node());
     if (out.back().is_without_power() && !drive->plan().keeps_exchange)
-      if (const auto ended = session.network().end_exchange(drive->node()); !ended)
-        out.back().notes.push_back("it could not be set back to PRE-OP: " + ended.error().message);
+      end_exchange(session, drive->plan(), out.back());
   }
   return out;
 }

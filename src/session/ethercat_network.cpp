@@ -148,6 +148,7 @@ Result<void> EtherCatNetwork::request_state(std::uint8_t number, NodeState state
     return fail(drive_error(Errc::usage, number, fmt::format("EtherCAT has no state {}", name(state)),
                             "use init, preop, safeop or op"));
   auto& node = of(number);
+  if (*target != AlState::op) node.kept = false;
   if (*target == AlState::safeop || *target == AlState::op)
     return EtherCatExchange(*this, node).begin(*target);
   // INIT is the way out of a mailbox that is of no use, and of BOOT, from which nothing leads to PRE-OP.
@@ -189,6 +190,11 @@ Result<void> EtherCatNetwork::end_exchange(std::uint8_t node) {
   auto* known = find(node);
   if (known == nullptr || !known->raised) return {};
   return EtherCatExchange(*this, *known).end();
+}
+
+bool EtherCatNetwork::stays_operational(std::uint8_t node) const {
+  const auto* known = find(node);
+  return known != nullptr && known->kept;
 }
 
 void EtherCatNetwork::send_last_word(std::uint8_t node, ObjectAddress object, std::uint16_t value) noexcept {

@@ -52,6 +52,7 @@ class EtherCatNetwork final : public Network, private EtherCatTenant {
   Result<void> arm_watchdog(std::uint8_t node, const LifeSign& sign) override;
   void disarm_watchdog(std::uint8_t node) override;
   Result<void> end_exchange(std::uint8_t node) override;
+  bool stays_operational(std::uint8_t node) const override;
   void send_last_word(std::uint8_t node, ObjectAddress object, std::uint16_t value) noexcept override;
   std::unique_ptr<ProcessValues> process_values(std::uint8_t node,
                                                 std::span<const ObjectAddress> objects) override;
@@ -86,6 +87,8 @@ class EtherCatNetwork final : public Network, private EtherCatTenant {
   void learn(std::uint8_t node, const drive::CoeRules& rules) { of(node).rules = rules; }
   /// From now on this node is treated as nobody's, whatever state it is in.
   void take_over(std::uint8_t node) { taken_over_[node & 0x7FU] = true; }
+  /// The user wants this node in OP, until another state is asked for or it leaves OP by itself.
+  void keep_operational(std::uint8_t node) { of(node).kept = true; }
   /// Makes it ready for transfers; null with a reason. Errors as request_state().
   Result<ethercat::CoeSlave*> mailbox_of(std::uint8_t node);
   using Question = std::function<void(ethercat::CoeInfo&, TimePoint)>;

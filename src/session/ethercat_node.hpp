@@ -54,6 +54,7 @@ struct EtherCatNode {
   std::unique_ptr<ethercat::ProcessImage> image;
   std::optional<ethercat::SyncClock> clock;  ///< Where the drive demands SYNC0.
   bool raised = false;                       ///< servoctl has taken it above PRE-OP.
+  bool kept = false;                         ///< The user wants it in OP.
   std::vector<Assignment> assigned;
   Duration watchdog = std::chrono::milliseconds(100);
   TimePoint output_at{};                   ///< When it took an output last that was set by object.

@@ -92,6 +92,7 @@ void EtherCatNetwork::on_missing(EtherCatNode& node, TimePoint now) {
   end_cycles(node);
   forget_mailbox(node, why);
   node.raised = false;
+  node.kept = false;
   if (all_there) {
     ++node.boots;
     node.al.reset();
@@ -113,6 +114,7 @@ void EtherCatNetwork::hear(EtherCatNode& node, const ethercat::AlStatus& al, Tim
   const bool new_error = al.error && !(before && before->error && before->code == al.code);
   if (new_error) tell(node.number, NodeEvent::StateError{al.code, ethercat::al_status_text(al.code)}, now);
   if (expected || !before) return;
+  if (al.state != before->state) node.kept = false;
   if (node.exchanges() && al.state != before->state) end_cycles(node);
   if (al.state == AlState::init || al.state == AlState::boot)
     forget_mailbox(node, drive_error(Errc::negative, node.number, "it went to INIT: its mailbox is closed"));

@@ -161,6 +161,8 @@ class Network {
   /// Where a drive stays energised only while servoctl exchanges process data with it: that ends, and the
   /// node goes back to where only its objects are served. Nothing anywhere else.
   virtual Result<void> end_exchange(std::uint8_t) { return {}; }
+  /// The user has the node in OP (`state op`), whatever is done with its power meanwhile.
+  virtual bool stays_operational(std::uint8_t) const { return false; }
 
   /// Whether it has this sign for its nodes.
   virtual bool carries(LifeSign::Kind sign) const = 0;

@@ -199,7 +199,7 @@ TEST_F(EtherCatMotion, ADriveThatWasInOpAndFellOutOfItIsNotTakenThereAgain) {
   expect_safe();
   EXPECT_EQ(slave().state(), sim::EscState::pre_op);
   EXPECT_EQ(done.end.notes, std::vector<std::string>{
-                                "it was in OP before and is in PRE-OP now: it left it during the motion"});
+                                "it was in OP before and is in PRE-OP now: it left it by itself"});
 }
 
 TEST_F(EtherCatMotion, ADriveInOpThatIsRefusedBeforeItHasPowerStaysInOp) {
@@ -234,6 +234,64 @@ TEST_F(EtherCatMotion, ADriveThatWasEnabledIsHeldAndLetGo) {
   ASSERT_EQ(done.size(), 1U);
   EXPECT_TRUE(done.front().second);
   expect_safe();
+  EXPECT_EQ(slave().state(), sim::EscState::pre_op);
+}
+
+/// Enabled in the way `enable` does it, and disabled in the way of `disable` and `quick-stop`.
+PowerDownResult enabled_and_taken_down(session::Session& session, const drive::Profile& profile,
+                                       PowerAim aim) {
+  Motion motion(session, profile, 1, {});
+  EXPECT_TRUE(motion.prepare());
+  MotionGuard guard(session, motion.units(), 1);
+  EXPECT_TRUE(guard.start_node());
+  EXPECT_TRUE(guard.neutral_targets());
+  EXPECT_TRUE(guard.enable());
+  EXPECT_TRUE(guard.release());
+  std::vector<PowerDownPlan> plans(1);
+  plans.front().node = 1;
+  plans.front().aim = aim;
+  return take_down(session, std::move(plans)).front();
+}
+
+TEST_F(EtherCatMotion, ADriveThatTheUserHasInOpStaysThereWhenItIsEnabledAndDisabled) {
+  for (const auto aim : {PowerAim::disable, PowerAim::stop}) {
+    ASSERT_TRUE(network().request_state(1, session::NodeState::operational));
+    network().keep_operational(1);
+    const auto done = enabled_and_taken_down(*session_, profile(), aim);
+    EXPECT_TRUE(done.outcome);
+    EXPECT_EQ(done.notes, std::vector<std::string>{});
+    expect_safe();
+    pass(500ms);
+    EXPECT_EQ(slave().state(), sim::EscState::op);
+    EXPECT_EQ(session_->upload(1, objects::kTargetPosition).value(),
+              session_->upload(1, objects::kPositionActual).value());
+    ASSERT_TRUE(network().request_state(1, session::NodeState::pre_operational));
+    EXPECT_FALSE(network().stays_operational(1)) << "the user wants another state now";
+  }
+}
+
+TEST_F(EtherCatMotion, ADriveThatEnableTookToOpLeavesItWithItsPower) {
+  const auto done = enabled_and_taken_down(*session_, profile(), PowerAim::disable);
+  EXPECT_TRUE(done.outcome);
+  expect_safe();
+  EXPECT_EQ(slave().state(), sim::EscState::pre_op);
+}
+
+TEST_F(EtherCatMotion, WhenEverythingEndsADriveThatTheUserHadInOpEndsInPreOp) {
+  ASSERT_TRUE(network().request_state(1, session::NodeState::operational));
+  network().keep_operational(1);
+  session_->energised().insert(1);
+  ASSERT_TRUE(de_energise(*session_).front().second);
+  EXPECT_EQ(slave().state(), sim::EscState::pre_op);
+}
+
+TEST_F(EtherCatMotion, ADriveThatFellOutOfOpIsNotTakenThereByDisable) {
+  ASSERT_TRUE(network().request_state(1, session::NodeState::operational));
+  network().keep_operational(1);
+  slave().plan_fall({session_->now() + 50ms, sim::EscState::safe_op, 0x001A});
+  pass(500ms);
+  EXPECT_FALSE(network().stays_operational(1));
+  EXPECT_TRUE(Power(*session_, profile(), 1).disable());
   EXPECT_EQ(slave().state(), sim::EscState::pre_op);
 }
 
