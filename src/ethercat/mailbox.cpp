@@ -35,6 +35,7 @@ void Mailbox::start(TimePoint now) {
   repeated_ = false;
   skipped_ = false;
   in_doubt_ = false;
+  uncounted_ = false;
   last_.clear();
   recovery_ = Recovery::none;
   counter_ = options_.first_counter;
@@ -129,13 +130,18 @@ void Mailbox::on_answer(const Answer& answer, TimePoint now) {
     case State::ask_repeat: return pause_and_look(now);
     case State::idle:
     case State::look:
-      if (!answer.done()) return on_missing(now);
+      if (!answer.done()) return on_missing(answer.lost, now);
       return on_looked(answer.data, now);
   }
 }
 
-/// Not a word from the slave: whoever waits has its own limit.
-void Mailbox::on_missing(TimePoint now) {
+/// Not a word from the slave: whoever waits has its own limit. What it did not count then it has not taken.
+void Mailbox::on_missing(bool lost, TimePoint now) {
+  if (!lost && std::exchange(uncounted_, false)) {
+    in_doubt_ = false;
+    if (!out_ && !cancelled_) out_ = std::move(writing_);
+    writing_.reset();
+  }
   if (out_ && now >= out_->until)
     give_up("it does not answer at all",
             "is it powered, and is the cable leading to it plugged in? `scan` shows which slaves answer");
@@ -156,10 +162,11 @@ void Mailbox::on_looked(ByteSpan status, TimePoint now) {
   pause_and_look(now);
 }
 
-/// Full, the message is there; empty, it may have been taken by now, or never have come. Either way it is
-/// not written again: the slave may do what it says.
+/// SM0 was empty before. Full, the message is there; empty, it may have been taken by now, or never have come.
+/// Either way it is not written again: the slave may do what it says.
 void Mailbox::settle_doubt(TimePoint now) {
   in_doubt_ = false;
+  uncounted_ = false;
   if (free_) ++statistics_.doubtful;
   count_sent(now);
 }
@@ -205,18 +212,13 @@ bool Mailbox::recover(ByteSpan status, TimePoint now) {
 }
 
 void Mailbox::on_written(const Answer& answer, TimePoint now) {
-  if (answer.lost) {
-    in_doubt_ = true;
-    return go(State::look, now);
-  }
-  if (answer.working_counter != 0) {
+  if (answer.done()) {
     count_sent(now);
     return proceed(now);
   }
-  // Full, or gone: nothing was written. Unless another message has taken its place it is tried again.
-  if (!out_ && !cancelled_) out_ = std::move(writing_);
-  writing_.reset();
-  pause_and_look(now);
+  in_doubt_ = true;
+  uncounted_ = !answer.lost;
+  go(State::look, now);
 }
 
 /// It was full: where nobody counts as having read it, it may be empty now all the same.

@@ -21,8 +21,9 @@ namespace servoctl::ethercat {
 /// The mailbox of one slave (ETG.1000.4, 5.6 and 6.7): SM0 takes what the master writes, SM1 holds what the
 /// slave answers. Performs no I/O and reads no clock; a Carrier takes its requests.
 ///
-/// A message is written once. When the frame that wrote it is lost, SM0 is looked at: full, it is there;
-/// empty, it may have been taken already, so an answer is waited for and nothing is written again. An answer
+/// A message is written once. When the frame that wrote it is lost, or comes back uncounted, SM0 is looked at:
+/// full, it is there; empty, it may have been taken already, so an answer is waited for and nothing is written
+/// again, unless the slave counts nothing any more. An answer
 /// whose frame is lost is asked for again (repeat request, 080Eh and 080Fh). What lies in SM1 when this
 /// begins was somebody else's and is thrown away. Emergencies come out on their own, whenever they come.
 class Mailbox {
@@ -45,7 +46,7 @@ class Mailbox {
     std::uint64_t damaged = 0;      ///< Their length led out of the mailbox.
     std::uint64_t repeated = 0;     ///< Asked for again.
     std::uint64_t missed = 0;       ///< Lost all the same.
-    std::uint64_t doubtful = 0;     ///< Written in a frame that was lost, and SM0 was empty behind it.
+    std::uint64_t doubtful = 0;     ///< Written in a frame that was lost or not counted, and SM0 was empty behind it.
   };
   /// The slave did not like a message.
   struct Refusal {
@@ -112,7 +113,7 @@ class Mailbox {
   bool recover(ByteSpan status, TimePoint now);
   void on_written(const Answer& answer, TimePoint now);
   void on_read(const Answer& answer, TimePoint now);
-  void on_missing(TimePoint now);
+  void on_missing(bool lost, TimePoint now);
   void settle_doubt(TimePoint now);
   void count_sent(TimePoint now);
   bool waited_for() const;
@@ -139,7 +140,8 @@ class Mailbox {
   std::uint8_t counter_ = 1;
   std::optional<Outgoing> out_;      ///< Waits to be written.
   std::optional<Outgoing> writing_;  ///< Was given to the wire.
-  bool in_doubt_ = false;            ///< The frame that wrote it is lost.
+  bool in_doubt_ = false;            ///< The frame that wrote it is lost, or nobody counted it.
+  bool uncounted_ = false;           ///< The latter.
   bool cancelled_ = false;           ///< Nobody wants it any more.
   TimePoint waiting_since_;
   TimePoint deadline_ = kNever;

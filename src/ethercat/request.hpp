@@ -35,7 +35,8 @@ struct Request {
   Command command = Command::nop;
   std::uint32_t address = 0;
   Bytes data;
-  bool repeatable = false;  ///< Sent again when its frame is lost: twice does what once does.
+  bool repeatable = false;  ///< Sent again when its frame is lost or the slave does not count it: twice does
+                            ///< what once does.
 };
 
 /// `size` bytes from `where` on. Not for a mailbox: reading it empties it.

@@ -19,6 +19,11 @@ bool address_returns(Command command) {
   }
 }
 
+/// One slave does it, or nobody: any other counter than 0 is whole.
+bool is_for_one(Command command) {
+  return command >= Command::aprd && command <= Command::fprw && command != Command::nop;
+}
+
 }  // namespace
 
 Ring::Ring(const Options& options) : options_(options) {
@@ -159,7 +164,13 @@ Ring::Slot* Ring::match(const Datagram& datagram) {
   return same ? &slot : nullptr;
 }
 
+/// What nobody did is tried again like what is lost: a slave that restarts, or is busy, may have missed it.
+bool Ring::is_tried_again(const Slot& slot, const Datagram& datagram) {
+  return datagram.working_counter == 0 && is_for_one(slot.command) && slot.repeats > 0 && !slot.abandoned;
+}
+
 void Ring::take_in(Slot& slot, const Datagram& datagram) {
+  if (is_tried_again(slot, datagram)) return lose(datagram.index);
   std::copy(datagram.data.begin(), datagram.data.end(), slot.data.begin());
   slot.answer.data = slot.data;
   slot.answer.working_counter = datagram.working_counter;

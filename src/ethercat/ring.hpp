@@ -22,7 +22,7 @@ class Ring {
   struct Options {
     MacAddress source{0x02, 0x00, 0x00, 0x00, 0x00, 0x01};  ///< Locally administered.
     Duration timeout = std::chrono::milliseconds(20);       ///< Until a frame counts as lost.
-    unsigned repeats = 2;                                   ///< Of what is repeatable.
+    unsigned repeats = 2;  ///< Of what is repeatable: lost, or for one slave and not counted by it.
     std::size_t frames_in_flight = 4;  ///< More wait; what is urgent does not. At most kMaxFlights.
   };
   struct Statistics {
@@ -90,6 +90,7 @@ class Ring {
   void enqueue(std::uint8_t index);
   void pack(FrameWriter& writer, std::vector<std::uint8_t>& queue, std::uint8_t flight, TimePoint now);
   Slot* match(const Datagram& datagram);
+  static bool is_tried_again(const Slot& slot, const Datagram& datagram);
   void take_in(Slot& slot, const Datagram& datagram);
   void lose(std::uint8_t index);
   void land(Slot& slot);

@@ -152,6 +152,7 @@ class EtherCatNetwork final : public Network, private EtherCatTenant {
   Result<Glance> find_slave(EtherCatNode& node);
   Result<void> count_slaves();
   Result<std::vector<Glance>> glance();
+  Result<std::vector<Glance>> glance_at(std::size_t count);
   Result<void> claim(const std::vector<Glance>& slaves);
   bool is_foreign(std::uint8_t node, const ethercat::AlStatus& al) const;
   Result<void> check_free(const EtherCatNode& node, const std::vector<Glance>& slaves) const;

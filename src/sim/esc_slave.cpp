@@ -6,6 +6,13 @@
 #include "drive/naming.hpp"
 
 namespace servoctl::sim {
+namespace {
+
+/// How often its processor turns to the drive, and to what that gives; frames pass far more often.
+constexpr Duration kRhythm = std::chrono::microseconds(250);
+constexpr Duration kSampling = std::chrono::milliseconds(1);
+
+}  // namespace
 
 EscSlave::Options EscSlave::Options::of(const drive::Profile& profile) {
   Options out;
@@ -53,7 +60,7 @@ bool EscSlave::on_frame(std::span<std::uint8_t> frame, TimePoint now) {
 }
 
 void EscSlave::on_time(TimePoint now) {
-  model_.on_time(now);
+  if (now >= model_.deadline() || now - model_.now() >= kRhythm) model_.on_time(now);
   registers().on_time(now);
   if (registers().take_outputs_missed()) {
     outputs_seen_ = false;
@@ -89,7 +96,7 @@ void EscSlave::work(TimePoint now) {
   mailbox_.on_time(now);
   while (const auto emergency = model_.take_emergency()) mailbox_.push(EscCoe::emergency(*emergency), now);
   mailbox_.on_time(now);
-  if (state() >= EscState::safe_op) sample_inputs();
+  sample_inputs(now);
   registers().set_al_status(states_.status(), states_.code());
 }
 
@@ -97,9 +104,14 @@ void EscSlave::apply_outputs() {
   applies_ = true;
   process_data_.apply(registers().sync_manager(EscRegisters::kOutputs).take());
   applies_ = false;
+  sampled_at_.reset();  // What they bring about is seen at once.
 }
 
-void EscSlave::sample_inputs() {
+/// The first time on the way to SAFE-OP.
+void EscSlave::sample_inputs(TimePoint now) {
+  if (state() < EscState::safe_op) return sampled_at_.reset();
+  if (sampled_at_ && now - *sampled_at_ < kSampling) return;
+  sampled_at_ = now;
   registers().sync_manager(EscRegisters::kInputs).put(process_data_.sample());
 }
 

@@ -79,7 +79,7 @@ class EscSlave final : private DrivePort, private EscApplication {
   bool lies_free(unsigned number) const;
   void work(TimePoint now);
   void apply_outputs();
-  void sample_inputs();
+  void sample_inputs(TimePoint now);
   void leave_op(bool by_watchdog);
   std::uint16_t lost_code() const;
 
@@ -95,6 +95,7 @@ class EscSlave final : private DrivePort, private EscApplication {
   bool applies_ = false;       ///< A write comes with the process data.
   bool outputs_seen_ = false;  ///< Since SAFE-OP began, or the watchdog ended.
   bool master_lost_ = false;   ///< The watchdog ends OP.
+  std::optional<TimePoint> sampled_at_;
   std::optional<Request> request_;
   PlannedFall fall_;
 };

@@ -26,6 +26,21 @@ TEST_F(MailboxTest, AMessageThatWasTakenAlreadyIsNotWrittenTwiceEither) {
   EXPECT_EQ(mailbox.statistics().doubtful, 1U);
 }
 
+TEST_F(MailboxTest, AMessageThatNobodyCountedAndThatWasTakenIsNotWrittenTwice) {
+  for (const auto latency : {300us, 100'000us}) {
+    slave.latency = latency;
+    slave.written.clear();
+    lost = 0;
+    lose(Command::fpwr, 0x1800, Loss::uncounted);
+    send("0020AA");
+    run_for(300ms);
+    EXPECT_EQ(lost, 1);
+    EXPECT_EQ(slave.written.size(), 1U);
+    EXPECT_EQ(came(), "0020AA");
+    EXPECT_EQ(came(), "nothing");
+  }
+}
+
 TEST_F(MailboxTest, AMessageThatMayNotHaveComeIsNotWrittenAgain) {
   lose(Command::fpwr, 0x1800, Loss::on_the_way_out);
   send("0020AA");

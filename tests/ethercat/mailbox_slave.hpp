@@ -17,7 +17,7 @@ namespace servoctl::ethercat {
 /// function's.
 class MailboxSlave {
  public:
-  enum class Loss { none, on_the_way_out, on_the_way_back };
+  enum class Loss { none, on_the_way_out, on_the_way_back, uncounted };
   using Handler = std::function<void(std::uint8_t type, Bytes data)>;
 
   explicit MailboxSlave(SiiMailbox place) : place_(place), out_(place.in_size) {}
@@ -78,7 +78,7 @@ class MailboxSlave {
     if (how == Loss::on_the_way_out) return {{}, 0, true, now};
     const auto counter = process(request, now);
     if (how == Loss::on_the_way_back) return {{}, 0, true, now};
-    return {reply_, counter, false, now};
+    return {reply_, how == Loss::uncounted ? std::uint16_t{0} : counter, false, now};
   }
 
  private:

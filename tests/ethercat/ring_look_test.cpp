@@ -46,7 +46,7 @@ class RingLookTest : public testing::Test {
   Answer answer(const Request& request) {
     if (lost) return {{}, 0, true, now};
     if (request.command == Command::brd)
-      return {request.data, static_cast<std::uint16_t>(slaves.size()), false, now};
+      return {request.data, static_cast<std::uint16_t>(slaves.size() - uncounted), false, now};
     EXPECT_EQ(request.command, Command::aprd);
     const auto position = static_cast<std::uint16_t>(0U - (request.address & 0xFFFFU));
     if (position >= slaves.size() || position == gone) return {request.data, 0, false, now};
@@ -58,6 +58,7 @@ class RingLookTest : public testing::Test {
 
   std::vector<Bytes> slaves;
   bool lost = false;
+  std::size_t uncounted = 0;
   std::uint16_t gone = 0xFFFF;
   RingLook look;
   TimePoint now{1s};
@@ -138,6 +139,16 @@ TEST_F(RingLookTest, ASlaveThatGoesMeanwhileIsNamed) {
   ASSERT_FALSE(view);
   EXPECT_EQ(view.error().message, "the slave at position 2 no longer answers");
   EXPECT_EQ(view.error().node, 2);
+}
+
+TEST_F(RingLookTest, ACountThatComesBackShortHidesNoSlave) {
+  slaves = {registers(0x1001, 2), registers(0x1002, 2), registers(0x1003, 8)};
+  uncounted = 1;
+  const auto view = run();
+  ASSERT_TRUE(view) << view.error().message;
+  EXPECT_EQ(view->count, 3U);
+  ASSERT_EQ(view->slaves.size(), 3U);
+  EXPECT_TRUE(view->is_in_use());
 }
 
 TEST_F(RingLookTest, MoreSlavesThanNodesAreCountedAndNotLookedAt) {

@@ -63,6 +63,30 @@ TEST_F(RingTest, AnAnswerComesToWhoAsked) {
   EXPECT_EQ(ring.deadline(), kNever);
 }
 
+TEST_F(RingTest, WhatTheSlaveDoesNotCountIsSentAgainLikeWhatIsLost) {
+  const auto ticket = read(reg::kAlStatus);
+  ring.on_frame(answered(sent(), 0), now);
+  EXPECT_FALSE(ring.take_answer(ticket));
+  ring.on_frame(answered(sent(), 1), now);
+  EXPECT_TRUE(ring.take_answer(ticket).value().done());
+  const auto nobody = read(reg::kAlStatus);
+  for (int times = 0; times < 3; ++times) ring.on_frame(answered(sent(), 0), now);
+  const auto answer = ring.take_answer(nobody);
+  ASSERT_TRUE(answer) << "not for ever";
+  EXPECT_FALSE(answer->lost);
+  EXPECT_EQ(answer->working_counter, 0);
+  EXPECT_EQ(ring.statistics().repeated, 3U);
+}
+
+TEST_F(RingTest, WhatMustNotBeDoneTwiceAndWhatConcernsAllIsNotSentAgainWhenNobodyCountsIt) {
+  const auto once = post(write_once(slave, 0x1000, {1}));
+  const auto all = post({Command::brd, physical_address(0, reg::kAlStatus), Bytes(2), true});
+  ring.on_frame(answered(sent(), 0), now);
+  EXPECT_FALSE(ring.take_answer(once).value().done());
+  EXPECT_FALSE(ring.take_answer(all).value().done());
+  EXPECT_FALSE(ring.take_frame(now));
+}
+
 TEST_F(RingTest, WhatIsPostedTogetherGoesInOneFrame) {
   const auto first = read(reg::kAlStatus);
   const auto second = read(reg::kStationAlias);
