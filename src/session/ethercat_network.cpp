@@ -104,6 +104,7 @@ void EtherCatNetwork::serve_node(EtherCatNode& node, ethercat::Ring& ring, TimeP
   if (!node.coe) return;
   if (node.coe->deadline() <= now) node.coe->on_time(now);
   node.coe->serve(ring, now);
+  if (node.owner != nullptr && !node.coe->client().busy()) node.owner->stir();
   // Of a transfer whose owner has gone.
   if (node.owner == nullptr) (void)node.coe->client().take_result();
   take_emergencies(node, now);

@@ -14,6 +14,7 @@ void EtherCatObjectChannel::begin(ObjectAddress object, TimePoint now, canopen::
   way_ = Way::waiting;
   until_ = now + timeout_;
   result_.reset();
+  stirred_ = true;
 }
 
 void EtherCatObjectChannel::start_upload(ObjectAddress object, TimePoint now, canopen::Transfer transfer,
@@ -33,6 +34,8 @@ Result<void> EtherCatObjectChannel::on_time(TimePoint now) {
   if (way_ == Way::waiting)
     if (const auto went = set_out(); !went) return went;
   if (way_ == Way::output || way_ == Way::input) serve_image(now);
+  // What the mailbox brings is told by stir(); anything else may be there after each step.
+  stirred_ = way_ != Way::mailbox || result_;
   return {};
 }
 
@@ -116,6 +119,7 @@ void EtherCatObjectChannel::finish(Result<Bytes> result) {
     result.error().object = object_;
   }
   result_ = std::move(result);
+  stirred_ = true;
 }
 
 std::optional<Result<Bytes>> EtherCatObjectChannel::take_result() {

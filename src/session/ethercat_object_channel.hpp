@@ -32,6 +32,8 @@ class EtherCatObjectChannel final : public ObjectChannel {
   Result<Bytes> finish_transfer();
   /// The mailbox, or the process image, is no more.
   void on_lost(const Error& why);
+  /// The transfer through the mailbox is over.
+  void stir() { stirred_ = true; }
 
  private:
   enum class Way : std::uint8_t { none, waiting, mailbox, output, input };

@@ -34,6 +34,32 @@ TEST_F(EtherCatTest, AReadOfASlaveInPreOpTakesTenFramesAtMost) {
   EXPECT_LE(ring().sent() - before, 10U);
 }
 
+TEST_F(EtherCatTest, AChannelSaysThatSomethingCameWhenItsAnswerIsThereAndNotBefore) {
+  open("sv2@1,sv2@2?delay=20ms");
+  ASSERT_TRUE(session_->upload(1, objects::kVendorId));
+  const auto channel = network().object_channel(1, milliseconds(500));
+  for (int round = 0; round < 3; ++round) {
+    channel->start_upload(objects::kVendorId, session_->now(), canopen::Transfer::automatic, 0);
+    EXPECT_TRUE(channel->stirred()) << "it is to be sent";
+    ASSERT_TRUE(channel->on_time(session_->now()));
+    int quiet = 0;
+    for (; !channel->stirred() && quiet < 1000; ++quiet) ASSERT_TRUE(network().step(channel->deadline()));
+    EXPECT_GT(quiet, 3) << "frames that looked in vain were none of its business";
+    EXPECT_LT(quiet, 1000);
+    ASSERT_TRUE(channel->on_time(session_->now()));
+    const auto result = channel->take_result();
+    ASSERT_TRUE(result);
+    EXPECT_EQ(load_le(result->value()), 0x0044'5653U);
+  }
+  channel->start_upload(objects::kVendorId, session_->now(), canopen::Transfer::automatic, 0);
+  ASSERT_TRUE(channel->on_time(session_->now()));
+  ring().cut_cable(0);
+  while (!channel->stirred() && session_->now() < channel->deadline())
+    ASSERT_TRUE(network().step(channel->deadline()));
+  EXPECT_TRUE(channel->stirred()) << "silence is something to be told as well";
+  EXPECT_TRUE(channel->take_result());
+}
+
 TEST_F(EtherCatTest, APlaceWithoutASlaveIsTold) {
   open("sv2@1,sv2@2");
   const auto answer = session_->upload(3, objects::kVendorId);
