@@ -18,6 +18,8 @@ constexpr std::uint16_t kHalt = 1U << 8U;
 /// CiA 402-2, 6060h.
 constexpr std::int8_t kInterpolatedMode = 7;
 constexpr std::int8_t kCyclicPositionMode = 8;
+constexpr std::int8_t kCyclicVelocityMode = 9;
+constexpr std::int8_t kCyclicTorqueMode = 10;
 
 }  // namespace
 
@@ -41,6 +43,8 @@ Axis::Kind Axis::kind() const {
   if (mode == motion.torque) return Kind::torque;
   if (mode == motion.homing) return Kind::homing;
   if (mode == kInterpolatedMode) return Kind::interpolated;
+  if (mode == kCyclicVelocityMode) return Kind::cyclic_velocity;
+  if (mode == kCyclicTorqueMode) return Kind::cyclic_torque;
   return mode == kCyclicPositionMode ? Kind::cyclic : Kind::none;
 }
 

@@ -53,7 +53,17 @@ class Axis {
   Track& track() { return track_; }
 
  private:
-  enum class Kind : std::uint8_t { none, position, velocity, torque, homing, interpolated, cyclic };
+  enum class Kind : std::uint8_t {
+    none,
+    position,
+    velocity,
+    torque,
+    homing,
+    interpolated,
+    cyclic,  ///< Of position.
+    cyclic_velocity,
+    cyclic_torque
+  };
   /// Of 6064h; infinite where nothing limits it.
   struct Range {
     double least;

@@ -61,6 +61,9 @@ std::uint16_t Axis::bits_of_mode() const {
     case Kind::homing: return homing_bits();
     case Kind::interpolated:
     case Kind::cyclic: return following_bits(*followed());
+    // It follows the target; there is no profile at whose end it could be (CiA 402-2, csv and cst).
+    case Kind::cyclic_velocity:
+    case Kind::cyclic_torque: return kModeBit;
     case Kind::none: return 0;
   }
   return 0;

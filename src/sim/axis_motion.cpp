@@ -93,8 +93,10 @@ bool Axis::is_steady() const {
   const bool free = std::isinf(least) && std::isinf(greatest) && !track_.limits_stop;
   switch (kind()) {
     case Kind::velocity:
+    case Kind::cyclic_velocity:
       return velocity_ == 0 ? wanted() == 0 || is_halted() : free && !is_halted() && velocity_ == wanted();
-    case Kind::torque: return torque_ == 0 && read(objects::kTargetTorque) == 0;
+    case Kind::torque:
+    case Kind::cyclic_torque: return torque_ == 0 && read(objects::kTargetTorque) == 0;
     default: return velocity_ == 0 && !target_;
   }
 }
@@ -105,10 +107,12 @@ void Axis::step(double seconds) {
     case Kind::interpolated:
     case Kind::cyclic: is_halted() ? approach(0, seconds) : step_position(seconds); break;
     case Kind::velocity:
+    case Kind::cyclic_velocity:
       approach(is_halted() ? 0 : read(objects::kTargetVelocity) * speed_factor(objects::kTargetVelocity),
                seconds);
       break;
-    case Kind::torque: {
+    case Kind::torque:
+    case Kind::cyclic_torque: {
       torque_ = is_halted() ? 0 : read(objects::kTargetTorque);
       velocity_ += torque_ / 100 * kTurnsPerSecondOfRatedTorque * units_per_turn() * seconds;
       velocity_ = allowed(std::clamp(velocity_, -fastest_by_torque(), fastest_by_torque()));

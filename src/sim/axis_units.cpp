@@ -106,7 +106,9 @@ double Axis::ramp(ObjectAddress object) const {
   return unit == "rpm/s" ? value * units_per_turn() / 60 : value;
 }
 
+/// The ramps of cyclic modes are the master's.
 double Axis::ramp() const {
+  if (kind() == Kind::cyclic_velocity) return kNoRamp;
   const bool own =
       kind() == Kind::homing && profile_->dictionary.find(objects::kHomingAcceleration) != nullptr;
   return ramp(own ? objects::kHomingAcceleration : objects::kProfileAcceleration);

@@ -105,5 +105,42 @@ TEST_F(RingManualSteps, OfCyclicPositionAsFarAsACycleOfFourMillisecondsGoes) {
               from + 2000.0, 20);
 }
 
+/// The manual has a block diagram and the PDOs for csv and cst (977-1012), and no sequence: the bits are those
+/// of CiA 402-2.
+TEST_F(RingManualSteps, OfCyclicVelocityWhichFollowsItsTargetWithoutARamp) {
+  write({0x6083, 0}, 1000, 4);  // A ramp that profile velocity would take ten seconds for.
+  begin(9);
+  write(objects::kTargetVelocity, 10'000, 4);
+  (void)session_->wait([] { return false; }, session_->now() + 20ms);
+  const auto speed = [&] {
+    return static_cast<double>(static_cast<std::int32_t>(
+        load_le(session_->upload(1, objects::kVelocityActual).value())));
+  };
+  EXPECT_NEAR(speed(), 10'000, 1);
+  EXPECT_EQ(status() & 0x1400U, 0x1000U) << "it follows; there is nothing to reach";
+  write(objects::kTargetVelocity, 0xFFFF'F000U, 4);
+  (void)session_->wait([] { return false; }, session_->now() + 20ms);
+  EXPECT_NEAR(speed(), -4096, 1);
+  const auto from = static_cast<std::int32_t>(load_le(session_->upload(1, objects::kPositionActual).value()));
+  (void)session_->wait([] { return false; }, session_->now() + 1s);
+  const auto to = static_cast<std::int32_t>(load_le(session_->upload(1, objects::kPositionActual).value()));
+  EXPECT_NEAR(to - from, -4096, 64);
+  write(objects::kControlword, 0, 2);
+  EXPECT_TRUE(reaches(0x0040, 0x006F));
+  (void)session_->wait([] { return false; }, session_->now() + 20ms);
+  EXPECT_EQ(speed(), 0) << "without power it stands, whatever 60FFh says";
+}
+
+TEST_F(RingManualSteps, OfCyclicTorqueWhichFollowsItsTarget) {
+  begin(10);
+  write(objects::kTargetTorque, 50, 2);
+  (void)session_->wait([] { return false; }, session_->now() + 20ms);
+  EXPECT_NEAR(static_cast<double>(load_le(session_->upload(1, objects::kTorqueActual).value())), 50, 5);
+  EXPECT_EQ(status() & 0x1400U, 0x1000U);
+  write(objects::kTargetTorque, 0, 2);
+  (void)session_->wait([] { return false; }, session_->now() + 20ms);
+  EXPECT_EQ(load_le(session_->upload(1, objects::kTorqueActual).value()), 0U);
+}
+
 }  // namespace
 }  // namespace servoctl::session
