@@ -138,7 +138,9 @@ PdoRecipe recipe_of(const drive::Profile* profile, const PresentPdos& present, c
     if (whole) out.map->push_back(fmt::format("{}/{}", to_string(entry.object), entry.bits));
   if (!holds(communication, 1)) {
     const auto assigned = session::assigned_pdos(profile, present.values);
-    if (session::assignment_of(profile, pdo.direction))
+    // Nothing is known of an assignment that is not told: it stays as it is.
+    const auto list = session::assignment_of(profile, pdo.direction);
+    if (list && present.values.count(*list) > 0)
       out.valid = std::count(assigned.begin(), assigned.end(), pdo.mapping_index()) > 0;
     return out;
   }

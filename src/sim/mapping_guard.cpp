@@ -34,6 +34,8 @@ std::uint32_t MappingGuard::check_entry(std::uint16_t index, std::uint32_t mappi
                              static_cast<std::uint8_t>(mapping >> 8U & 0xFFU)};
   const auto bits = mapping & 0xFFU;
   const bool transmit = pdo_at(index)->direction == PdoDirection::transmit;
+  // Gaps on EtherCAT, in either direction (ETG.1000.6, 5.6.7.4.6).
+  if (object == ObjectAddress{0, 0} && profile_->rules.coe.exists()) return 0;
   if (object.index < 0x20) return transmit ? abort::kNotMappable : 0;  // Dummy entries fill RPDOs.
   const auto* entry = profile_->dictionary.find(object);
   if (entry == nullptr) return abort::kNoObject;
