@@ -18,11 +18,40 @@ namespace {
 using namespace command;
 
 constexpr Parameter kParameters[] = {
-    {.name = "--long", .help = "on CAN: the identity in numbers, instead of the state", .kind = Kind::flag},
+    {.name = "--long", .help = "the identity in numbers, instead of the drive's state", .kind = Kind::flag},
 };
 
+/// All at the same time; what a node refuses, or no longer answers, it does not tell.
+std::vector<show::Condition> conditions_of(session::Session& session, std::span<const std::uint8_t> nodes) {
+  std::vector<session::SdoRequest> requests;
+  for (const auto node : nodes)
+    for (const auto object : {objects::kStatusword, objects::kErrorCode})
+      requests.push_back({.node = node, .object = object, .size = 2});
+  const auto answers = session.transfer(requests);
+  const auto word = [&](std::size_t i) -> std::optional<std::uint16_t> {
+    const auto number = session::number_in(answers[i], 2);
+    return number ? std::optional(static_cast<std::uint16_t>(*number)) : std::nullopt;
+  };
+  std::vector<show::Condition> out;
+  for (std::size_t i = 0; i < answers.size(); i += 2) out.push_back({word(i), word(i + 1)});
+  return out;
+}
+
+/// Of a ring: of those whose objects were read; in the order of `nodes`.
+std::vector<show::Condition> conditions_of(session::Session& session, const session::RingScan& ring,
+                                           std::span<const std::uint8_t> nodes) {
+  std::vector<std::uint8_t> open;
+  for (const auto node : nodes)
+    if (ring.slaves[node - 1U].has_objects) open.push_back(node);
+  auto told = conditions_of(session, open);
+  std::vector<show::Condition> out;
+  for (std::size_t i = 0, k = 0; i < nodes.size(); ++i)
+    out.push_back(ring.slaves[nodes[i] - 1U].has_objects ? told[k++] : show::Condition{});
+  return out;
+}
+
 /// A ring is looked at as a whole; those that were named are shown.
-Result<report::Value> run_ring(Context& context, session::EtherCatNetwork& network) {
+Result<report::Value> run_ring(Context& context, session::EtherCatNetwork& network, bool in_full) {
   const auto ring = session::scan_ring(*context.session, network);
   if (!ring) return fail(ring.error());
   std::vector<std::uint8_t> nodes;
@@ -37,28 +66,13 @@ Result<report::Value> run_ring(Context& context, session::EtherCatNetwork& netwo
                                            fmt::format("slaves on the ring: {}", ring->count)));
   }
   for (auto& notice : show::ring_notices(*ring, nodes)) context.notices.push_back(std::move(notice));
-  return report::Value(show::ring_table(*ring, nodes, drive::find_families(context.drive_folders)));
-}
-
-/// Of those found, all at the same time; what a node refuses, or no longer answers, it does not tell.
-std::vector<show::Condition> conditions_of(session::Session& session,
-                                           std::span<const session::Identity> nodes) {
-  std::vector<session::SdoRequest> requests;
-  for (const auto& node : nodes)
-    for (const auto object : {objects::kStatusword, objects::kErrorCode})
-      requests.push_back({.node = node.node, .object = object, .size = 2});
-  const auto answers = session.transfer(requests);
-  const auto word = [&](std::size_t i) -> std::optional<std::uint16_t> {
-    const auto number = session::number_in(answers[i], 2);
-    return number ? std::optional(static_cast<std::uint16_t>(*number)) : std::nullopt;
-  };
-  std::vector<show::Condition> out;
-  for (std::size_t i = 0; i < answers.size(); i += 2) out.push_back({word(i), word(i + 1)});
-  return out;
+  const auto conditions = conditions_of(*context.session, *ring, nodes);
+  return report::Value(show::ring_table(context, *ring, nodes, conditions,
+                                        drive::find_families(context.drive_folders), in_full));
 }
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
-  if (auto* ring = context.session->ethercat()) return run_ring(context, *ring);
+  if (auto* ring = context.session->ethercat()) return run_ring(context, *ring, arguments.has("--long"));
   auto nodes = context.nodes_typed ? context.nodes : std::vector<std::uint8_t>();
   if (nodes.empty() || nodes.front() == 0) nodes = canopen::every_node_id();
   auto found = session::scan(*context.session, nodes);
@@ -71,7 +85,9 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   }
   const auto families = drive::find_families(context.drive_folders);
   session::look_for_families(*context.session, *found, families);
-  return report::Value(show::identity_table(context, *found, conditions_of(*context.session, *found),
+  std::vector<std::uint8_t> there;
+  for (const auto& node : *found) there.push_back(node.node);
+  return report::Value(show::identity_table(context, *found, conditions_of(*context.session, there),
                                             families, arguments.has("--long")));
 }
 
@@ -89,9 +105,10 @@ const Command kScan{
         "always by `info` and in JSON. The state is that of the drive by its statusword, the NMT state that of the "
         "heartbeat where one came meanwhile; --long shows the numbers of the identity instead, JSON has "
         "both. On EtherCAT, shows the ring: for each position (its node number) the "
-        "addresses, identity by the SII, AL state, ports with a link and, as notices, every error counter that "
-        "is not 0. Nothing is changed there: no state is entered, and a ring that another master works with is "
-        "only looked at.",
+        "address, name by the SII, AL state, ports with a link and, as notices, every error counter that is not "
+        "0; of slaves in PRE-OP and above that servoctl has numbered also the drive's state and fault (`status -n "
+        "all` takes the others there). Nothing is changed: no state is entered, no address given, and a ring that "
+        "another master works with is only looked at.",
     .parameters = kParameters,
     .needs = Needs::bus,
     .effect = Effect::reads,

@@ -37,26 +37,6 @@ std::optional<std::uint32_t> narrow(std::optional<std::uint64_t> number) {
   return number ? std::optional(static_cast<std::uint32_t>(*number)) : std::nullopt;
 }
 
-/// The cells of a condition: three in text unless the identity is, three in JSON.
-void add_condition(const Desk& desk, const Condition& condition, const Value& nmt, bool in_full,
-                   report::List& row) {
-  const auto state =
-      condition.statusword ? std::optional(drive::decode_state(*condition.statusword)) : std::nullopt;
-  const auto words = condition.fault.value_or(0) == 0
-                         ? std::string()
-                         : fault_words(desk.profile, desk.chinese, *condition.fault);
-  if (!in_full) {
-    row.push_back(nmt);
-    row.push_back(!state ? Value() : Value(desk.chinese ? drive::name_zh(*state) : drive::name(*state)));
-    row.push_back(!condition.fault        ? Value()
-                  : *condition.fault == 0 ? Value("none")
-                                          : Value(fmt::format("0x{:04X}", *condition.fault)));
-  }
-  row.push_back(state ? Value(drive::name(*state)) : Value());
-  row.push_back(condition.statusword ? Value(*condition.statusword) : Value());
-  row.push_back(words.empty() ? Value() : Value(report::Record{{"code", *condition.fault}, {"text", words}}));
-}
-
 }  // namespace
 
 std::string guess_text(std::span<const session::Guess> guesses) {
@@ -66,6 +46,30 @@ std::string guess_text(std::span<const session::Guess> guesses) {
     out += guess.family + (guess.certain ? "" : "?");
   }
   return out;
+}
+
+void add_condition_columns(bool in_full, report::Table& table) {
+  if (!in_full)
+    for (const auto* title : {"state", "fault"}) table.columns.push_back({title, "", report::Show::text});
+  for (const auto* key : {"state", "statusword", "fault"})
+    table.columns.push_back({key, "", report::Show::json});
+}
+
+void add_condition(const Desk& desk, const Condition& condition, bool in_full, report::List& row) {
+  const auto state =
+      condition.statusword ? std::optional(drive::decode_state(*condition.statusword)) : std::nullopt;
+  const auto words = condition.fault.value_or(0) == 0
+                         ? std::string()
+                         : fault_words(desk.profile, desk.chinese, *condition.fault);
+  if (!in_full) {
+    row.push_back(!state ? Value() : Value(desk.chinese ? drive::name_zh(*state) : drive::name(*state)));
+    row.push_back(!condition.fault        ? Value()
+                  : *condition.fault == 0 ? Value("none")
+                                          : Value(fmt::format("0x{:04X}", *condition.fault)));
+  }
+  row.push_back(state ? Value(drive::name(*state)) : Value());
+  row.push_back(condition.statusword ? Value(*condition.statusword) : Value());
+  row.push_back(words.empty() ? Value() : Value(report::Record{{"code", *condition.fault}, {"text", words}}));
 }
 
 report::Table identity_table(const Desk& desk, std::span<const session::Identity> nodes,
@@ -86,9 +90,8 @@ report::Table identity_table(const Desk& desk, std::span<const session::Identity
                    {"nmt", "", Show::json},
                    {"guess", "family", Show::text},
                    {"families", "", Show::json}};
-  if (!in_full)
-    for (const auto* title : {"NMT", "state", "fault"}) table.columns.push_back({title, "", Show::text});
-  for (const auto* key : {"state", "statusword", "fault"}) table.columns.push_back({key, "", Show::json});
+  if (!in_full) table.columns.push_back({"NMT", "", Show::text});
+  add_condition_columns(in_full, table);
   table.json_only = nodes.empty();
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const auto& node = nodes[i];
@@ -99,7 +102,8 @@ report::Table identity_table(const Desk& desk, std::span<const session::Identity
          hex(node.serial), report::text_or_null(node.device_name),
          report::text_or_null(node.hardware_version), report::text_or_null(node.software_version), nmt,
          report::text_or_null(guess_text(without_generic(guesses))), guess_records(guesses)});
-    add_condition(desk, conditions[i], nmt, in_full, table.rows.back());
+    if (!in_full) table.rows.back().push_back(nmt);
+    add_condition(desk, conditions[i], in_full, table.rows.back());
   }
   return table;
 }

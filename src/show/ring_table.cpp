@@ -125,18 +125,20 @@ Record al_fields(const ethercat::AlStatus& al) {
           {"al_text", al.error ? Value(ethercat::al_status_text(al.code)) : Value(), Show::json}};
 }
 
-report::Table ring_table(const session::RingScan& ring, std::span<const std::uint8_t> nodes,
-                         std::span<const drive::Family> families) {
+report::Table ring_table(const Desk& desk, const session::RingScan& ring,
+                         std::span<const std::uint8_t> nodes, std::span<const Condition> conditions,
+                         std::span<const drive::Family> families, bool in_full) {
+  const auto full = in_full ? Show::everywhere : Show::json;
   report::Table table;
   table.columns = {{"node"},
                    {"station", "", Show::text},
                    {"station", "", Show::json},
                    {"alias", "", Show::text},
                    {"alias", "", Show::json},
-                   {"vendor_id", "vendor"},
-                   {"product_code", "product"},
-                   {"revision", "rev"},
-                   {"serial"},
+                   {"vendor_id", "vendor", full},
+                   {"product_code", "product", full},
+                   {"revision", "rev", full},
+                   {"serial", "", full},
                    {"name"},
                    {"state", "AL state", Show::text},
                    {"links", "ports", Show::text},
@@ -156,8 +158,10 @@ report::Table ring_table(const session::RingScan& ring, std::span<const std::uin
                    {"hardware_version", "", Show::json},
                    {"software_version", "", Show::json},
                    {"families", "", Show::json}};
+  add_condition_columns(in_full, table);
   table.json_only = nodes.empty();
-  for (const auto node : nodes) {
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const auto node = nodes[i];
     const auto& slave = ring.slaves[node - 1U];
     const auto& look = slave.seen.look;
     const auto& identity = slave.identity;
@@ -183,6 +187,7 @@ report::Table ring_table(const session::RingScan& ring, std::span<const std::uin
                                     report::text_or_null(identity.hardware_version),
                                     report::text_or_null(identity.software_version), guess_records(guesses)})
       row.push_back(std::move(value));
+    add_condition(desk, conditions[i], in_full, row);
     table.rows.push_back(std::move(row));
   }
   return table;
