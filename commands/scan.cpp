@@ -1,6 +1,7 @@
 #include "session/scan.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <utility>
 
 #include "canopen/node_list.hpp"
@@ -18,7 +19,7 @@ namespace {
 using namespace command;
 
 constexpr Parameter kParameters[] = {
-    {.name = "--long", .help = "the identity in numbers, instead of the drive's state", .kind = Kind::flag},
+    {.name = "--long", .help = "the identity in numbers, instead of the drives' state", .kind = Kind::flag},
 };
 
 /// All at the same time; what a node refuses, or no longer answers, it does not tell.
@@ -67,8 +68,10 @@ Result<report::Value> run_ring(Context& context, session::EtherCatNetwork& netwo
   }
   for (auto& notice : show::ring_notices(*ring, nodes)) context.notices.push_back(std::move(notice));
   const auto conditions = conditions_of(*context.session, *ring, nodes);
+  const bool any_told =
+      std::any_of(conditions.begin(), conditions.end(), [](const auto& c) { return c.statusword; });
   return report::Value(show::ring_table(context, *ring, nodes, conditions,
-                                        drive::find_families(context.drive_folders), in_full));
+                                        drive::find_families(context.drive_folders), in_full || !any_told));
 }
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
@@ -87,8 +90,8 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   session::look_for_families(*context.session, *found, families);
   std::vector<std::uint8_t> there;
   for (const auto& node : *found) there.push_back(node.node);
-  return report::Value(show::identity_table(context, *found, conditions_of(*context.session, there),
-                                            families, arguments.has("--long")));
+  return report::Value(show::identity_table(context, *found, conditions_of(*context.session, there), families,
+                                            arguments.has("--long")));
 }
 
 }  // namespace

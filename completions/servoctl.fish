@@ -78,7 +78,7 @@ complete -c servoctl -l dry-run -d 'show the frames, send nothing that changes a
 complete -c servoctl -l trace -r -F -d 'write every frame to a file (candump -L format)'
 complete -c servoctl -l help -s h -d 'show the help of the command'
 complete -c servoctl -n __servoctl_at -a scan -d 'Find the nodes on the bus: what they are, and how'
-complete -c servoctl -n '__servoctl_in scan' -l long -d 'on CAN: the identity in numbers, instead of the state'
+complete -c servoctl -n '__servoctl_in scan' -l long -d 'the identity in numbers, instead of the drives'\'' state'
 complete -c servoctl -n __servoctl_at -a info -d 'Show the identity of a node'
 complete -c servoctl -n __servoctl_at -a status -d 'Show the state of drives, one line each: NMT or AL, CiA 402, mode, fault'
 complete -c servoctl -n '__servoctl_in status' -l long -d 'every bit of the statusword, and more, in several lines a node'

@@ -162,8 +162,8 @@ void Mailbox::on_looked(ByteSpan status, TimePoint now) {
   pause_and_look(now);
 }
 
-/// SM0 was empty before. Full, the message is there; empty, it may have been taken by now, or never have come.
-/// Either way it is not written again: the slave may do what it says.
+/// SM0 was empty before. Full, the message is there; empty, it may have been taken by now, or never have
+/// come. Either way it is not written again: the slave may do what it says.
 void Mailbox::settle_doubt(TimePoint now) {
   in_doubt_ = false;
   uncounted_ = false;

@@ -21,11 +21,11 @@ namespace servoctl::ethercat {
 /// The mailbox of one slave (ETG.1000.4, 5.6 and 6.7): SM0 takes what the master writes, SM1 holds what the
 /// slave answers. Performs no I/O and reads no clock; a Carrier takes its requests.
 ///
-/// A message is written once. When the frame that wrote it is lost, or comes back uncounted, SM0 is looked at:
-/// full, it is there; empty, it may have been taken already, so an answer is waited for and nothing is written
-/// again, unless the slave counts nothing any more. An answer
-/// whose frame is lost is asked for again (repeat request, 080Eh and 080Fh). What lies in SM1 when this
-/// begins was somebody else's and is thrown away. Emergencies come out on their own, whenever they come.
+/// A message is written once. When the frame that wrote it is lost, or comes back uncounted, SM0 is looked
+/// at: full, it is there; empty, it may have been taken already, so an answer is waited for and nothing is
+/// written again, unless the slave counts nothing any more. An answer whose frame is lost is asked for again
+/// (repeat request, 080Eh and 080Fh). What lies in SM1 when this begins was somebody else's and is thrown
+/// away. Emergencies come out on their own, whenever they come.
 class Mailbox {
  public:
   struct Options {
@@ -46,7 +46,8 @@ class Mailbox {
     std::uint64_t damaged = 0;      ///< Their length led out of the mailbox.
     std::uint64_t repeated = 0;     ///< Asked for again.
     std::uint64_t missed = 0;       ///< Lost all the same.
-    std::uint64_t doubtful = 0;     ///< Written in a frame that was lost or not counted, and SM0 was empty behind it.
+    std::uint64_t doubtful =
+        0;  ///< Written in a frame that was lost or not counted, and SM0 was empty behind it.
   };
   /// The slave did not like a message.
   struct Refusal {

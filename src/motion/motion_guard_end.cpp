@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "drive/standard_objects.hpp"
-#include "motion/motion_guard.hpp"
 #include "motion/kept_op.hpp"
+#include "motion/motion_guard.hpp"
 #include "motion/operation_mode.hpp"
 #include "session/link_wait.hpp"
 #include "session/option_scope.hpp"

@@ -19,8 +19,8 @@ struct Condition {
   std::optional<std::uint16_t> fault;
 };
 
-/// The columns of a condition: state and fault in text, unless that has the identity (`in_full`); in JSON state,
-/// statusword and fault.
+/// The columns of a condition: state and fault in text, unless that has the identity (`in_full`); in JSON
+/// state, statusword and fault.
 void add_condition_columns(bool in_full, report::Table& table);
 /// Its cells.
 void add_condition(const Desk& desk, const Condition& condition, bool in_full, report::List& row);

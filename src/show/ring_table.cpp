@@ -125,9 +125,9 @@ Record al_fields(const ethercat::AlStatus& al) {
           {"al_text", al.error ? Value(ethercat::al_status_text(al.code)) : Value(), Show::json}};
 }
 
-report::Table ring_table(const Desk& desk, const session::RingScan& ring,
-                         std::span<const std::uint8_t> nodes, std::span<const Condition> conditions,
-                         std::span<const drive::Family> families, bool in_full) {
+report::Table ring_table(const Desk& desk, const session::RingScan& ring, std::span<const std::uint8_t> nodes,
+                         std::span<const Condition> conditions, std::span<const drive::Family> families,
+                         bool in_full) {
   const auto full = in_full ? Show::everywhere : Show::json;
   report::Table table;
   table.columns = {{"node"},

@@ -198,8 +198,8 @@ TEST_F(EtherCatMotion, ADriveThatWasInOpAndFellOutOfItIsNotTakenThereAgain) {
   ASSERT_FALSE(done.outcome);
   expect_safe();
   EXPECT_EQ(slave().state(), sim::EscState::pre_op);
-  EXPECT_EQ(done.end.notes, std::vector<std::string>{
-                                "it was in OP before and is in PRE-OP now: it left it by itself"});
+  EXPECT_EQ(done.end.notes,
+            std::vector<std::string>{"it was in OP before and is in PRE-OP now: it left it by itself"});
 }
 
 TEST_F(EtherCatMotion, ADriveInOpThatIsRefusedBeforeItHasPowerStaysInOp) {

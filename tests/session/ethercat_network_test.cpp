@@ -60,6 +60,16 @@ TEST_F(EtherCatTest, AChannelSaysThatSomethingCameWhenItsAnswerIsThereAndNotBefo
   EXPECT_TRUE(channel->take_result());
 }
 
+TEST_F(EtherCatTest, AGapMayStandInEitherPdoAndADataTypeForOneInRpdosAlone) {
+  open("sv2@1");
+  for (const std::uint16_t mapping : {0x1600, 0x1A00}) {
+    ASSERT_TRUE(session_->download(1, {mapping, 0}, {0}));
+    EXPECT_TRUE(session_->download(1, {mapping, 1}, store_le(0x0000'0008U, 4))) << mapping;
+  }
+  EXPECT_TRUE(session_->download(1, {0x1600, 1}, store_le(0x0005'0008U, 4)));
+  EXPECT_EQ(session_->download(1, {0x1A00, 1}, store_le(0x0005'0008U, 4)).error().abort_code, 0x0604'0041U);
+}
+
 TEST_F(EtherCatTest, APlaceWithoutASlaveIsTold) {
   open("sv2@1,sv2@2");
   const auto answer = session_->upload(3, objects::kVendorId);

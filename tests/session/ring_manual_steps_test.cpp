@@ -105,16 +105,16 @@ TEST_F(RingManualSteps, OfCyclicPositionAsFarAsACycleOfFourMillisecondsGoes) {
               from + 2000.0, 20);
 }
 
-/// The manual has a block diagram and the PDOs for csv and cst (977-1012), and no sequence: the bits are those
-/// of CiA 402-2.
+/// The manual has a block diagram and the PDOs for csv and cst (977-1012), and no sequence: the bits are
+/// those of CiA 402-2.
 TEST_F(RingManualSteps, OfCyclicVelocityWhichFollowsItsTargetWithoutARamp) {
   write({0x6083, 0}, 1000, 4);  // A ramp that profile velocity would take ten seconds for.
   begin(9);
   write(objects::kTargetVelocity, 10'000, 4);
   (void)session_->wait([] { return false; }, session_->now() + 20ms);
   const auto speed = [&] {
-    return static_cast<double>(static_cast<std::int32_t>(
-        load_le(session_->upload(1, objects::kVelocityActual).value())));
+    return static_cast<double>(
+        static_cast<std::int32_t>(load_le(session_->upload(1, objects::kVelocityActual).value())));
   };
   EXPECT_NEAR(speed(), 10'000, 1);
   EXPECT_EQ(status() & 0x1400U, 0x1000U) << "it follows; there is nothing to reach";
