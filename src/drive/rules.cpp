@@ -130,6 +130,15 @@ class RulesReader {
 
 }  // namespace
 
+std::string_view name(NmtRules::Restart restart) {
+  switch (restart) {
+    case NmtRules::Restart::reset_node: return "reset node";
+    case NmtRules::Restart::reset_communication: return "reset communication";
+    case NmtRules::Restart::power_cycle: break;
+  }
+  return "power cycle";
+}
+
 std::optional<std::uint32_t> Numbering::number(std::string_view id) const {
   if (id.size() <= prefix.size() || !equals_nocase(id.substr(0, prefix.size()), prefix)) return std::nullopt;
   const auto digits = id.substr(prefix.size());

@@ -70,8 +70,11 @@ struct SdoRules {
 };
 
 struct NmtRules {
-  std::string node_id;         ///< Parameter of the node-ID.
-  std::string bitrate;         ///< Parameter of the bitrate code.
+  /// What puts a new node-ID or bitrate in force.
+  enum class Restart : std::uint8_t { power_cycle, reset_node, reset_communication };
+  std::string node_id;  ///< Parameter of the node-ID.
+  std::string bitrate;  ///< Parameter of the bitrate: its labels are bitrates, or its unit is kbit/s.
+  Restart address_after = Restart::power_cycle;
   std::string autostart;       ///< Parameter: 1 goes to Operational by itself.
   std::string guarding_alarm;  ///< Parameter: 0, the end of life guarding raises no fault.
   std::uint32_t max_nodes = 127;
@@ -79,6 +82,9 @@ struct NmtRules {
   bool disables_outside_operational = false;
   std::vector<std::string> lost_alarms;  ///< Panel texts of what the manual calls a lost communication.
 };
+
+/// `power cycle`, `reset node`, `reset communication`.
+std::string_view name(NmtRules::Restart restart);
 
 /// What may be changed of a PDO, and when (CiA 301, 7.5.2.33 to 7.5.2.38, and the vendor's narrower rules).
 struct PdoRules {

@@ -57,6 +57,15 @@ bool get(const toml::node& node, PdoRules::When& out) {
   return text == "always" || text == "invalid" || text == "not operational";
 }
 
+bool get(const toml::node& node, NmtRules::Restart& out) {
+  std::string text;
+  if (!drive::get(node, text)) return false;
+  if (text == "power cycle") out = NmtRules::Restart::power_cycle;
+  if (text == "reset node") out = NmtRules::Restart::reset_node;
+  if (text == "reset communication") out = NmtRules::Restart::reset_communication;
+  return text == "power cycle" || text == "reset node" || text == "reset communication";
+}
+
 template <class T>
 TableReader::Handler list_into(std::vector<T>& out) {
   return [&out](const toml::node& node) {
@@ -100,6 +109,7 @@ Result<void> read_nmt(const TableReader& reader, Rules& rules) {
   auto& out = rules.nmt;
   return reader.read({{"node_id", into(out.node_id)},
                       {"bitrate", into(out.bitrate)},
+                      {"address_after", [&](const toml::node& node) { return get(node, out.address_after); }},
                       {"autostart", into(out.autostart)},
                       {"guarding_alarm", into(out.guarding_alarm)},
                       {"max_nodes", into(out.max_nodes)},

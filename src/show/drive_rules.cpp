@@ -221,6 +221,12 @@ std::string ways_text(const drive::Quotients& ways) {
   return out;
 }
 
+/// What puts a new node-ID or bitrate in force; empty where the family has no parameter of them.
+Value address_after(const drive::NmtRules& rules) {
+  if (rules.node_id.empty() && rules.bitrate.empty()) return {};
+  return drive::name(rules.address_after);
+}
+
 Record rules_record(const drive::Profile& profile, bool chinese) {
   const auto& rules = profile.rules;
   Record out{{"family", profile.family},
@@ -235,6 +241,7 @@ Record rules_record(const drive::Profile& profile, bool chinese) {
              {"numbering", numbering(rules), Show::everywhere, "panel numbers"},
              {"node_id", report::text_or_null(rules.nmt.node_id), Show::everywhere, "node-ID in"},
              {"bitrate", report::text_or_null(rules.nmt.bitrate), Show::everywhere, "bitrate in"},
+             {"address_after", address_after(rules.nmt), Show::everywhere, "they hold after"},
              {"needs", settings(rules.nmt.needs), Show::everywhere, "needs for CANopen"},
              {"disables_outside_operational", rules.nmt.disables_outside_operational, Show::everywhere,
               "off outside Operational"},
