@@ -32,6 +32,7 @@ extern const Command kDiff;
 extern const Command kVerify;
 extern const Command kRestore;
 extern const Command kClone;
+extern const Command kAddress;
 extern const Command kStore;
 extern const Command kDefaults;
 extern const Command kFaultShow;
@@ -125,6 +126,7 @@ constexpr Named kNamed[] = {
     {"verify", &commands::kVerify},
     {"restore", &commands::kRestore},
     {"clone", &commands::kClone},
+    {"address", &commands::kAddress},
     {"store", &commands::kStore},
     {"defaults", &commands::kDefaults},
     {"fault show", &commands::kFaultShow},

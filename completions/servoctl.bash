@@ -9,7 +9,7 @@ _servoctl_scan() {
       continue
     fi
     case $word in
-      --bus|-b|--node|-n|--drive|-d|--cabinet|--timeout|--retries|--output|-o|--lang|--trace|--type|--to|--transfer|--from|--format|--only|--family|--name|--for|--axis|--turn|--turns|--accel|--csv|--limit|--max-torque|--max-following-error|--window|--master-node|--speed|--search|--offset|--within|--nameplate|--guard|--life|--inhibit|--event|--cob-id|--sync-start|--count|--longest|--junit|--expect|--tolerance|--stop-within|--repeat|--spread|--encoder|--title|--tests|--period|--counter|--every|--svg|--service|--object|--bitrate|--var) skip=$word ;;
+      --bus|-b|--node|-n|--drive|-d|--cabinet|--timeout|--retries|--output|-o|--lang|--trace|--type|--to|--transfer|--from|--format|--only|--family|--name|--for|--axis|--bitrate|--plan|--wait|--turn|--turns|--accel|--csv|--limit|--max-torque|--max-following-error|--window|--master-node|--speed|--search|--offset|--within|--nameplate|--guard|--life|--inhibit|--event|--cob-id|--sync-start|--count|--longest|--junit|--expect|--tolerance|--stop-within|--repeat|--spread|--encoder|--title|--tests|--period|--counter|--every|--svg|--service|--object|--var) skip=$word ;;
       -*) ;;
       *)
         case $command in
@@ -39,6 +39,9 @@ _servoctl_scan() {
       --name) source='none' ;;
       --for) source='none' ;;
       --axis) source='none' ;;
+      --bitrate) source='none' ;;
+      --plan) source='files' ;;
+      --wait) source='none' ;;
       --turn) source='none' ;;
       --turns) source='none' ;;
       --accel) source='none' ;;
@@ -76,13 +79,12 @@ _servoctl_scan() {
       --svg) source='files' ;;
       --service) source='=nmt sync time emcy pdo sdo boot-up heartbeat guarding controller other' ;;
       --object) source='objects' ;;
-      --bitrate) source='none' ;;
       --var) source='none' ;;
     esac
     return
   fi
   case $command in
-    '') source='=scan info status read write objects param backup cabinet diff verify restore clone store defaults fault enable disable quick-stop mode jog move home torque units nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion' ;;
+    '') source='=scan info status read write objects param backup cabinet diff verify restore clone address store defaults fault enable disable quick-stop mode jog move home torque units nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion' ;;
     param) source='=list get set search explain' ;;
     cabinet) source='=init check show plan apply backup diff' ;;
     fault) source='=show list reset clear-history' ;;
@@ -109,6 +111,7 @@ _servoctl_scan() {
     'diff') source='files' ;;
     'verify') source='files' ;;
     'restore') source='files' ;;
+    'address') source='none' ;;
     'store') source='=all communication application vendor' ;;
     'defaults') source='=all communication application vendor' ;;
     'fault list') source='none' ;;
@@ -138,7 +141,7 @@ _servoctl_scan() {
     'eds check') source='files' ;;
     'run') source='files' ;;
     'sim') source='none' ;;
-    'help') source='=scan info status read write objects param backup cabinet diff verify restore clone store defaults fault enable disable quick-stop mode jog move home torque units nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion' ;;
+    'help') source='=scan info status read write objects param backup cabinet diff verify restore clone address store defaults fault enable disable quick-stop mode jog move home torque units nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion' ;;
     'completion') source='=bash zsh fish objects parameters families' ;;
   esac
   case $command in
@@ -157,6 +160,7 @@ _servoctl_scan() {
     'verify') options+=' --skip-invalid' ;;
     'restore') options+=' --only --with-address --no-rollback --force --skip-invalid --keep --unlock --resume' ;;
     'clone') options+=' --from --to --force --keep --unlock --resume' ;;
+    'address') options+=' --bitrate --plan --wait --unlock --resume' ;;
     'enable') options+=' --turn' ;;
     'jog') options+=' --for --turns --until-key --accel --csv --limit --max-torque --max-following-error --window --turn --master-node --plot' ;;
     'move') options+=' --relative --speed --accel --csv --limit --max-torque --max-following-error --window --turn --master-node --plot' ;;

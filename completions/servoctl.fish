@@ -16,7 +16,7 @@ function __servoctl_path # the words that are neither options nor their values
     for word in (commandline -opc)[2..]
         if test $skip = 1
             set skip 0
-        else if contains -- $word --bus -b --node -n --drive -d --cabinet --timeout --retries --output -o --lang --trace --type --to --transfer --from --format --only --family --name --for --axis --turn --turns --accel --csv --limit --max-torque --max-following-error --window --master-node --speed --search --offset --within --nameplate --guard --life --inhibit --event --cob-id --sync-start --count --longest --junit --expect --tolerance --stop-within --repeat --spread --encoder --title --tests --period --counter --every --svg --service --object --bitrate --var
+        else if contains -- $word --bus -b --node -n --drive -d --cabinet --timeout --retries --output -o --lang --trace --type --to --transfer --from --format --only --family --name --for --axis --bitrate --plan --wait --turn --turns --accel --csv --limit --max-torque --max-following-error --window --master-node --speed --search --offset --within --nameplate --guard --life --inhibit --event --cob-id --sync-start --count --longest --junit --expect --tolerance --stop-within --repeat --spread --encoder --title --tests --period --counter --every --svg --service --object --var
             set skip 1
         else if not string match -q -- '-*' $word
             set path $path $word
@@ -159,6 +159,12 @@ complete -c servoctl -n '__servoctl_in clone' -l force -d 'even if identities di
 complete -c servoctl -n '__servoctl_in clone' -l keep -d 'make the values survive power-off'
 complete -c servoctl -n '__servoctl_in clone' -l unlock -d 'unlock by the family'\''s password, lock again after'
 complete -c servoctl -n '__servoctl_in clone' -l resume -d 'resume an interrupted run, same options'
+complete -c servoctl -n __servoctl_at -a address -d 'Give a drive another node-ID or bitrate; asks first'
+complete -c servoctl -n '__servoctl_in address' -l bitrate -x -d 'the new bitrate: 125k, 250k, 500k, 1M'
+complete -c servoctl -n '__servoctl_in address' -l plan -r -F -d 'renumber several: a CSV file with node,new (serial,bitrate)'
+complete -c servoctl -n '__servoctl_in address' -l wait -x -d 'how long to wait for a drive that is to be switched off and on'
+complete -c servoctl -n '__servoctl_in address' -l unlock -d 'unlock by the family'\''s password, lock again after'
+complete -c servoctl -n '__servoctl_in address' -l resume -d 'resume an interrupted plan'
 complete -c servoctl -n __servoctl_at -a store -d 'Store the present values in the drive'
 complete -c servoctl -n '__servoctl_in store' -x -a 'all communication application vendor'
 complete -c servoctl -n __servoctl_at -a defaults -d 'Restore the factory values of a drive'
@@ -393,7 +399,7 @@ complete -c servoctl -n '__servoctl_in run' -l frames -d 'with --dry-run: the fr
 complete -c servoctl -n '__servoctl_in run' -l check -d 'check all lines without a bus, run none'
 complete -c servoctl -n __servoctl_at -a sim -d 'Put simulated drives on a bus until Ctrl-C'
 complete -c servoctl -n __servoctl_at -a help -d 'Show the commands, or how one is used'
-complete -c servoctl -n '__servoctl_in help' -x -a 'scan info status read write objects param backup cabinet diff verify restore clone store defaults fault enable disable quick-stop mode jog move home torque units nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion'
+complete -c servoctl -n '__servoctl_in help' -x -a 'scan info status read write objects param backup cabinet diff verify restore clone address store defaults fault enable disable quick-stop mode jog move home torque units nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion'
 complete -c servoctl -n __servoctl_at -a completion -d 'Print the completion script of a shell'
 complete -c servoctl -n '__servoctl_in completion' -x -a 'bash zsh fish objects parameters families'
 complete -c servoctl -n __servoctl_at -a param

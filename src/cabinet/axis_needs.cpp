@@ -9,6 +9,7 @@
 #include "drive/standard_objects.hpp"
 #include "session/pdo_change.hpp"
 #include "session/state_pause.hpp"
+#include "session/storage.hpp"
 #include "settings/change.hpp"
 
 namespace servoctl::cabinet {
@@ -66,10 +67,7 @@ bool has_password(const drive::Profile& profile) {
   return drive::place_of(profile, store.unlock).has_value() && store.unlock_open.has_value();
 }
 
-bool can_be_told_to_keep(const drive::Profile& profile) {
-  const auto& store = profile.rules.store;
-  return keeps_by_object(profile) || !store.store.empty() || !store.flash_switch.empty();
-}
+bool can_be_told_to_keep(const drive::Profile& profile) { return session::can_store(profile); }
 
 bool is_known_to_keep(const drive::Profile& profile, ObjectAddress object) {
   if (!can_be_told_to_keep(profile)) return false;

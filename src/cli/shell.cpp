@@ -122,6 +122,7 @@ Result<Value> Shell::execute(Run& run, const command::Arguments& arguments) {
   run.turn = arguments.text("--turn");
   if (const auto ready = prepare(run, arguments); !ready) return fail(ready.error());
   auto& context = run.context;
+  context.axes = run.axes;
   context.nodes_typed = run.settings.nodes_typed;
   context.chinese = run.settings.chinese;
   context.dry_run = run.settings.dry_run;

@@ -42,6 +42,12 @@ bool by_objects(const drive::Profile* profile) { return profile == nullptr || pr
 
 }  // namespace
 
+bool can_store(const drive::Profile& profile) {
+  const auto& store = profile.rules.store;
+  const bool by_object = store.objects && profile.dictionary.find(objects::kStoreAll) != nullptr;
+  return by_object || !store.store.empty() || !store.flash_switch.empty();
+}
+
 Result<std::vector<SdoRequest>> store_writes(const drive::Profile* profile, std::uint8_t node,
                                              ParameterGroup group) {
   if (by_objects(profile))

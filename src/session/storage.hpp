@@ -17,6 +17,10 @@ enum class ParameterGroup : std::uint8_t { all = 1, communication = 2, applicati
 /// Whether values survive power-off.
 enum class Kept : std::uint8_t { no, yes, unknown };
 
+/// Whether the drives of the family can be told to keep their values: by 1010h, by settings of their own, or
+/// by a switch between RAM and flash.
+bool can_store(const drive::Profile& profile);
+
 /// Longest wait for a drive that writes its flash or EEPROM; manuals name no time.
 inline constexpr Duration kStorePatience = std::chrono::seconds(10);
 

@@ -40,6 +40,7 @@ const std::map<std::string, std::string> kSamples{
     {"verify", "verify DIR/backup.json -n 1"},
     {"restore", "restore DIR/backup.json -n 1 -y"},
     {"clone", "clone --from 1 --to 2 -y"},
+    {"address", "address 9 -n 1 -y"},
     {"store", "store -n 1 -y"},
     {"defaults", "defaults -n 1 -y"},
     {"fault show", "fault show -n 1"},

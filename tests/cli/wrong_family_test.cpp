@@ -8,6 +8,7 @@ constexpr const char* kVendorFamilies[] = {"gsd600", "dm", "da200", "sv2", "ts"}
 
 /// A line of each command that touches a drive; `%` stands for a folder of the test.
 const std::map<std::string, std::string, std::less<>> kLines{
+    {"address", "address 9"},
     {"backup", "backup %b.json"},
     {"clone", "clone --from 1 --to 2"},
     {"defaults", "defaults"},

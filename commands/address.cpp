@@ -1,0 +1,252 @@
+#include <fmt/format.h>
+#include <algorithm>
+#include <filesystem>
+
+#include "base/file.hpp"
+#include "base/number.hpp"
+#include "canopen/node_id.hpp"
+#include "command/command.hpp"
+#include "command/duration_option.hpp"
+#include "command/setting_options.hpp"
+#include "drive/bitrate.hpp"
+#include "session/scan.hpp"
+#include "settings/address_plan_run.hpp"
+#include "show/records.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using namespace command;
+
+using report::Show;
+using report::Value;
+using settings::AddressChange;
+using settings::AddressEnd;
+using settings::AddressOutcome;
+
+constexpr std::uintmax_t kMostBytesOfPlan = 1U << 20U;
+
+constexpr Parameter kParameters[] = {
+    {.name = "new", .help = "the new node-ID, 1 to 127", .kind = Kind::number},
+    {.name = "--bitrate", .help = "the new bitrate: 125k, 250k, 500k, 1M", .kind = Kind::text},
+    {.name = "--plan",
+     .help = "renumber several: a CSV file with node,new (serial,bitrate)",
+     .kind = Kind::file},
+    {.name = "--wait",
+     .help = "how long to wait for a drive that is to be switched off and on",
+     .kind = Kind::duration},
+    kUnlockOption,
+    {.name = "--resume", .help = "resume an interrupted plan", .kind = Kind::flag},
+};
+
+Result<settings::AddressWish> wish_of(const Arguments& arguments) {
+  settings::AddressWish out;
+  if (arguments.has("new")) {
+    const auto number = parse_integer(arguments.text("new"));
+    const auto node = number ? number->as_unsigned() : std::nullopt;
+    if (!node || *node < canopen::kFirstNode || *node > canopen::kLastNode)
+      return fail(Errc::usage, fmt::format("'{}' is not a node-ID", arguments.text("new")),
+                  "node-IDs are 1 to 127");
+    out.node = static_cast<std::uint8_t>(*node);
+  }
+  if (arguments.has("--bitrate")) {
+    const auto bitrate = drive::parse_bitrate(arguments.text("--bitrate"));
+    if (!bitrate) return fail(bitrate.error());
+    out.bitrate = *bitrate;
+  }
+  return out;
+}
+
+Result<settings::AddressOptions> options_of(const Arguments& arguments) {
+  const auto patience = duration_option(arguments, "--wait");
+  if (!patience) return fail(patience.error());
+  return settings::AddressOptions{.unlock = arguments.has("--unlock"),
+                                  .patience = patience->value_or(Duration::zero())};
+}
+
+/// What goes together in the line, told before anything is asked.
+Result<void> check_words(const Context& context, const Arguments& arguments) {
+  if (arguments.has("--plan")) {
+    if (arguments.has("new") || arguments.has("--bitrate"))
+      return fail(Errc::usage, "--plan names all addresses itself", "leave the node-ID and --bitrate out");
+    return {};
+  }
+  if (arguments.has("--resume")) return fail(Errc::usage, "--resume resumes a plan", "add --plan FILE.csv");
+  if (!arguments.has("new") && !arguments.has("--bitrate"))
+    return fail(Errc::usage, "there is nothing to change",
+                "`address 5 -n 1`, or --bitrate 500k, or --plan FILE");
+  if (context.nodes.empty())
+    return fail(Errc::usage, "'address' needs a node", "add -n 1; `scan` shows who is there");
+  if (arguments.has("new") && (context.nodes.size() != 1 || context.nodes.front() == 0))
+    return fail(Errc::usage, "one drive gets a new node-ID at a time",
+                "-n 1, or several with --plan FILE.csv");
+  return {};
+}
+
+std::string question(const Context& context, std::span<const AddressChange> changes) {
+  std::string out;
+  for (const auto& change : changes) {
+    if (change.idle()) continue;
+    out += fmt::format("{}node {}", out.empty() ? "Re-address " : ", ", change.node);
+    if (change.identity.serial.value_or(0) != 0)
+      out += fmt::format(" (serial number {})", *change.identity.serial);
+    if (change.moves()) out += fmt::format(" to node {}", change.to);
+    if (change.bitrate) out += fmt::format(" to {}", drive::bitrate_text(*change.bitrate));
+  }
+  const auto& rules = context.profile->rules.nmt;
+  const bool restarts =
+      std::any_of(changes.begin(), changes.end(), [](const auto& c) { return c.restarts(); });
+  return out + (restarts ? fmt::format("? It is restarted (NMT {}).", drive::name(rules.address_after))
+                         : std::string("? It holds when the drive is switched off and on."));
+}
+
+/// What a file of the user's says of the drive that has moved.
+void tell_axes(Context& context, const AddressChange& change, const AddressOutcome& outcome) {
+  if (outcome.end != AddressEnd::moved && outcome.end != AddressEnd::awaits_restart) return;
+  if (!change.moves()) return;
+  for (const auto* axis : context.axes) {
+    if (axis->node != change.node) continue;
+    context.notices.push_back(
+        fmt::format("the cabinet file still says {}: change `node = {}` of axis {} to `node = {}`",
+                    axis->node, axis->node, axis->name, change.to));
+  }
+}
+
+/// Nobody waited for it.
+void tell_power(Context& context, const AddressChange& change, const AddressOutcome& outcome) {
+  if (outcome.end != AddressEnd::awaits_restart || outcome.error || change.bitrate) return;
+  context.notices.push_back(fmt::format(
+      "node {}: switch it off and on; then it is node {} (`--wait 5min` waits for it, `info -n {}` "
+      "shows it)",
+      change.node, change.to, change.to));
+}
+
+void tell_bitrate(Context& context, std::uint32_t bitrate) {
+  for (const auto& line : settings::bitrate_steps(context.session->url(), bitrate))
+    context.notices.push_back(line);
+}
+
+Value kept_value(session::Kept kept) {
+  return kept == session::Kept::unknown ? Value() : Value(kept == session::Kept::yes);
+}
+
+report::List row_of(const AddressChange& change, const AddressOutcome& outcome) {
+  report::List stayed;
+  for (const auto object : outcome.stayed) stayed.emplace_back(to_string(object));
+  return {change.node,
+          change.to,
+          change.bitrate ? Value(*change.bitrate) : Value(),
+          change.bitrate ? Value(drive::bitrate_text(*change.bitrate)) : Value(),
+          change.identity.serial ? Value(*change.identity.serial) : Value(),
+          settings::text_of(outcome.end),
+          kept_value(outcome.kept),
+          Value(std::move(stayed)),
+          outcome.error ? show::error_record(*outcome.error) : Value()};
+}
+
+Result<Value> carry_out(Context& context, std::span<const AddressChange> changes,
+                        const settings::AddressOptions& options) {
+  report::Table table;
+  table.columns = {{"node"},
+                   {"new_node", "new"},
+                   {"bitrate", "", Show::json},
+                   {"bitrate_text", "bitrate", Show::text},
+                   {"serial"},
+                   {"result"},
+                   {"kept", "", Show::json},
+                   {"cob_ids_left", "", Show::json},
+                   {"error", "", Show::json}};
+  std::optional<std::uint32_t> bitrate;
+  for (const auto& change : changes) {
+    const auto outcome = settings::change_address(context, change, options);
+    if (outcome.error) context.errors.push_back(*outcome.error);
+    tell_power(context, change, outcome);
+    tell_axes(context, change, outcome);
+    if (outcome.end == AddressEnd::awaits_restart && change.bitrate) bitrate = change.bitrate;
+    table.rows.push_back(row_of(change, outcome));
+  }
+  if (bitrate) tell_bitrate(context, *bitrate);
+  return Value(std::move(table));
+}
+
+Result<Value> run_plan(Context& context, const Arguments& arguments,
+                       const settings::AddressOptions& options) {
+  const std::filesystem::path file(arguments.text("--plan"));
+  const auto text = read_file(file, kMostBytesOfPlan);
+  if (!text) return fail(text.error());
+  const auto rows = settings::parse_address_plan(*text, file.string());
+  if (!rows) return fail(rows.error());
+  if (!arguments.has("--resume")) {
+    std::vector<std::uint8_t> nodes;
+    for (const auto& row : *rows) nodes.push_back(row.node);
+    if (const auto held = context.hold_family(nodes, context.profile, true); !held) return fail(held.error());
+  }
+  return settings::run_address_plan(context, *text, file,
+                                    {.each = options, .resume = arguments.has("--resume")});
+}
+
+/// `all` are those that answer.
+Result<void> name_all(Context& context) {
+  if (context.nodes.front() != 0) return {};
+  auto nodes = session::nodes_present(*context.session);
+  if (!nodes) return fail(nodes.error());
+  context.nodes = std::move(*nodes);
+  return context.hold_family(context.nodes, context.profile, true);
+}
+
+Result<Value> run(Context& context, const Arguments& arguments) {
+  const auto options = options_of(arguments);
+  if (!options) return fail(options.error());
+  if (const auto words = check_words(context, arguments); !words) return fail(words.error());
+  if (arguments.has("--plan")) return run_plan(context, arguments, *options);
+  const auto wish = wish_of(arguments);
+  if (!wish) return fail(wish.error());
+  if (const auto named = name_all(context); !named) return fail(named.error());
+  std::vector<AddressChange> changes;
+  std::vector<std::uint8_t> targets;
+  for (const auto node : context.nodes) {
+    auto change = settings::plan_address(context, node, *wish);
+    if (!change) return fail(change.error());
+    if (change->moves()) targets.push_back(change->to);
+    changes.push_back(std::move(*change));
+  }
+  if (const auto free = settings::refuse_taken(*context.session, targets); !free) return fail(free.error());
+  if (context.dry_run) return settings::planned_address(context, changes, options->unlock);
+  if (std::any_of(changes.begin(), changes.end(), [](const auto& change) { return !change.idle(); }))
+    if (const auto agreed = context.confirm(question(context, changes)); !agreed) return fail(agreed.error());
+  return carry_out(context, changes, *options);
+}
+
+Result<void> check(Context& context, const Arguments& arguments) {
+  if (const auto words = check_words(context, arguments); !words) return words;
+  const auto wish = wish_of(arguments);
+  return wish ? Result<void>() : fail(wish.error());
+}
+
+}  // namespace
+
+extern const Command kAddress;
+const Command kAddress{
+    .path = "address",
+    .summary = "Give a drive another node-ID or bitrate; asks first",
+    .details =
+        "Writes the family's own parameter, reads it back, stores it by the family's way and restarts the "
+        "drive (NMT), or says that it is to be switched off and on: `drives FAMILY` shows which. Then the drive "
+        "is looked for at its new node-ID, and held against what it said of itself before. A node-ID that "
+        "somebody uses is refused: all that answer, and all that are heard within 1.5 s. An energised drive is "
+        "left alone. COB-IDs that did not follow the node-ID are listed. A drive with a new bitrate is not "
+        "restarted: all nodes of the bus have to be changed first, and the interface with them; what to do is "
+        "listed. Masters, and nodes that watch the heartbeat of the drive, are not told of its new number.\n\n"
+        "--plan FILE.csv renumbers several (columns node,new; serial and bitrate where wanted): all are looked "
+        "at first, and each moves when its new node-ID is free; drives that exchange theirs go through a free "
+        "one. It ends with the first that fails; FILE.csv.journal keeps how far it came, and --resume continues. "
+        "For example: address 5 -n 1; address --bitrate 500k -n all; address --plan cabinet.csv.",
+    .parameters = kParameters,
+    .needs = Needs::dictionary | Needs::can,
+    .effect = Effect::resets,
+    .run = run,
+    .check = check,
+    .elsewhere = "a drive on EtherCAT is addressed by its place on the ring; it has no node-ID to change",
+};
+
+}  // namespace servoctl::commands

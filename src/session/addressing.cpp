@@ -1,0 +1,130 @@
+#include "session/addressing.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "canopen/cob_id.hpp"
+#include "drive/standard_objects.hpp"
+#include "session/can_network.hpp"
+#include "session/hearing.hpp"
+#include "session/option_scope.hpp"
+
+namespace servoctl::session {
+namespace {
+
+using drive::NmtRules;
+
+/// How often a drive that is to come back is asked for beside its boot-up.
+constexpr Duration kAskAgain = std::chrono::seconds(2);
+/// A node answers within some milliseconds.
+constexpr Duration kProbe = std::chrono::milliseconds(100);
+
+std::optional<canopen::NmtCommand> command_of(NmtRules::Restart how) {
+  switch (how) {
+    case NmtRules::Restart::reset_node: return canopen::NmtCommand::reset_node;
+    case NmtRules::Restart::reset_communication: return canopen::NmtCommand::reset_communication;
+    case NmtRules::Restart::power_cycle: break;
+  }
+  return std::nullopt;
+}
+
+/// Who sends a frame by the pre-defined connection set (CiA 301, 7.3.5); 0: nobody that could be told. An
+/// RPDO and a request come from others than the node in their CAN-ID.
+std::uint8_t sender_of(const can::Frame& frame) {
+  if (frame.extended || frame.error || frame.remote) return 0;
+  const auto node = static_cast<std::uint8_t>(frame.id & 0x7FU);
+  switch (frame.id - node) {
+    case canopen::kEmergency:
+    case 0x180:
+    case 0x280:
+    case 0x380:
+    case 0x480:
+    case canopen::kSdoAnswer:
+    case canopen::kErrorControl: return node;
+    default: return 0;
+  }
+}
+
+std::string_view what_it_sends(const can::Frame& frame) {
+  const auto service = frame.id & ~0x7FU;
+  if (service == canopen::kErrorControl) return "sends heartbeats";
+  return service == canopen::kSdoAnswer ? "answers" : "sends PDOs or emergencies";
+}
+
+bool answers(const Result<Bytes>& answer) {
+  return answer || answer.error().code == Errc::sdo_abort || answer.error().code == Errc::protocol;
+}
+
+}  // namespace
+
+Result<std::map<std::uint8_t, std::string>> nodes_in_use(Session& session,
+                                                         std::span<const std::uint8_t> nodes,
+                                                         Duration listening) {
+  std::map<std::uint8_t, std::string> out;
+  auto* can = session.can();
+  if (can == nullptr) return out;
+  const std::set<std::uint8_t> wanted(nodes.begin(), nodes.end());
+  const Hearing hearing(session, [&](const can::Frame& frame, TimePoint) {
+    if (const auto node = sender_of(frame); wanted.count(node) > 0) out.emplace(node, what_it_sends(frame));
+  });
+  const auto until = session.now() + listening;
+  std::vector<SdoRequest> questions;
+  for (const auto node : wanted) questions.push_back({.node = node, .object = objects::kDeviceType});
+  {
+    const OptionScope once(session, &Options::retries, 0U);
+    const auto found = session.transfer(questions);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      if (answers(found[i])) out[questions[i].node] = "answers";
+      if (!found[i] && (found[i].error().code == Errc::bus || found[i].error().code == Errc::interrupted))
+        return fail(found[i].error());
+    }
+  }
+  const auto waited = session.wait([&] { return out.size() == wanted.size(); }, until);
+  if (!waited) return fail(waited.error());
+  const auto own = can->heartbeat_node();
+  if (own && wanted.count(*own) > 0) out[*own] = "carries servoctl's own heartbeat";
+  return out;
+}
+
+void forget_node(Session& session, std::uint8_t node) {
+  session.identities().forget(node);
+  if (auto* can = session.can()) {
+    can->watch().forget(node);
+    can->duplicates().forget(node);
+  }
+}
+
+Result<void> restart_node(Session& session, std::uint8_t node, NmtRules::Restart how) {
+  const auto command = command_of(how);
+  auto* can = session.can();
+  if (!command || can == nullptr) return {};
+  const auto sent = can->send(canopen::nmt_frame(*command, node));
+  forget_node(session, node);
+  return sent;
+}
+
+std::string restart_frame(std::uint8_t node, NmtRules::Restart how) {
+  const auto command = command_of(how);
+  return command ? can::to_string(canopen::nmt_frame(*command, node)) : std::string();
+}
+
+Result<void> wait_for_boot(Session& session, std::uint8_t from, std::uint8_t to, TimePoint deadline) {
+  const auto before_from = session.watch().boots(from);
+  const auto before_to = session.watch().boots(to);
+  const auto booted = [&] {
+    return session.watch().boots(to) > before_to || session.watch().boots(from) > before_from;
+  };
+  while (!booted() && session.now() < deadline) {
+    const auto waited = session.wait(booted, std::min(deadline, session.now() + kAskAgain));
+    if (!waited) return fail(waited.error());
+    if (*waited || to == from) continue;
+    const Hurry hurry(session, kProbe, 0);
+    const auto there = session.upload(to, objects::kDeviceType);
+    if (answers(there)) break;
+    if (there.error().code == Errc::bus || there.error().code == Errc::interrupted)
+      return fail(there.error());
+  }
+  return {};
+}
+
+}  // namespace servoctl::session

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+
+#include "drive/rules.hpp"
+#include "session/session.hpp"
+
+namespace servoctl::session {
+
+/// How long the bus is listened to before a node-ID counts as free: masters and nodes that only send
+/// heartbeats send one at least so often.
+inline constexpr Duration kAddressListening = std::chrono::milliseconds(1500);
+
+/// Which of these node-IDs somebody uses, and what shows it: `answers`, `sends heartbeats`, `sends PDOs or
+/// emergencies`, `carries servoctl's own heartbeat`. All are asked once at the same time, and the bus is
+/// listened to for `listening`. Errors of the bus. On a network without node-IDs of its own nobody uses any.
+Result<std::map<std::uint8_t, std::string>> nodes_in_use(Session& session,
+                                                         std::span<const std::uint8_t> nodes,
+                                                         Duration listening = kAddressListening);
+
+/// Sends the node the NMT command that puts a new address in force; nothing for a power cycle. What was heard
+/// of it is forgotten: another may answer under its number from now on.
+Result<void> restart_node(Session& session, std::uint8_t node, drive::NmtRules::Restart how);
+/// The frame that restart_node() sends, as `--dry-run` shows it: `000#8103`; empty for a power cycle.
+std::string restart_frame(std::uint8_t node, drive::NmtRules::Restart how);
+
+/// What was known of the node under this number holds no longer.
+void forget_node(Session& session, std::uint8_t node);
+
+/// Waits until one of the two tells its boot-up, or until the deadline; asks `to` for an answer every two
+/// seconds beside it, as a boot-up message may be lost. Errc::bus and Errc::interrupted.
+Result<void> wait_for_boot(Session& session, std::uint8_t from, std::uint8_t to, TimePoint deadline);
+
+}  // namespace servoctl::session

@@ -1,0 +1,368 @@
+// A drive gets another node-ID by its family's parameter: written, kept, restarted and found again, or as
+// before.
+#include "settings/address_change.hpp"
+
+#include <gtest/gtest.h>
+
+#include "drive/bitrate.hpp"
+#include "tests/settings/address_world.hpp"
+
+namespace servoctl::settings {
+namespace {
+
+using namespace std::chrono_literals;
+
+AddressOutcome move_to(AddressWorld& world, std::uint8_t from, std::uint8_t to, AddressOptions options = {}) {
+  const auto change = plan_address(world.desk, from, {.node = to});
+  EXPECT_TRUE(change) << change.error().message;
+  if (!change) return {};
+  return change_address(world.desk, *change, options);
+}
+
+bool is_write_to(const can::Frame& frame, ObjectAddress object) {
+  return frame.id >= 0x600 && frame.id < 0x680 && (frame.data[0] & 0xE0U) == 0x20 &&
+         frame.data[1] == (object.index & 0xFFU) && frame.data[2] == object.index >> 8U &&
+         frame.data[3] == object.sub;
+}
+
+bool is_reset(const can::Frame& frame) { return frame.id == 0 && frame.data[0] >= 0x81; }
+
+class AddressOf : public testing::TestWithParam<const char*> {};
+
+TEST_P(AddressOf, ADriveThatIsRestartedOverTheBusIsFoundAtItsNewNode) {
+  AddressWorld world(GetParam(), {3});
+  const auto outcome = move_to(world, 3, 5);
+  EXPECT_EQ(outcome.end, AddressEnd::moved) << (outcome.error ? outcome.error->message : "");
+  EXPECT_EQ(world.drives[0]->node(), 5);
+  EXPECT_EQ(world.count("000#8103"), 1U);
+  // A power cycle changes nothing any more.
+  world.drives[0]->model().power_on(world.bus.now());
+  EXPECT_EQ(world.drives[0]->node(), 5);
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, AddressOf, testing::Values("gsd600", "da200", "dm"),
+                         [](const auto& family) { return std::string(family.param); });
+
+TEST(AddressChange, ADriveThatNeedsThePowerSwitchedIsToldSoAndNotRestarted) {
+  AddressWorld world("ts", {3});
+  const auto outcome = move_to(world, 3, 5, {.unlock = true});
+  EXPECT_EQ(outcome.end, AddressEnd::awaits_restart);
+  EXPECT_FALSE(outcome.error);
+  EXPECT_EQ(outcome.kept, session::Kept::yes);
+  EXPECT_EQ(world.held(0, "Fn_9A"), 5U);
+  EXPECT_EQ(world.held(0, "Fn_3F"), 9870U) << "the password is taken back";
+  for (const auto& frame : world.sent) EXPECT_FALSE(frame.starts_with("000#")) << frame;
+}
+
+TEST(AddressChange, ADriveThatIsSwitchedOffAndOnIsWaitedFor) {
+  AddressWorld world("ts", {3});
+  const auto at = world.bus.now() + 20s;
+  bool switched = false;
+  world.hooks.on_time = [&](TimePoint now) {
+    if (switched || now < at) return;
+    switched = true;
+    (void)world.bus.send(*can::parse_frame("000#8103"));
+  };
+  const auto outcome = move_to(world, 3, 5, {.unlock = true, .patience = 60s});
+  EXPECT_EQ(outcome.end, AddressEnd::moved) << (outcome.error ? outcome.error->message : "");
+}
+
+TEST(AddressChange, ADriveThatNobodySwitchesOffIsToldToBeAtItsOldNode) {
+  AddressWorld world("ts", {3});
+  const auto outcome = move_to(world, 3, 5, {.unlock = true, .patience = 10s});
+  EXPECT_EQ(outcome.end, AddressEnd::awaits_restart);
+  ASSERT_TRUE(outcome.error);
+  EXPECT_EQ(outcome.error->code, Errc::negative);
+  EXPECT_NE(outcome.error->message.find("not switched off"), std::string::npos) << outcome.error->message;
+}
+
+TEST(AddressChange, ALockedParameterNamesThePassword) {
+  AddressWorld world("ts", {3});
+  const auto outcome = move_to(world, 3, 5);
+  EXPECT_EQ(outcome.end, AddressEnd::as_before);
+  ASSERT_TRUE(outcome.error);
+  EXPECT_NE(outcome.error->hint.find("--unlock"), std::string::npos) << outcome.error->hint;
+  EXPECT_EQ(world.held(0, "Fn_9A"), 3U);
+}
+
+TEST(AddressChange, ANodeIdThatAnswersIsRefused) {
+  AddressWorld world("gsd600", {3, 5});
+  const std::uint8_t to[] = {5};
+  const auto free = refuse_taken(*world.session, to);
+  ASSERT_FALSE(free);
+  EXPECT_EQ(free.error().code, Errc::refused);
+  EXPECT_NE(free.error().message.find("it answers"), std::string::npos) << free.error().message;
+}
+
+TEST(AddressChange, ANodeIdWhoseNodeOnlySendsHeartbeatsIsRefused) {
+  AddressWorld world("gsd600", {3, 5});
+  ASSERT_TRUE(world.session->download(5, objects::kProducerHeartbeat, store_le(1000, 2)));
+  (void)world.bus.send(*can::parse_frame("000#0205"));
+  const std::uint8_t to[] = {5};
+  const auto free = refuse_taken(*world.session, to);
+  ASSERT_FALSE(free);
+  EXPECT_NE(free.error().message.find("it sends heartbeats"), std::string::npos) << free.error().message;
+}
+
+TEST(AddressChange, TheNodeIdOfServoctlsOwnHeartbeatIsRefused) {
+  AddressWorld world("gsd600", {3});
+  ASSERT_TRUE(world.session->network().arm_watchdog(
+      3, {.kind = session::LifeSign::Kind::heartbeat, .producer = 9, .period = 100ms}));
+  const std::uint8_t to[] = {9};
+  EXPECT_FALSE(refuse_taken(*world.session, to));
+  const std::uint8_t other[] = {10};
+  EXPECT_TRUE(refuse_taken(*world.session, other));
+}
+
+TEST(AddressChange, TheNodeThatItHasAlreadyIsNothingToDo) {
+  AddressWorld world("gsd600", {3});
+  const auto outcome = move_to(world, 3, 3);
+  EXPECT_EQ(outcome.end, AddressEnd::nothing_to_do);
+  for (const auto& frame : world.sent) EXPECT_FALSE(frame.starts_with("000#")) << frame;
+}
+
+TEST(AddressChange, AnAddressThatWaitsForARestartIsTakenBackByTheNodeThatItHas) {
+  AddressWorld world("gsd600", {3});
+  ASSERT_TRUE(world.session->download(3, *drive::place_of(world.profile, "Pn0049"), store_le(7, 2)));
+  const auto change = plan_address(world.desk, 3, {.node = 3});
+  ASSERT_TRUE(change);
+  EXPECT_EQ(change->writes.size(), 1U);
+  EXPECT_EQ(change_address(world.desk, *change, {}).end, AddressEnd::moved);
+  EXPECT_EQ(world.held(0, "Pn0049"), 3U);
+}
+
+TEST(AddressChange, ALostAnswerToTheWriteIsLookedUp) {
+  AddressWorld world("gsd600", {3});
+  const auto place = *drive::place_of(world.profile, "Pn0049");
+  world.hooks.before_send = [&](const can::Frame& frame) {
+    if (is_write_to(frame, place)) world.drives[0]->wire_faults().drop_answers = 1;
+  };
+  EXPECT_EQ(move_to(world, 3, 5).end, AddressEnd::moved);
+  EXPECT_EQ(world.count("602#2B00203205000000"), 0U);
+  EXPECT_EQ(world.count("603#2B00203205000000"), 1U) << "a write is never sent twice";
+}
+
+TEST(AddressChange, AWriteThatIsRefusedChangesNothing) {
+  AddressWorld world("gsd600", {3});
+  world.drives[0]->misbehaviour().refused.insert(0x2000);
+  const auto outcome = move_to(world, 3, 5);
+  EXPECT_EQ(outcome.end, AddressEnd::as_before);
+  EXPECT_EQ(world.drives[0]->node(), 3);
+  EXPECT_EQ(world.count("000#8103"), 0U);
+}
+
+TEST(AddressChange, AWriteThatIsAcknowledgedAndNotDoneIsNoticed) {
+  AddressWorld world("gsd600", {3});
+  world.drives[0]->misbehaviour().feigned.insert(0x2000);
+  const auto outcome = move_to(world, 3, 5);
+  ASSERT_TRUE(outcome.error);
+  EXPECT_NE(outcome.error->message.find("acknowledged"), std::string::npos) << outcome.error->message;
+  EXPECT_EQ(world.count("000#8103"), 0U) << "what is not written is not restarted";
+}
+
+TEST(AddressChange, AnAddressThatCannotBeKeptIsPutBack) {
+  AddressWorld world("dm", {3});
+  world.drives[0]->misbehaviour().refused.insert(0x1010);
+  const auto outcome = move_to(world, 3, 5);
+  EXPECT_EQ(outcome.end, AddressEnd::as_before);
+  ASSERT_TRUE(outcome.error);
+  EXPECT_NE(outcome.error->message.find("written back"), std::string::npos) << outcome.error->message;
+  EXPECT_EQ(world.held(0, "0x2003:01"), 3U);
+  EXPECT_EQ(world.count("000#8103"), 0U);
+}
+
+TEST(AddressChange, ADriveThatForgetsAtItsRestartIsToldOf) {
+  AddressWorld world("gsd600", {3});
+  const auto place = *drive::place_of(world.profile, "Pn0049");
+  world.hooks.before_send = [&](const can::Frame& frame) {
+    if (is_reset(frame)) world.memory.cells("1")[place] = store_le(3, 2);
+  };
+  const auto outcome = move_to(world, 3, 5);
+  EXPECT_EQ(outcome.end, AddressEnd::failed);
+  ASSERT_TRUE(outcome.error);
+  EXPECT_NE(outcome.error->message.find("forgot"), std::string::npos) << outcome.error->message;
+}
+
+TEST(AddressChange, ADriveThatDoesNotTakeTheNmtCommandIsToBeSwitchedOff) {
+  AddressWorld world("gsd600", {3});
+  // The command never reaches it.
+  world.hooks.before_send = [&](const can::Frame& frame) {
+    if (is_reset(frame)) world.drives[0]->wire_faults().silent = true;
+  };
+  const auto at = world.bus.now() + 5s;
+  world.hooks.on_time = [&](TimePoint now) {
+    if (now >= at) world.drives[0]->wire_faults().silent = false;
+  };
+  const auto outcome = move_to(world, 3, 5);
+  EXPECT_EQ(outcome.end, AddressEnd::awaits_restart);
+  ASSERT_TRUE(outcome.error);
+  EXPECT_NE(outcome.error->hint.find("switch it off and on"), std::string::npos);
+}
+
+TEST(AddressChange, ADriveThatAnswersAtBothNodesIsToldOf) {
+  AddressWorld world("gsd600", {3});
+  bool added = false;
+  world.hooks.before_send = [&](const can::Frame& frame) {
+    if (!is_reset(frame) || added) return;
+    added = true;
+    (void)world.bus.send(frame);
+    world.add(3);
+  };
+  const auto outcome = move_to(world, 3, 5);
+  EXPECT_EQ(outcome.end, AddressEnd::failed);
+  ASSERT_TRUE(outcome.error);
+  EXPECT_NE(outcome.error->message.find("node 3 still answers"), std::string::npos) << outcome.error->message;
+}
+
+TEST(AddressChange, ADriveThatStaysAwayIsToldOf) {
+  AddressWorld world("gsd600", {3});
+  world.hooks.before_send = [&](const can::Frame& frame) {
+    if (is_reset(frame)) world.drives[0]->wire_faults().silent = true;
+  };
+  const auto outcome = move_to(world, 3, 5);
+  EXPECT_EQ(outcome.end, AddressEnd::failed);
+  ASSERT_TRUE(outcome.error);
+  EXPECT_EQ(outcome.error->code, Errc::timeout);
+}
+
+TEST(AddressChange, ABusThatIsLostBehindTheWriteLeavesTheEndOpenAndSaysSo) {
+  AddressWorld world("gsd600", {3});
+  world.hooks.before_send = [&](const can::Frame& frame) {
+    world.hooks.lost = world.hooks.lost || is_reset(frame);
+  };
+  const auto outcome = move_to(world, 3, 5);
+  EXPECT_EQ(outcome.end, AddressEnd::failed);
+  ASSERT_TRUE(outcome.error);
+  EXPECT_EQ(outcome.error->code, Errc::bus);
+  EXPECT_NE(outcome.error->message.find("was told to be node 5"), std::string::npos)
+      << outcome.error->message;
+}
+
+TEST(AddressChange, CtrlCIsHeardWhileTheDriveIsWaitedForAndNotBetweenWriteAndStore) {
+  AddressWorld world("gsd600", {3});
+  const auto place = *drive::place_of(world.profile, "Pn0049");
+  bool pressed = false;
+  world.hooks.before_send = [&](const can::Frame& frame) { pressed = pressed || is_write_to(frame, place); };
+  const auto change = plan_address(world.desk, 3, {.node = 5});
+  ASSERT_TRUE(change);
+  world.session->options().cancelled = [&] { return pressed; };
+  const auto outcome = change_address(world.desk, *change, {});
+  EXPECT_EQ(outcome.end, AddressEnd::failed);
+  ASSERT_TRUE(outcome.error);
+  EXPECT_EQ(outcome.error->code, Errc::interrupted);
+  EXPECT_EQ(world.count("603#2310100173617665"), 1U) << "what was begun is kept";
+}
+
+TEST(AddressChange, AnEnergisedDriveIsLeftAlone) {
+  AddressWorld world("gsd600", {3});
+  for (const auto word : {0x06U, 0x07U, 0x0FU})
+    ASSERT_TRUE(world.session->download(3, objects::kControlword, store_le(word, 2)));
+  const auto change = plan_address(world.desk, 3, {.node = 5});
+  ASSERT_FALSE(change);
+  EXPECT_EQ(change.error().code, Errc::refused);
+}
+
+TEST(AddressChange, AnotherSerialNumberThanTheOneMeantIsRefused) {
+  AddressWorld world("gsd600", {3});
+  const auto change = plan_address(world.desk, 3, {.node = 5, .serial = 4711});
+  ASSERT_FALSE(change);
+  EXPECT_EQ(change.error().code, Errc::refused);
+}
+
+TEST(AddressChange, AFamilyWithoutTheParameterIsRefused) {
+  AddressWorld world("cia402", {3});
+  const auto change = plan_address(world.desk, 3, {.node = 5});
+  ASSERT_FALSE(change);
+  EXPECT_EQ(change.error().code, Errc::usage);
+}
+
+TEST(AddressChange, ANodeIdOutOfRangeIsRefused) {
+  AddressWorld world("gsd600", {3});
+  for (const unsigned node : {0U, 128U, 255U})
+    EXPECT_FALSE(plan_address(world.desk, 3, {.node = static_cast<std::uint8_t>(node)}));
+}
+
+TEST(AddressChange, ADriveWithANewBitrateIsNotRestarted) {
+  AddressWorld world("gsd600", {3});
+  const auto change = plan_address(world.desk, 3, {.bitrate = 500'000});
+  ASSERT_TRUE(change);
+  const auto outcome = change_address(world.desk, *change, {});
+  EXPECT_EQ(outcome.end, AddressEnd::awaits_restart);
+  EXPECT_EQ(world.held(0, "Pn0048"), 6U);
+  for (const auto& frame : world.sent) EXPECT_FALSE(frame.starts_with("000#")) << frame;
+  EXPECT_NE(bitrate_steps("can0", 500'000)[2].find("ip link set can0 up type can bitrate 500000"),
+            std::string::npos);
+}
+
+TEST(AddressChange, BothValuesAreWrittenOrNone) {
+  AddressWorld world("gsd600", {3});
+  const auto change = plan_address(world.desk, 3, {.node = 5, .bitrate = 500'000});
+  ASSERT_TRUE(change);
+  ASSERT_EQ(change->writes.size(), 2U);
+  const auto second = change->writes[1].object;
+  world.hooks.before_send = [&](const can::Frame& frame) {
+    if (is_write_to(frame, second)) world.drives[0]->misbehaviour().refused.insert(0x2000);
+    if (frame.id == 0x603 && (frame.data[0] & 0xE0U) == 0x40) world.drives[0]->misbehaviour().refused.clear();
+  };
+  // The second is refused, and the drive takes writes again when it is looked at.
+  const auto outcome = change_address(world.desk, *change, {});
+  EXPECT_TRUE(outcome.error);
+  EXPECT_EQ(world.held(0, "Pn0048"), 8U);
+  EXPECT_EQ(world.count("000#8103"), 0U);
+}
+
+TEST(AddressChange, COBIDsThatAreStoredWithTheOldNodeAreNamed) {
+  AddressWorld world("dm", {3});
+  ASSERT_TRUE(world.session->download(3, objects::kStoreAll, store_le(objects::kSaveSignature, 4)));
+  const auto outcome = move_to(world, 3, 5);
+  EXPECT_EQ(outcome.end, AddressEnd::moved);
+  EXPECT_FALSE(outcome.stayed.empty());
+  EXPECT_NE(world.notices().find("0x1400:1 = 0x00000203"), std::string::npos) << world.notices();
+}
+
+TEST(AddressChange, COBIDsThatFollowAreNotNamed) {
+  AddressWorld world("da200", {3});
+  EXPECT_TRUE(move_to(world, 3, 5).stayed.empty());
+  EXPECT_EQ(world.notices().find("COB-ID"), std::string::npos) << world.notices();
+}
+
+TEST(AddressChange, NobodyElseIsWrittenTo) {
+  AddressWorld world("gsd600", {3, 4, 6});
+  EXPECT_EQ(move_to(world, 3, 5).end, AddressEnd::moved);
+  EXPECT_EQ(world.drives[1]->node(), 4);
+  EXPECT_EQ(world.drives[2]->node(), 6);
+  for (const auto& text : world.sent) {
+    const auto frame = *can::parse_frame(text);
+    const bool of_it = frame.id == 0x603 || frame.id == 0x605 || text == "000#8103";
+    EXPECT_TRUE(of_it) << text;
+  }
+}
+
+TEST(Bitrate, IsReadAsPeopleWriteIt) {
+  for (const auto* text : {"500k", "500 kbit/s", "500000", "0.5M", "500 kbps"})
+    EXPECT_EQ(drive::parse_bitrate(text).value_or(0), 500'000U) << text;
+  EXPECT_EQ(drive::parse_bitrate("1M").value_or(0), 1'000'000U);
+  for (const auto* text : {"", "fast", "0", "2M", "-500k", "5k", "500x", "nan", "inf", "1e9", "k"})
+    EXPECT_FALSE(drive::parse_bitrate(text)) << text;
+}
+
+TEST(Bitrate, HasTheCodesOfTheManuals) {
+  struct Row {
+    const char* family;
+    std::uint32_t bitrate;
+    std::optional<std::int64_t> code;
+  };
+  const Row rows[] = {{"gsd600", 1'000'000, 8}, {"gsd600", 10'000, 0},   {"gsd600", 800'000, 7},
+                      {"da200", 1'000'000, 0},  {"da200", 20'000, 5},    {"da200", 800'000, {}},
+                      {"ts", 500'000, 500},     {"ts", 1'000'000, 1000}, {"ts", 50'000, {}},
+                      {"ts", 333'000, {}},      {"dm", 500'000, {}},     {"cia402", 500'000, {}},
+                      {"gsd600", 333'000, {}}};
+  for (const auto& row : rows) {
+    const auto profile = drive::load_profile(row.family, kFolders).value();
+    const auto code = drive::bitrate_code(profile, row.bitrate);
+    EXPECT_EQ(code ? std::optional(*code) : std::nullopt, row.code) << row.family << " " << row.bitrate;
+  }
+}
+
+}  // namespace
+}  // namespace servoctl::settings

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "can/bus.hpp"
+#include "drive/naming.hpp"
+#include "drive/profile.hpp"
+#include "drive/standard_objects.hpp"
+#include "session/session.hpp"
+#include "settings/address_change.hpp"
+#include "sim/sim_bus.hpp"
+#include "sim/sim_drive.hpp"
+#include "tests/show/audiences.hpp"
+#include "tests/source_dir.hpp"
+
+namespace servoctl::settings {
+
+/// What happens on a bus beside what is sent.
+struct BusHooks {
+  std::function<void(const can::Frame&)> before_send = {};
+  std::function<void(TimePoint)> on_time = {};
+  bool lost = false;  ///< Nothing is sent or received any more.
+};
+
+class HookedBus final : public can::Bus {
+ public:
+  HookedBus(sim::SimBus& bus, BusHooks& hooks, std::vector<std::string>& sent)
+      : bus_(&bus), hooks_(&hooks), sent_(&sent) {}
+
+  TimePoint now() const override { return bus_->now(); }
+  TimePoint next_event() const override { return bus_->next_event(); }
+  Result<void> send(const can::Frame& frame) override {
+    if (hooks_->before_send) hooks_->before_send(frame);
+    if (hooks_->lost) return fail(Errc::bus, "can0 is down");
+    sent_->push_back(can::to_string(frame));
+    return bus_->send(frame);
+  }
+  Result<std::optional<can::Frame>> receive(TimePoint deadline) override {
+    if (hooks_->on_time) hooks_->on_time(now());
+    if (hooks_->lost) return fail(Errc::bus, "can0 is down");
+    return bus_->receive(deadline);
+  }
+
+ private:
+  sim::SimBus* bus_;
+  BusHooks* hooks_;
+  std::vector<std::string>* sent_;
+};
+
+/// Drives of a family on a bus, with a desk.
+class AddressWorld {
+ public:
+  AddressWorld(const std::string& family, std::vector<std::uint8_t> nodes)
+      : profile(drive::load_profile(family, kFolders).value()) {
+    for (const auto node : nodes) add(node);
+    restart_session();
+  }
+  sim::SimDrive& add(std::uint8_t node) {
+    const auto key = std::to_string(drives.size() + 1);
+    drives.push_back(std::make_unique<sim::SimDrive>(profile, node, memory, key));
+    bus.attach(*drives.back());
+    return *drives.back();
+  }
+  void restart_session(std::unique_ptr<can::Bus> other = nullptr) {
+    if (!other) other = std::make_unique<HookedBus>(bus, hooks, sent);
+    session = std::make_unique<session::Session>(std::move(other), "can0", session::Options{});
+    desk = {};
+    desk.session = session.get();
+    desk.profile = &profile;
+    desk.audience = &willing;
+  }
+  std::uint64_t held(std::size_t drive, const std::string& name) const {
+    return load_le(drives[drive]->value(*drive::place_of(profile, name)));
+  }
+  std::size_t count(const std::string& frame) const {
+    return static_cast<std::size_t>(std::count(sent.begin(), sent.end(), frame));
+  }
+  std::string notices() const {
+    std::string out;
+    for (const auto& notice : desk.notices) out += notice + "\n";
+    return out;
+  }
+
+  drive::Profile profile;
+  sim::Memory memory;
+  sim::SimBus bus{sim::SimBus::Clock::virtual_time};
+  std::vector<std::unique_ptr<sim::SimDrive>> drives;
+  BusHooks hooks;
+  std::vector<std::string> sent;
+  std::unique_ptr<session::Session> session;
+  show::Willing willing;
+  show::Desk desk;
+};
+
+}  // namespace servoctl::settings
