@@ -51,7 +51,7 @@ std::string_view what_it_sends(const can::Frame& frame) {
   return service == canopen::kSdoAnswer ? "answers" : "sends PDOs or emergencies";
 }
 
-bool answers(const Result<Bytes>& answer) {
+bool has_answered(const Result<Bytes>& answer) {
   return answer || answer.error().code == Errc::sdo_abort || answer.error().code == Errc::protocol;
 }
 
@@ -74,7 +74,7 @@ Result<std::map<std::uint8_t, std::string>> nodes_in_use(Session& session,
     const OptionScope once(session, &Options::retries, 0U);
     const auto found = session.transfer(questions);
     for (std::size_t i = 0; i < found.size(); ++i) {
-      if (answers(found[i])) out[questions[i].node] = "answers";
+      if (has_answered(found[i])) out[questions[i].node] = "answers";
       if (!found[i] && (found[i].error().code == Errc::bus || found[i].error().code == Errc::interrupted))
         return fail(found[i].error());
     }
@@ -120,7 +120,7 @@ Result<void> wait_for_boot(Session& session, std::uint8_t from, std::uint8_t to,
     if (*waited || to == from) continue;
     const Hurry hurry(session, kProbe, 0);
     const auto there = session.upload(to, objects::kDeviceType);
-    if (answers(there)) break;
+    if (has_answered(there)) break;
     if (there.error().code == Errc::bus || there.error().code == Errc::interrupted)
       return fail(there.error());
   }
