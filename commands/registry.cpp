@@ -50,6 +50,10 @@ extern const Command kTorque;
 extern const Command kUnitsShow;
 extern const Command kUnitsLearn;
 extern const Command kUnitsForget;
+extern const Command kHeartbeatSet;
+extern const Command kHeartbeatConsume;
+extern const Command kHeartbeatShow;
+extern const Command kWatchdog;
 extern const Command kNmtStart;
 extern const Command kNmtStop;
 extern const Command kNmtPreop;
@@ -144,6 +148,10 @@ constexpr Named kNamed[] = {
     {"units show", &commands::kUnitsShow},
     {"units learn", &commands::kUnitsLearn},
     {"units forget", &commands::kUnitsForget},
+    {"heartbeat set", &commands::kHeartbeatSet},
+    {"heartbeat consume", &commands::kHeartbeatConsume},
+    {"heartbeat show", &commands::kHeartbeatShow},
+    {"watchdog", &commands::kWatchdog},
     {"nmt start", &commands::kNmtStart},
     {"nmt stop", &commands::kNmtStop},
     {"nmt preop", &commands::kNmtPreop},

@@ -14,7 +14,7 @@ _servoctl_scan() {
       *)
         case $command in
           '') command=$word ;;
-          param|cabinet|fault|units|nmt|state|pdo|test|sync|eds) command="$command $word" ;;
+          param|cabinet|fault|units|heartbeat|nmt|state|pdo|test|sync|eds) command="$command $word" ;;
         esac ;;
     esac
   done
@@ -84,11 +84,12 @@ _servoctl_scan() {
     return
   fi
   case $command in
-    '') source='=scan info status read write objects param backup cabinet diff verify restore clone address store defaults fault enable disable quick-stop mode jog move home torque units nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion' ;;
+    '') source='=scan info status read write objects param backup cabinet diff verify restore clone address store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion' ;;
     param) source='=list get set search explain' ;;
     cabinet) source='=init check show plan apply backup diff' ;;
     fault) source='=show list reset clear-history' ;;
     units) source='=show learn forget' ;;
+    heartbeat) source='=set consume show' ;;
     nmt) source='=start stop preop reset reset-comm watch' ;;
     state) source='=init preop safeop op' ;;
     pdo) source='=show map enable disable clear preset apply save watch send' ;;
@@ -120,6 +121,8 @@ _servoctl_scan() {
     'move') source='none' ;;
     'home') source='none' ;;
     'torque') source='none' ;;
+    'heartbeat set') source='none' ;;
+    'heartbeat consume') source='none' ;;
     'pdo map') source='none' ;;
     'pdo enable') source='none' ;;
     'pdo disable') source='none' ;;
@@ -141,7 +144,7 @@ _servoctl_scan() {
     'eds check') source='files' ;;
     'run') source='files' ;;
     'sim') source='none' ;;
-    'help') source='=scan info status read write objects param backup cabinet diff verify restore clone address store defaults fault enable disable quick-stop mode jog move home torque units nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion' ;;
+    'help') source='=scan info status read write objects param backup cabinet diff verify restore clone address store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion' ;;
     'completion') source='=bash zsh fish objects parameters families' ;;
   esac
   case $command in
@@ -168,6 +171,8 @@ _servoctl_scan() {
     'torque') options+=' --for --csv --limit --max-torque --max-following-error --window --turn --master-node --plot' ;;
     'units show') options+=' --turn' ;;
     'units learn') options+=' --speed --for --nameplate --max-torque --max-following-error --window --master-node --plot --csv' ;;
+    'heartbeat set') options+=' --keep --unlock' ;;
+    'heartbeat consume') options+=' --keep --unlock' ;;
     'nmt start') options+=' --wait' ;;
     'nmt stop') options+=' --wait' ;;
     'nmt preop') options+=' --wait' ;;

@@ -239,6 +239,14 @@ complete -c servoctl -n '__servoctl_in units learn' -l master-node -x -d 'node-I
 complete -c servoctl -n '__servoctl_in units learn' -l plot -d 'plot the samples over time at the end'
 complete -c servoctl -n '__servoctl_in units learn' -l csv -r -F -d 'write the samples to this file'
 complete -c servoctl -n '__servoctl_at units' -a forget -d 'Delete the kept counts per revolution'
+complete -c servoctl -n '__servoctl_at heartbeat' -a set -d 'Let drives send a heartbeat (1017h)'
+complete -c servoctl -n '__servoctl_in heartbeat set' -l keep -d 'make the values survive power-off'
+complete -c servoctl -n '__servoctl_in heartbeat set' -l unlock -d 'unlock by the family'\''s password, lock again after'
+complete -c servoctl -n '__servoctl_at heartbeat' -a consume -d 'Let drives watch the heartbeat of a node (1016h)'
+complete -c servoctl -n '__servoctl_in heartbeat consume' -l keep -d 'make the values survive power-off'
+complete -c servoctl -n '__servoctl_in heartbeat consume' -l unlock -d 'unlock by the family'\''s password, lock again after'
+complete -c servoctl -n '__servoctl_at heartbeat' -a show -d 'Show who sends heartbeats, and who watches whom'
+complete -c servoctl -n __servoctl_at -a watchdog -d 'Show what drives do when their master disappears'
 complete -c servoctl -n '__servoctl_at nmt' -a start -d 'Set nodes to operational: PDOs active'
 complete -c servoctl -n '__servoctl_in nmt start' -l wait -d 'wait until a heartbeat or the boot-up message confirms it'
 complete -c servoctl -n '__servoctl_at nmt' -a stop -d 'Set nodes to stopped: no PDO, no SDO'
@@ -399,13 +407,14 @@ complete -c servoctl -n '__servoctl_in run' -l frames -d 'with --dry-run: the fr
 complete -c servoctl -n '__servoctl_in run' -l check -d 'check all lines without a bus, run none'
 complete -c servoctl -n __servoctl_at -a sim -d 'Put simulated drives on a bus until Ctrl-C'
 complete -c servoctl -n __servoctl_at -a help -d 'Show the commands, or how one is used'
-complete -c servoctl -n '__servoctl_in help' -x -a 'scan info status read write objects param backup cabinet diff verify restore clone address store defaults fault enable disable quick-stop mode jog move home torque units nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion'
+complete -c servoctl -n '__servoctl_in help' -x -a 'scan info status read write objects param backup cabinet diff verify restore clone address store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion'
 complete -c servoctl -n __servoctl_at -a completion -d 'Print the completion script of a shell'
 complete -c servoctl -n '__servoctl_in completion' -x -a 'bash zsh fish objects parameters families'
 complete -c servoctl -n __servoctl_at -a param
 complete -c servoctl -n __servoctl_at -a cabinet
 complete -c servoctl -n __servoctl_at -a fault
 complete -c servoctl -n __servoctl_at -a units
+complete -c servoctl -n __servoctl_at -a heartbeat
 complete -c servoctl -n __servoctl_at -a nmt
 complete -c servoctl -n __servoctl_at -a state
 complete -c servoctl -n __servoctl_at -a pdo

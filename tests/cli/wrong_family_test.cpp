@@ -18,6 +18,9 @@ const std::map<std::string, std::string, std::less<>> kLines{
     {"fault clear-history", "fault clear-history"},
     {"fault reset", "fault reset"},
     {"fault show", "fault show"},
+    {"heartbeat consume", "heartbeat consume 2=300ms"},
+    {"heartbeat set", "heartbeat set 100ms"},
+    {"heartbeat show", "heartbeat show"},
     {"home", "home 1 --turn 10000"},
     {"info", "info"},
     {"jog", "jog 60rpm --turn 131072 --for 600ms"},
@@ -66,6 +69,7 @@ const std::map<std::string, std::string, std::less<>> kLines{
     {"torque", "torque 5% --for 60ms"},
     {"verify", "verify factory"},
     {"watch", "watch 0x6041 --for 20ms"},
+    {"watchdog", "watchdog"},
     {"write", "write 0x6060 1"},
     {"units learn", "units learn"},
     {"units show", "units show"},
@@ -83,7 +87,7 @@ const std::set<std::string_view> kByFile{"cabinet init",  "cabinet show",   "cab
 
 /// Refused on a read already: the answer would make sense for the family alone.
 const std::set<std::string_view> kAnswers{"backup", "diff",    "info",       "report",
-                                          "scope",  "test io", "units show", "verify"};
+                                          "scope",  "test io", "units show", "verify", "watchdog"};
 const std::set<std::string_view> kWaysOut{"disable", "quick-stop"};
 
 TEST_F(WrongFamily, TheTableHasEveryCommand) {

@@ -1,0 +1,192 @@
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "base/duration.hpp"
+#include "base/text.hpp"
+#include "command/command.hpp"
+#include "command/setting_options.hpp"
+#include "settings/heartbeats.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using namespace command;
+
+using report::Show;
+using report::Value;
+using session::Supervision;
+
+constexpr std::string_view kOnRing =
+    "there are no heartbeats on EtherCAT: `watchdog` shows what a drive does without its master";
+
+constexpr Parameter kSetParameters[] = {
+    {.name = "time", .help = "100ms, or off", .kind = Kind::text, .required = true},
+    kKeepOption,
+    kUnlockOption,
+};
+constexpr Parameter kConsumeParameters[] = {
+    {.name = "watch",
+     .help = "NODE=TIME, such as 3=300ms; NODE=off",
+     .kind = Kind::text,
+     .required = true,
+     .many = true},
+    kKeepOption,
+    kUnlockOption,
+};
+
+settings::WriteOptions write_options(const Arguments& arguments) {
+  return {.read_back = true, .keep = arguments.has("--keep"), .unlock = arguments.has("--unlock")};
+}
+
+Result<Value> write(Context& context, const Arguments& arguments, std::span<const settings::Change> changes) {
+  const auto options = write_options(arguments);
+  if (context.dry_run) return settings::planned_changes(context, changes, options);
+  return settings::write_changes(context, changes, options);
+}
+
+Result<void> check_set(Context&, const Arguments& arguments) {
+  const auto time = settings::parse_heartbeat_time(arguments.text("time"));
+  return time ? Result<void>() : fail(time.error());
+}
+
+Result<Value> run_set(Context& context, const Arguments& arguments) {
+  const auto time = settings::parse_heartbeat_time(arguments.text("time"));
+  if (!time) return fail(time.error());
+  std::vector<settings::Change> changes;
+  for (const auto node : context.nodes) {
+    auto change = settings::producer_change(context, node, *time);
+    if (!change) return fail(change.error());
+    changes.push_back(std::move(*change));
+  }
+  return write(context, arguments, changes);
+}
+
+Result<std::vector<settings::HeartbeatWatch>> watches_of(const Arguments& arguments) {
+  std::vector<settings::HeartbeatWatch> out;
+  for (const auto& word : arguments.all("watch")) {
+    const auto watch = settings::parse_heartbeat_watch(word);
+    if (!watch) return fail(watch.error());
+    out.push_back(*watch);
+  }
+  return out;
+}
+
+Result<void> check_consume(Context&, const Arguments& arguments) {
+  const auto watches = watches_of(arguments);
+  return watches ? Result<void>() : fail(watches.error());
+}
+
+Result<Value> run_consume(Context& context, const Arguments& arguments) {
+  const auto watches = watches_of(arguments);
+  if (!watches) return fail(watches.error());
+  std::vector<settings::Change> changes;
+  for (const auto node : context.nodes) {
+    auto some = settings::consumer_changes(context, node, *watches);
+    if (!some) return fail(some.error());
+    std::move(some->begin(), some->end(), std::back_inserter(changes));
+  }
+  return write(context, arguments, changes);
+}
+
+std::string time_text(Duration time) {
+  return time == Duration::zero() ? std::string("off") : to_string(time);
+}
+
+Value time_value(const std::optional<Duration>& time) {
+  if (!time) return {};
+  return std::chrono::duration_cast<std::chrono::milliseconds>(*time).count();
+}
+
+std::string watched_text(const Supervision& one) {
+  if (one.entries.empty()) return "none: it has no 1016h";
+  std::string out;
+  for (const auto& entry : one.entries)
+    if (entry.node != 0) append(out, fmt::format("node {} ({})", entry.node, to_string(entry.time)));
+  return out.empty() ? std::string("nobody") : out;
+}
+
+Value watched_value(const Supervision& one) {
+  if (one.entries.empty()) return {};
+  report::List out;
+  for (const auto& entry : one.entries)
+    if (entry.node != 0)
+      out.emplace_back(
+          report::Record{{"sub", entry.sub}, {"producer", entry.node}, {"ms", time_value(entry.time)}});
+  return Value(std::move(out));
+}
+
+std::string life_text(const Supervision& one) {
+  if (!one.guard_time || !one.life_time_factor) return "not there";
+  return time_text(one.life_time());
+}
+
+Result<Value> run_show(Context& context, const Arguments&) {
+  const auto found = session::read_supervision(*context.session, *context.profile, context.nodes);
+  report::Table table;
+  table.columns = {{"node"},
+                   {"heartbeat_text", "sends every", Show::text},
+                   {"heartbeat_ms", "", Show::json},
+                   {"watched_text", "watches", Show::text},
+                   {"watched", "", Show::json},
+                   {"life_text", "life guarding", Show::text},
+                   {"life_time_ms", "", Show::json}};
+  for (const auto& one : found) {
+    if (!one) context.errors.push_back(one.error());
+    if (!one) continue;
+    const bool guards = one->guard_time && one->life_time_factor;
+    table.rows.push_back({one->node, one->heartbeat ? time_text(*one->heartbeat) : "none: it has no 1017h",
+                          time_value(one->heartbeat), watched_text(*one), watched_value(*one),
+                          life_text(*one), guards ? time_value(one->life_time()) : Value()});
+  }
+  table.json_only = table.rows.empty();
+  return Value(std::move(table));
+}
+
+}  // namespace
+
+extern const Command kHeartbeatSet;
+const Command kHeartbeatSet{
+    .path = "heartbeat set",
+    .summary = "Let drives send a heartbeat (1017h)",
+    .details =
+        "Writes the producer heartbeat time and reads it back; `off` ends it. --keep makes it survive "
+        "power-off. A drive that sends heartbeats answers no node guarding (CiA 301). For example: heartbeat "
+        "set 100ms -n all.",
+    .parameters = kSetParameters,
+    .needs = Needs::node | Needs::dictionary | Needs::can,
+    .effect = Effect::writes,
+    .run = run_set,
+    .check = check_set,
+    .elsewhere = kOnRing,
+};
+
+extern const Command kHeartbeatConsume;
+const Command kHeartbeatConsume{
+    .path = "heartbeat consume",
+    .summary = "Let drives watch the heartbeat of a node (1016h)",
+    .details =
+        "Writes the entry of the node, or the first that is free, and reads it back; NODE=off frees it. The "
+        "drive watches from the first heartbeat on; what it does when they end is shown by `watchdog`. A time "
+        "no longer than the period of the node is refused, and so is a family without 1016h. For example: "
+        "heartbeat consume 3=300ms -n 1.",
+    .parameters = kConsumeParameters,
+    .needs = Needs::node | Needs::dictionary | Needs::can,
+    .effect = Effect::writes,
+    .run = run_consume,
+    .check = check_consume,
+    .elsewhere = kOnRing,
+};
+
+extern const Command kHeartbeatShow;
+const Command kHeartbeatShow{
+    .path = "heartbeat show",
+    .summary = "Show who sends heartbeats, and who watches whom",
+    .details = "Reads 1017h, 1016h, and 100Ch and 100Dh (life guarding) of each node.",
+    .parameters = {},
+    .needs = Needs::node | Needs::dictionary | Needs::can,
+    .effect = Effect::reads,
+    .run = run_show,
+    .elsewhere = kOnRing,
+};
+
+}  // namespace servoctl::commands
