@@ -91,7 +91,7 @@ Result<Duration> parse_heartbeat_time(std::string_view text) {
   if (!time) return time;
   if (*time > kLongest || *time % std::chrono::milliseconds(1) != Duration::zero())
     return fail(Errc::usage, fmt::format("'{}' is no time of a heartbeat", text),
-                "whole milliseconds, up to 65535ms; `off` for none");
+                "whole milliseconds, up to 65535ms; off for none");
   return time;
 }
 
