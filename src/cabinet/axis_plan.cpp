@@ -9,6 +9,7 @@
 #include "cabinet/axis_values.hpp"
 #include "session/pdo_setup.hpp"
 #include "session/snapshot.hpp"
+#include "session/state_pause.hpp"
 #include "settings/comparison.hpp"
 #include "settings/selection.hpp"
 
@@ -58,6 +59,9 @@ void drop_unused_entries(std::map<ObjectAddress, Bytes>& values) {
            load_le(count->second) < object.sub;
   });
 }
+
+/// PDO mappings (1600h to 1BFFh), and what the sync managers have of them (1C00h to 1C3Fh).
+constexpr std::pair<std::uint16_t, std::uint16_t> kProcessData{0x1600, 0x1C3F};
 
 /// A look at one axis.
 class AxisPlanner {
@@ -147,13 +151,29 @@ class AxisPlanner {
     return {};
   }
 
+  /// Of a slave in OP: its PDOs and their assignment are those with which the process data began.
+  Result<bool> has_process_data() {
+    if (desk_->session->ethercat() == nullptr) return false;
+    const auto state = session::ask_state(*desk_->session, axis_->node);
+    if (!state) return fail(state.error());
+    if (*state != session::NodeState::operational) return false;
+    desk_->notices.push_back(fmt::format(
+        "node {} is in OP: its PDOs are those of the process data, and not held against the factory's",
+        axis_->node));
+    return true;
+  }
+
   Result<void> read_unlisted() {
     const auto& profile = *desk_->profile;
+    const auto process_data = has_process_data();
+    if (!process_data) return fail(process_data.error());
     const auto wanted = [&](const drive::DriveSetting& setting) {
       const auto object = setting.entry->address;
       const bool mapped = is_pdo_mapping(object.index) && listed_.count({object.index, 0}) > 0;
-      return listed_.count(object) == 0 && !mapped && !settings::is_address(&profile, object) &&
-             (!part_ || part_(object));
+      const bool of_process_data =
+          *process_data && object.index >= kProcessData.first && object.index <= kProcessData.second;
+      return listed_.count(object) == 0 && !mapped && !of_process_data &&
+             !settings::is_address(&profile, object) && (!part_ || part_(object));
     };
     const std::uint8_t nodes[] = {axis_->node};
     const auto snapshot = session::take_snapshots(*desk_->session, profile, nodes, wanted).front();

@@ -62,6 +62,9 @@ Result<session::Session*> RunningLine::open_bus() {
 }
 
 Result<const cabinet::Cabinet*> RunningLine::cabinet() {
+  if (settings_->force_family)
+    return fail(Errc::usage, "--force-family is for lines that name a family with -d",
+                "the cabinet file says what each axis is: change its `family` there");
   auto found = shell_->cabinet(*settings_);
   if (found && *found == nullptr)
     return fail(Errc::usage, "there is no cabinet file",

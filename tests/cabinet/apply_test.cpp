@@ -33,18 +33,7 @@ TEST(CabinetApply, MakesFortyAxesAsTheFileSaysAndThenDoesNothing) {
 
 TEST(CabinetApply, MakesPdosAndHeartbeatsOfOperationalDrives) {
   Fleet fleet(10);
-  for (auto& axis : fleet.cabinet.axes) {
-    axis.heartbeat_at = axis.at;
-    if (family_of(axis.family).dictionary.find({0x1017, 0}) != nullptr) axis.heartbeat = 500ms;
-    const auto& presets = family_of(axis.family).rules.pdo.presets;
-    if (!presets.empty()) axis.pdos.preset = presets.back().name;
-    drive::PdoRecipe recipe;
-    recipe.pdo = "TPDO1";
-    recipe.type = 1;
-    recipe.valid = true;
-    if (presets.empty()) axis.pdos.recipes = {recipe};
-    axis.pdos.at = axis.at;
-  }
+  fleet.give_pdos_and_heartbeats();
   fleet.start_all();
   const auto looks = fleet.look();
   bool state = false;

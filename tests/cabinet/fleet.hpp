@@ -4,19 +4,17 @@
 
 #include <fmt/format.h>
 #include <unistd.h>
-#include <atomic>
 #include <filesystem>
 #include <list>
 #include <map>
 #include <memory>
-#include <random>
 #include <string>
 #include <vector>
 
 #include "cabinet/apply.hpp"
+#include "fleet_bus.hpp"
 #include "session/can_network.hpp"
 #include "settings/restore_journal.hpp"
-#include "sim/sim_bus.hpp"
 #include "sim/sim_drive.hpp"
 #include "tests/show/audiences.hpp"
 #include "tests/source_dir.hpp"
@@ -39,81 +37,6 @@ inline const drive::Profile& family_of(const std::string& family) {
              ? found->second
              : all.emplace(family, drive::load_profile(family, drive_data()).value()).first->second;
 }
-
-/// What goes wrong on one bus; numbers are those of the SDO requests that are sent, -1: never.
-struct BusTrouble {
-  double lose = 0;     ///< Probability, per frame, either way.
-  int reset_at = -1;   ///< The drive that is asked restarts.
-  int silent_at = -1;  ///< It falls silent.
-  int abort_at = -1;   ///< It refuses.
-  int cancel_at = -1;  ///< Ctrl-C, on all buses.
-  int kill_at = -1;    ///< The process ends: nothing is sent any more, by anybody.
-  int lost_at = -1;    ///< The bus is lost.
-  unsigned seed = 1;
-};
-
-/// What a FleetBus throws where the process is to end.
-struct ProcessEnds {};
-
-class FleetBus final : public can::Bus {
- public:
-  FleetBus(sim::SimBus& bus, std::map<std::uint8_t, sim::SimDrive*> drives, const BusTrouble& trouble)
-      : bus_(&bus), drives_(std::move(drives)), trouble_(trouble), random_(trouble.seed) {}
-
-  TimePoint now() const override { return bus_->now(); }
-  TimePoint next_event() const override { return bus_->next_event(); }
-  Result<void> send(const can::Frame& frame) override {
-    if (killed_) throw ProcessEnds{};
-    if (is_lost()) return fail(Errc::bus, "the bus is lost");
-    const bool request = frame.id > 0x600 && frame.id < 0x680;
-    if (!request) return bus_->send(frame);
-    const auto node = static_cast<std::uint8_t>(frame.id & 0x7FU);
-    const int number = requests++;
-    if (number == trouble_.kill_at) {
-      killed_ = true;
-      throw ProcessEnds{};
-    }
-    if (number == trouble_.silent_at && drives_.count(node) > 0)
-      drives_.at(node)->wire_faults().silent = true;
-    if (number == trouble_.reset_at) {
-      auto reset = *can::parse_frame("000#8100");
-      reset.data[1] = node;
-      (void)bus_->send(reset);
-    }
-    if (number == trouble_.abort_at) {
-      auto refusal = *can::parse_frame("580#8000000000000008");
-      refusal.id += node;
-      std::copy_n(frame.data.begin() + 1, 3, refusal.data.begin() + 1);
-      refusal_ = refusal;
-      return {};
-    }
-    if (chance(trouble_.lose)) return {};
-    return bus_->send(frame);
-  }
-  Result<std::optional<can::Frame>> receive(TimePoint deadline) override {
-    if (is_lost()) return fail(Errc::bus, "the bus is lost");
-    if (refusal_) return std::exchange(refusal_, std::nullopt);
-    for (;;) {
-      auto frame = bus_->receive(deadline);
-      if (!frame || !*frame || !chance(trouble_.lose)) return frame;
-    }
-  }
-  bool is_cancelled() const { return trouble_.cancel_at >= 0 && requests > trouble_.cancel_at; }
-
-  std::atomic<int> requests{0};  ///< Another bus asks it as well.
-
- private:
-  bool is_lost() const { return trouble_.lost_at >= 0 && requests > trouble_.lost_at; }
-  bool chance(double probability) {
-    return probability > 0 && std::bernoulli_distribution(probability)(random_);
-  }
-  sim::SimBus* bus_;
-  std::map<std::uint8_t, sim::SimDrive*> drives_;
-  BusTrouble trouble_;
-  std::mt19937 random_;
-  std::optional<can::Frame> refusal_;
-  bool killed_ = false;
-};
 
 /// What the axes of a family are to hold: parameters and objects that a restart does and does not forget.
 inline const std::map<std::string, std::vector<std::pair<std::string, std::string>>>& wishes() {
@@ -183,6 +106,21 @@ class Fleet {
   }
   session::Session& session(std::size_t axis) { return *line_of(cabinet.axes[axis]).session; }
   sim::SimDrive& drive(std::size_t axis) { return *drives_[axis]; }
+  /// Each axis is to have a heartbeat and PDOs of its own as well, as far as its family has such.
+  void give_pdos_and_heartbeats() {
+    for (auto& axis : cabinet.axes) {
+      axis.heartbeat_at = axis.at;
+      if (family_of(axis.family).dictionary.find({0x1017, 0}) != nullptr) axis.heartbeat = 500ms;
+      const auto& presets = family_of(axis.family).rules.pdo.presets;
+      if (!presets.empty()) axis.pdos.preset = presets.back().name;
+      drive::PdoRecipe recipe;
+      recipe.pdo = "TPDO1";
+      recipe.type = 1;
+      recipe.valid = true;
+      if (presets.empty()) axis.pdos.recipes = {recipe};
+      axis.pdos.at = axis.at;
+    }
+  }
   std::size_t size() const { return drives_.size(); }
   int requests(std::size_t bus = 0) const {
     return std::next(lines_.begin(), static_cast<long>(bus))->bus->requests;

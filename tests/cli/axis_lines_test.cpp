@@ -155,6 +155,22 @@ TEST_F(AxisLines, AnotherBusLetsNoDriveGo) {
   EXPECT_TRUE(says("feeder1")) << all();
 }
 
+TEST_F(AxisLines, APlanOfADriveInOpDoesNotListThePdosOfTheProcessData) {
+  ASSERT_EQ(run("write 0x1C12:0 0 -n table"), 0) << all();
+  EXPECT_EQ(run("cabinet plan --axis table"), 0) << all();
+  EXPECT_TRUE(says("0x1C12")) << "in PRE-OP it is a setting like others: " << all();
+  ASSERT_EQ(run("state op -n table"), 0) << all();
+  EXPECT_EQ(run("cabinet plan --axis table"), 0) << all();
+  EXPECT_FALSE(says("0x1C12")) << all();
+  EXPECT_TRUE(says("table is in OP: its PDOs are those of the process data")) << all();
+  EXPECT_EQ(run("state preop -n table"), 0) << all();
+}
+
+TEST_F(AxisLines, CabinetCommandsHoldDrivesAgainstTheFileAndNothingElse) {
+  EXPECT_EQ(run("cabinet plan --force-family"), 2) << all();
+  EXPECT_TRUE(says("change its `family` there")) << all();
+}
+
 TEST_F(AxisLines, TheBusesOfTheFileAreNamesAndDefaults) {
   EXPECT_EQ(run("scan --json"), 0) << all();
   EXPECT_TRUE(says(R"("bus":"coe:sim:sv2@1","axis":"table")")) << all();
