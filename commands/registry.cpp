@@ -27,6 +27,7 @@ extern const Command kCabinetShow;
 extern const Command kCabinetPlan;
 extern const Command kCabinetApply;
 extern const Command kCabinetBackup;
+extern const Command kCabinetSwap;
 extern const Command kCabinetDiff;
 extern const Command kDiff;
 extern const Command kVerify;
@@ -125,6 +126,7 @@ constexpr Named kNamed[] = {
     {"cabinet plan", &commands::kCabinetPlan},
     {"cabinet apply", &commands::kCabinetApply},
     {"cabinet backup", &commands::kCabinetBackup},
+    {"cabinet swap", &commands::kCabinetSwap},
     {"cabinet diff", &commands::kCabinetDiff},
     {"diff", &commands::kDiff},
     {"verify", &commands::kVerify},

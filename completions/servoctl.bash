@@ -9,7 +9,7 @@ _servoctl_scan() {
       continue
     fi
     case $word in
-      --bus|-b|--node|-n|--drive|-d|--cabinet|--timeout|--retries|--output|-o|--lang|--trace|--type|--to|--transfer|--from|--format|--only|--family|--name|--for|--axis|--bitrate|--plan|--wait|--turn|--turns|--accel|--csv|--limit|--max-torque|--max-following-error|--window|--master-node|--speed|--search|--offset|--within|--nameplate|--guard|--life|--inhibit|--event|--cob-id|--sync-start|--count|--longest|--junit|--expect|--tolerance|--stop-within|--repeat|--spread|--encoder|--title|--tests|--period|--counter|--every|--svg|--service|--object|--var) skip=$word ;;
+      --bus|-b|--node|-n|--drive|-d|--cabinet|--timeout|--retries|--output|-o|--lang|--trace|--type|--to|--transfer|--from|--format|--only|--family|--name|--for|--axis|--backup|--wait|--bitrate|--plan|--turn|--turns|--accel|--csv|--limit|--max-torque|--max-following-error|--window|--master-node|--speed|--search|--offset|--within|--nameplate|--guard|--life|--inhibit|--event|--cob-id|--sync-start|--count|--longest|--junit|--expect|--tolerance|--stop-within|--repeat|--spread|--encoder|--title|--tests|--period|--counter|--every|--svg|--service|--object|--var) skip=$word ;;
       -*) ;;
       *)
         case $command in
@@ -39,9 +39,10 @@ _servoctl_scan() {
       --name) source='none' ;;
       --for) source='none' ;;
       --axis) source='none' ;;
+      --backup) source='files' ;;
+      --wait) source='none' ;;
       --bitrate) source='none' ;;
       --plan) source='files' ;;
-      --wait) source='none' ;;
       --turn) source='none' ;;
       --turns) source='none' ;;
       --accel) source='none' ;;
@@ -86,7 +87,7 @@ _servoctl_scan() {
   case $command in
     '') source='=scan info status read write objects param backup cabinet diff verify restore clone address store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion' ;;
     param) source='=list get set search explain' ;;
-    cabinet) source='=init check show plan apply backup diff' ;;
+    cabinet) source='=init check show plan apply backup swap diff' ;;
     fault) source='=show list reset clear-history' ;;
     units) source='=show learn forget' ;;
     heartbeat) source='=set consume show' ;;
@@ -108,6 +109,7 @@ _servoctl_scan() {
     'cabinet init') source='files' ;;
     'cabinet check') source='files' ;;
     'cabinet show') source='none' ;;
+    'cabinet swap') source='none' ;;
     'cabinet diff') source='files' ;;
     'diff') source='files' ;;
     'verify') source='files' ;;
@@ -159,6 +161,7 @@ _servoctl_scan() {
     'cabinet plan') options+=' --axis --only --no-unlisted' ;;
     'cabinet apply') options+=' --axis --only --no-keep --unlock --all-or-nothing --resume' ;;
     'cabinet backup') options+=' --axis' ;;
+    'cabinet swap') options+=' --from --backup --wait --no-keep --unlock --resume' ;;
     'diff') options+=' --batch --skip-invalid' ;;
     'verify') options+=' --skip-invalid' ;;
     'restore') options+=' --only --with-address --no-rollback --force --skip-invalid --keep --unlock --resume' ;;

@@ -16,7 +16,7 @@ function __servoctl_path # the words that are neither options nor their values
     for word in (commandline -opc)[2..]
         if test $skip = 1
             set skip 0
-        else if contains -- $word --bus -b --node -n --drive -d --cabinet --timeout --retries --output -o --lang --trace --type --to --transfer --from --format --only --family --name --for --axis --bitrate --plan --wait --turn --turns --accel --csv --limit --max-torque --max-following-error --window --master-node --speed --search --offset --within --nameplate --guard --life --inhibit --event --cob-id --sync-start --count --longest --junit --expect --tolerance --stop-within --repeat --spread --encoder --title --tests --period --counter --every --svg --service --object --var
+        else if contains -- $word --bus -b --node -n --drive -d --cabinet --timeout --retries --output -o --lang --trace --type --to --transfer --from --format --only --family --name --for --axis --backup --wait --bitrate --plan --turn --turns --accel --csv --limit --max-torque --max-following-error --window --master-node --speed --search --offset --within --nameplate --guard --life --inhibit --event --cob-id --sync-start --count --longest --junit --expect --tolerance --stop-within --repeat --spread --encoder --title --tests --period --counter --every --svg --service --object --var
             set skip 1
         else if not string match -q -- '-*' $word
             set path $path $word
@@ -131,6 +131,13 @@ complete -c servoctl -n '__servoctl_in cabinet apply' -l all-or-nothing -d 'if o
 complete -c servoctl -n '__servoctl_in cabinet apply' -l resume -d 'resume the axes whose apply was interrupted'
 complete -c servoctl -n '__servoctl_at cabinet' -a backup -d 'Save the settings of all axes to a dated folder'
 complete -c servoctl -n '__servoctl_in cabinet backup' -l axis -x -d 'these axes or groups only: feeder,lift (default: all)'
+complete -c servoctl -n '__servoctl_at cabinet' -a swap -d 'Put a new drive into the place of an axis'
+complete -c servoctl -n '__servoctl_in cabinet swap' -l from -x -d 'node at which the new drive is, often 1'
+complete -c servoctl -n '__servoctl_in cabinet swap' -l backup -r -F -d 'restore all of this folder of `cabinet backup`'
+complete -c servoctl -n '__servoctl_in cabinet swap' -l wait -x -d 'how long to wait for a drive that is to be switched off and on'
+complete -c servoctl -n '__servoctl_in cabinet swap' -l no-keep -d 'write working values only; lost at power-off'
+complete -c servoctl -n '__servoctl_in cabinet swap' -l unlock -d 'unlock by the family'\''s password, lock again after'
+complete -c servoctl -n '__servoctl_in cabinet swap' -l resume -d 'resume what was interrupted while settings were written'
 complete -c servoctl -n '__servoctl_at cabinet' -a diff -d 'Compare two cabinet files, or backups of all axes'
 complete -c servoctl -n '__servoctl_in cabinet diff' -r -F
 complete -c servoctl -n '__servoctl_in cabinet diff' -r -F

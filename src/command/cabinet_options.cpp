@@ -41,4 +41,11 @@ Result<std::vector<cabinet::Station>> open_stations(Context& context, const cabi
   return out;
 }
 
+cabinet::Station open_station(Context& context, const cabinet::Cabinet& cabinet, const cabinet::Axis& axis) {
+  std::map<std::string, Result<session::Session*>> opened;
+  cabinet::Station out{&axis};
+  if (const auto there = fill(context, cabinet, opened, out); !there) out.away = there.error();
+  return out;
+}
+
 }  // namespace servoctl::command

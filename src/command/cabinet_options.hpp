@@ -20,4 +20,7 @@ Result<std::vector<const cabinet::Axis*>> chosen_axes(const cabinet::Cabinet& ca
 Result<std::vector<cabinet::Station>> open_stations(Context& context, const cabinet::Cabinet& cabinet,
                                                     const Arguments& arguments);
 
+/// The same for one axis.
+cabinet::Station open_station(Context& context, const cabinet::Cabinet& cabinet, const cabinet::Axis& axis);
+
 }  // namespace servoctl::command

@@ -102,6 +102,7 @@ const std::map<std::string, std::string> kSamples{
     {"cabinet show", "cabinet show --cabinet DIR/cabinet.toml"},
     {"cabinet plan", "cabinet plan --cabinet DIR/cabinet.toml"},
     {"cabinet apply", "cabinet apply --cabinet DIR/cabinet.toml -y"},
+    {"cabinet swap", "cabinet swap a1 --from 9 --cabinet DIR/cabinet.toml -y"},
     {"cabinet backup", "cabinet backup --cabinet DIR/cabinet.toml"},
     {"cabinet diff", "cabinet diff DIR/cabinet.toml DIR/cabinet.toml"},
     {"eds check", "eds check EDS"},

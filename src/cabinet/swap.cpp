@@ -1,0 +1,228 @@
+#include "cabinet/swap.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "cabinet/axis_identity.hpp"
+#include "cabinet/axis_needs.hpp"
+#include "session/scan.hpp"
+#include "settings/restoring.hpp"
+#include "show/audience.hpp"
+
+namespace servoctl::cabinet {
+namespace {
+
+using report::Record;
+using report::Show;
+using report::Value;
+using settings::AddressEnd;
+
+std::string number_text(const std::optional<std::uint32_t>& serial) {
+  return serial ? fmt::format("{} (0x{:08X})", *serial, *serial) : std::string("not known");
+}
+
+/// One new drive on its way into the cabinet.
+class Swapping {
+ public:
+  Swapping(show::Desk& desk, const Cabinet& cabinet, const Station& station, const SwapOptions& options)
+      : line_(&desk), cabinet_(cabinet), station_(station), options_(&options), axis_(*station.axis) {
+    desk_ = desk_at(desk, station);
+    desk_.audience = desk.audience;
+  }
+
+  Result<Value> run() {
+    const auto done = carry_out();
+    for (auto& notice : desk_.notices) line_->notices.push_back(of_axis(axis_, notice));
+    for (auto& error : desk_.errors) line_->errors.push_back(of_axis(axis_, std::move(error)));
+    if (!done) return fail(of_axis(axis_, done.error()));
+    return answer();
+  }
+
+ private:
+  Result<void> carry_out() {
+    if (const auto found = find(); !found) return found;
+    if (const auto fits = hold(); !fits) return fits;
+    if (at_ != axis_.node) {
+      const auto moved = move();
+      if (!moved || desk_.dry_run) return moved;
+    }
+    if (const auto put = options_->backup.empty() ? apply() : restore(); !put) return put;
+    if (!desk_.dry_run) tell_rest();
+    return {};
+  }
+
+  /// Where the new drive is: one that has been moved already is not looked for at its old node.
+  Result<void> find() {
+    at_ = options_->from.value_or(axis_.node);
+    if (at_ == axis_.node) return {};
+    const std::uint8_t both[] = {at_, axis_.node};
+    const auto found = session::scan(*desk_.session, both);
+    if (!found) return fail(found.error());
+    const auto is_there = [&](std::uint8_t node) {
+      return std::any_of(found->begin(), found->end(), [&](const auto& one) { return one.node == node; });
+    };
+    if (is_there(at_) && is_there(axis_.node))
+      return fail(drive_error(
+          Errc::refused, axis_.node,
+          fmt::format("the place of {} is taken, and the new drive is at node {}", axis_.name, at_),
+          "take the old drive off the bus; `scan --long` shows both"));
+    if (!is_there(at_)) at_ = axis_.node;
+    return {};
+  }
+
+  Result<void> hold() {
+    auto there = axis_;
+    there.node = at_;
+    there.serial.reset();
+    auto identity = hold_axis_identity(desk_, there, options_->apply.choice.families);
+    if (!identity) return fail(identity.error());
+    identity_ = std::move(*identity);
+    if (const auto own = refuse_listed(); !own) return own;
+    const bool same = axis_.serial && identity_.serial == axis_.serial;
+    desk_.tell(fmt::format("{}: a {} at node {}, serial number {}; the file says {}{}\n", axis_.name,
+                           axis_.family, at_, number_text(identity_.serial),
+                           axis_.serial ? number_text(axis_.serial) : "none",
+                           same ? ": the drive that was there" : ""));
+    return {};
+  }
+
+  /// A drive that has a place in the cabinet already is not taken out of it.
+  Result<void> refuse_listed() const {
+    const auto* const at_node = at_ == axis_.node ? nullptr : cabinet_.at(axis_.bus, at_);
+    for (const auto& other : cabinet_.axes) {
+      if (other.name == axis_.name) continue;
+      const bool has_serial = identity_.serial.value_or(0) != 0;
+      const bool is_it = has_serial && other.serial == identity_.serial;
+      const bool may_be = &other == at_node && !(has_serial && other.serial);
+      if (!is_it && !may_be) continue;
+      return fail(drive_error(
+          Errc::refused, at_,
+          is_it ? fmt::format("its serial number is that of axis {} in the file", other.name)
+                : fmt::format("the file has axis {} there, and nothing tells that this is another drive",
+                              other.name),
+          is_it ? "is it the new drive? `cabinet plan` shows who is where"
+                : "`serial` of both in the file tells them apart; `address` moves a drive by its node"));
+    }
+    return {};
+  }
+
+  Result<void> move() {
+    const auto change = settings::plan_address(desk_, at_, {.node = axis_.node, .serial = identity_.serial});
+    if (!change) return fail(change.error());
+    const std::uint8_t to[] = {axis_.node};
+    if (const auto free = settings::refuse_taken(*desk_.session, to); !free) return free;
+    if (desk_.dry_run) {
+      auto frames = settings::planned_address(desk_, std::span(&*change, 1), options_->address.unlock);
+      if (!frames) return fail(frames.error());
+      settings_ = std::move(*frames);
+      return {};
+    }
+    if (const auto agreed = desk_.confirm(fmt::format(
+            "Put the drive at node {} into the place of {}, node {}?", at_, axis_.name, axis_.node));
+        !agreed)
+      return agreed;
+    const auto outcome = settings::change_address(desk_, *change, options_->address);
+    moved_ = settings::text_of(outcome.end);
+    if (outcome.error) return fail(*outcome.error);
+    if (outcome.end != AddressEnd::moved)
+      return fail(drive_error(
+          Errc::negative, at_, fmt::format("it is node {} when it was switched off and on", axis_.node),
+          "switch it off and on, then repeat the line: it goes on from there; --wait 5min "
+          "waits for it"));
+    return {};
+  }
+
+  /// The file as it will be: with the serial number of the new drive.
+  Result<void> apply() {
+    for (auto& axis : cabinet_.axes)
+      if (axis.name == axis_.name)
+        axis.serial = identity_.serial && axis.serial ? identity_.serial : std::nullopt;
+    auto station = station_;
+    station.axis = cabinet_.axis(axis_.name);
+    const Station stations[] = {station};
+    show::Desk desk = desk_at(desk_, station);
+    desk.audience = desk_.audience;
+    auto done = apply_cabinet(desk, cabinet_, stations, options_->apply);
+    take_over(desk);
+    if (!done) return fail(done.error());
+    settings_ = std::move(*done);
+    return {};
+  }
+
+  Result<void> restore() {
+    const auto file = options_->backup / (axis_.name + ".json");
+    const auto backup = settings::read_backup(file);
+    if (!backup) return fail(backup.error());
+    settings::RestoringOptions how;
+    how.keep = options_->apply.keep && can_be_told_to_keep(*desk_.profile);
+    how.unlock = options_->apply.unlock && has_password(*desk_.profile);
+    how.resume = options_->apply.resume;
+    auto done =
+        settings::put_into(desk_, *backup, file.string(), axis_.node, before_file(cabinet_, axis_), how);
+    if (!done) return fail(done.error());
+    settings_ = std::move(done->answer);
+    return {};
+  }
+
+  void take_over(show::Desk& desk) {
+    std::move(desk.notices.begin(), desk.notices.end(), std::back_inserter(desk_.notices));
+    std::move(desk.errors.begin(), desk.errors.end(), std::back_inserter(desk_.errors));
+  }
+
+  /// What a person has still to do.
+  void tell_rest() {
+    if (axis_.serial && identity_.serial && axis_.serial != identity_.serial)
+      desk_.notices.push_back(
+          fmt::format("in {}, [axis.{}]: change `serial` to \"0x{:08X}\"; until then `plan` and "
+                      "`apply` refuse the new drive",
+                      cabinet_.file.filename().string(), axis_.name, *identity_.serial));
+    desk_.notices.push_back(fmt::format(
+        "axis {}: the encoder's offset and the home position are not among the settings: `home` it, "
+        "and check the direction and the limits before it runs",
+        axis_.name));
+    if (!desk_.profile->rules.learn.speed.empty())
+      desk_.notices.push_back(
+          fmt::format("axis {}: counts that `units learn` measured belong to the old drive", axis_.name));
+    if (options_->backup.empty())
+      desk_.notices.push_back(fmt::format(
+          "axis {}: settings that are not in the file are as the new drive has them: `--backup DIR` restores all "
+          "that were saved",
+          axis_.name));
+  }
+
+  Value answer() {
+    if (desk_.dry_run) return std::move(settings_);
+    Record out{{"axis", axis_.name},
+               {"node", axis_.node},
+               {"family", axis_.family},
+               {"serial_before", axis_.serial ? Value(*axis_.serial) : Value(), Show::everywhere,
+                "serial in the file"},
+               {"serial", identity_.serial ? Value(*identity_.serial) : Value(), Show::everywhere,
+                "serial of the drive"},
+               {"from", at_},
+               {"address", moved_.empty() ? Value("as it is to be") : Value(moved_)},
+               {"settings", std::move(settings_)}};
+    return Value(std::move(out));
+  }
+
+  show::Desk* line_;
+  show::Desk desk_;
+  Cabinet cabinet_;
+  Station station_;
+  const SwapOptions* options_;
+  Axis axis_;
+  std::uint8_t at_ = 0;
+  session::Identity identity_;
+  std::string moved_;
+  Value settings_;
+};
+
+}  // namespace
+
+Result<Value> swap_axis(show::Desk& desk, const Cabinet& cabinet, const Station& station,
+                        const SwapOptions& options) {
+  if (station.away) return fail(of_axis(*station.axis, *station.away));
+  return Swapping(desk, cabinet, station, options).run();
+}
+
+}  // namespace servoctl::cabinet
