@@ -5,6 +5,7 @@
 #include "base/calendar.hpp"
 #include "base/file.hpp"
 #include "base/text.hpp"
+#include "cabinet/cabinet.hpp"
 #include "command/command.hpp"
 #include "command/output_form.hpp"
 #include "command/registry.hpp"
@@ -153,6 +154,14 @@ class Collection {
     return out;
   }
 
+  std::string title_of(std::uint8_t node) const {
+    for (const auto* axis : context_->axes)
+      if (axis->node == node)
+        return say(fmt::format("{} (node {})", axis->name, node),
+                   fmt::format("{}（节点 {}）", axis->name, node));
+    return say(fmt::format("Node {}", node), fmt::format("节点 {}", node));
+  }
+
   Result<trial::DriveReport> of_drive(std::uint8_t node) {
     struct Wanted {
       std::string_view id;
@@ -167,7 +176,7 @@ class Collection {
         {"settings", "Settings that differ from factory values", "与出厂值不同的设置", "verify"},
         {"pdos", "Process data (PDO)", "过程数据 (PDO)", "pdo show"},
     };
-    trial::DriveReport out{node, say(fmt::format("Node {}", node), fmt::format("节点 {}", node)), {}, {}};
+    trial::DriveReport out{node, title_of(node), {}, {}};
     Arguments factory;
     factory.add("file", "factory");
     for (const auto& wanted : kParts) {

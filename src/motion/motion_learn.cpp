@@ -6,7 +6,7 @@
 #include "base/number.hpp"
 #include "drive/standard_objects.hpp"
 #include "motion/motion_kinds.hpp"
-#include "session/option_scope.hpp"
+#include "motion/speed_monitor.hpp"
 
 namespace servoctl::motion {
 namespace {
@@ -16,7 +16,6 @@ constexpr Duration kSpeedSettling = std::chrono::milliseconds(800);
 /// The end of that time, by which the speed is judged.
 constexpr Duration kJudged = std::chrono::milliseconds(250);
 constexpr Duration kRest = std::chrono::milliseconds(1500);
-constexpr double kRestRpm = 3;        ///< That a monitor may show at rest.
 constexpr double kNoise = 5;          ///< rpm that a monitor may show beyond what was asked.
 constexpr double kTooFast = 1.5;      ///< Of the speed that was asked.
 constexpr double kSteps = 5;          ///< Steps of the monitor that show a speed well enough to go by,
@@ -34,7 +33,7 @@ class Learning {
         learn_(&learn),
         first_(first),
         fastest_(motion.fastest()),
-        step_(std::abs(rpm_of(Bytes(size_of_monitor(), 0), 1))) {}
+        monitor_(motion, learn) {}
 
   Result<void> run() {
     if (const auto found = find_speed(); !found) return found;
@@ -45,22 +44,12 @@ class Learning {
     return rest();
   }
   Result<TurnMeasurement> measurement() const {
-    auto out = measure_turn(looks_, step_);
+    auto out = measure_turn(looks_, monitor_.step());
     if (!out) return fail(motion_->error(out.error().code, out.error().message, out.error().hint));
     return out;
   }
 
  private:
-  std::size_t size_of_monitor() const {
-    return od::size_of(motion_->units().meaning(learn_->monitor).type).value_or(4);
-  }
-  /// What the monitor shows in these bytes, or in as many with a number of its own.
-  double rpm_of(Bytes data, std::uint64_t number) const {
-    if (number != 0) data = store_le(number, data.size());
-    const auto value = motion_->units().physical(learn_->monitor, data);
-    return value ? value->value : 0;
-  }
-
   /// Faster and faster until the monitor shows the speed that was asked; while it shows nothing, never faster
   /// than a motor of the fewest counts may turn.
   Result<void> find_speed() {
@@ -69,7 +58,7 @@ class Learning {
     for (int i = 0; i < kMostSpeeds; ++i) {
       if (const auto turned = turn(speed); !turned) return turned;
       const double rpm = std::abs(shown_);
-      if (rpm < std::max(kSteps * step_, kErrors * error_)) {
+      if (rpm < std::max(kSteps * monitor_.step(), kErrors * error_)) {
         const double next = limited(std::min(speed * kSpeedUp, first_ * kBlind));
         if (next <= speed) return fail(shows_nothing(speed));
         speed = next;
@@ -120,7 +109,7 @@ class Learning {
   }
 
   Result<bool> look(const MotionSample& sample) {
-    const auto rpm = read_monitor();
+    const auto rpm = monitor_.read();
     if (!rpm) return fail(rpm.error());
     if (std::abs(*rpm) > std::abs(learn_->rpm) * kTooFast + kNoise)
       return fail(
@@ -140,13 +129,6 @@ class Learning {
       return fail(motion_->error(Errc::negative, "turns the wrong way",
                                  "check encoder direction, polarity (607Eh), motor wiring"));
     return false;
-  }
-
-  Result<double> read_monitor() {
-    const session::Hurry hurry(motion_->session(), kMovingPatience, 1);
-    const auto answer = motion_->session().upload(motion_->node(), learn_->monitor);
-    if (!answer) return fail(answer.error());
-    return rpm_of(*answer, 0);
   }
 
   /// What was shown at the end of the time since the last command.
@@ -197,7 +179,7 @@ class Learning {
   const Learn* learn_;
   double first_;  ///< Increments a second.
   std::optional<double> fastest_;
-  double step_;  ///< Of the monitor, in rpm.
+  SpeedMonitor monitor_;
   double wanted_ = 0;
   double last_wanted_ = 0;
   double shown_ = 0;  ///< By the monitor, at the last speed,
@@ -223,31 +205,13 @@ Result<void> check_units(const Motion& motion, const Learn& learn) {
   return {};
 }
 
-/// It can be read, and shows that the motor stands still.
-Result<void> check_monitor(Motion& motion, const Learn& learn) {
-  if (const auto shown = motion.session().upload(motion.node(), learn.monitor); !shown) {
-    if (shown.error().code != Errc::sdo_abort) return fail(shown.error());
-    return fail(motion.error(Errc::refused,
-                             fmt::format("does not show the motor speed: {} ({}) cannot be read",
-                                         learn.monitor_name, to_string(learn.monitor)),
-                             std::string(kOtherWay)));
-  } else if (const auto rpm = motion.units().physical(learn.monitor, *shown);
-             rpm && std::abs(rpm->value) > kRestRpm) {
-    return fail(motion.error(
-        Errc::refused,
-        fmt::format("is not energised, but {} shows {} rpm", learn.monitor_name, number_text(rpm->value)),
-        "wait until the motor stands still; a wrong monitor cannot be used to measure"));
-  }
-  return {};
-}
-
 }  // namespace
 
 Result<MotionPlan> plan_learn(Motion& motion, const Learn& learn) {
   const auto mode = motion.rules().velocity;
   if (!mode) return fail(motion.error(Errc::refused, "this family has no velocity mode"));
   if (const auto counted = check_units(motion, learn); !counted) return fail(counted.error());
-  if (const auto still = check_monitor(motion, learn); !still) return fail(still.error());
+  if (const auto still = SpeedMonitor(motion, learn).check_still(); !still) return fail(still.error());
   MotionPlan plan;
   plan.mode = *mode;
   plan.value = plan.speed = std::abs(learn.rpm) / 60 * learn.least * learn.gear;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include "../source_dir.hpp"
 #include "cli/line_runner.hpp"
@@ -164,6 +165,14 @@ TEST_F(AxisLines, APlanOfADriveInOpDoesNotListThePdosOfTheProcessData) {
   EXPECT_FALSE(says("0x1C12")) << all();
   EXPECT_TRUE(says("table is in OP: its PDOs are those of the process data")) << all();
   EXPECT_EQ(run("state preop -n table"), 0) << all();
+}
+
+TEST_F(AxisLines, TheReportNamesTheAxis) {
+  const auto page = folder / "report.html";
+  EXPECT_EQ(run("report " + page.string() + " -n feeder2 --lang zh"), 0) << all();
+  std::stringstream text;
+  text << std::ifstream(page).rdbuf();
+  EXPECT_NE(text.str().find("feeder2（节点 2）"), std::string::npos);
 }
 
 TEST_F(AxisLines, CabinetCommandsHoldDrivesAgainstTheFileAndNothingElse) {

@@ -12,24 +12,10 @@
 
 #include "canopen/sdo_abort.hpp"
 #include "canopen/sdo_server.hpp"
+#include "memory_process_values.hpp"
 #include "session/network.hpp"
 
 namespace servoctl::session {
-
-/// A node of a MemoryNetwork: any ObjectStore, and what it does beside answering, all of it optional.
-struct MemoryNode {
-  canopen::ObjectStore* objects = nullptr;
-  NodeState state = NodeState::pre_operational;
-  /// It is told to enter a state; false: it refuses, and tells a state error. Empty: it enters.
-  std::function<bool(NodeState state)> on_state = {};
-  /// Time goes on; when it wants to be told next.
-  std::function<void(TimePoint now)> on_time = {};
-  std::function<TimePoint()> deadline = {};
-  /// What it tells by itself.
-  std::function<std::optional<NodeEvent::What>()> take_event = {};
-  bool silent = false;
-  int lost_answers = 0;  ///< So many requests are carried out and not answered.
-};
 
 /// A network without a wire, frames or CAN: objects in memory, in virtual time. What runs on it knows nothing
 /// of CAN.
@@ -37,8 +23,6 @@ class MemoryNetwork final : public Network, private NodeRecords {
  public:
   /// From a request to its answer.
   static constexpr Duration kAnswer = std::chrono::milliseconds(1);
-  /// Process values are exchanged so often, of nodes that are at least safe-operational.
-  static constexpr Duration kCycle = std::chrono::milliseconds(4);
 
   MemoryNode& add(std::uint8_t node, canopen::ObjectStore& objects) {
     auto& place = nodes_[node];
@@ -117,7 +101,6 @@ class MemoryNetwork final : public Network, private NodeRecords {
 
  private:
   class Channel;
-  class Values;
   struct Due {
     TimePoint time;
     Channel* channel;
@@ -233,47 +216,13 @@ class MemoryNetwork::Channel final : public ObjectChannel {
   std::optional<Result<Bytes>> result_;
 };
 
-/// What the last exchange brought, each value once.
-class MemoryNetwork::Values final : public ProcessValues {
- public:
-  Values(MemoryNetwork& network, std::uint8_t node, std::span<const ObjectAddress> objects)
-      : network_(&network), node_(node) {
-    for (const auto object : objects) taken_[object] = TimePoint::min();
-  }
-  std::optional<Bytes> take(ObjectAddress object, TimePoint since) override {
-    auto* node = network_->node_at(node_);
-    const auto known = taken_.find(object);
-    const TimePoint exchanged(network_->now_.time_since_epoch() / kCycle * kCycle);
-    const bool exchanges = node != nullptr && (node->state == NodeState::safe_operational ||
-                                               node->state == NodeState::operational);
-    if (!exchanges || known == taken_.end() || exchanged < since || exchanged <= known->second)
-      return std::nullopt;
-    known->second = exchanged;
-    Bytes out;
-    return node->objects->read(object, out) == 0 ? std::optional(std::move(out)) : std::nullopt;
-  }
-  bool carries(ObjectAddress object) const override { return taken_.count(object) != 0; }
-  void keep_all() override {}
-  std::vector<Arrival> take_all() override {
-    std::vector<Arrival> out;
-    for (const auto& [object, time] : taken_)
-      if (auto value = take(object, TimePoint::min())) out.push_back({object, std::move(*value), time});
-    return out;
-  }
-
- private:
-  MemoryNetwork* network_;
-  std::uint8_t node_;
-  std::map<ObjectAddress, TimePoint> taken_;
-};
-
 inline std::unique_ptr<ObjectChannel> MemoryNetwork::object_channel(std::uint8_t node, Duration timeout) {
   return std::make_unique<Channel>(*this, node, timeout);
 }
 
 inline std::unique_ptr<ProcessValues> MemoryNetwork::process_values(std::uint8_t node,
                                                                     std::span<const ObjectAddress> objects) {
-  return std::make_unique<Values>(*this, node, objects);
+  return std::make_unique<MemoryProcessValues>(node_at(node), now_, objects);
 }
 
 inline void MemoryNetwork::let_nodes_go_on() {
