@@ -214,6 +214,24 @@ TEST(AddressChange, ADriveThatAnswersAtBothNodesIsToldOf) {
   EXPECT_NE(outcome.error->message.find("node 3 still answers"), std::string::npos) << outcome.error->message;
 }
 
+TEST(AddressChange, AnotherDriveAtTheNewNodeIsNotTakenForIt) {
+  AddressWorld world("gsd600", {3});
+  const auto other = drive::load_profile("dm", kFolders).value();
+  sim::SimDrive stranger(other, 5, world.memory, "stranger");
+  bool added = false;
+  world.hooks.before_send = [&](const can::Frame& frame) {
+    if (!is_reset(frame) || added) return;
+    added = true;
+    world.drives[0]->wire_faults().silent = true;
+    world.bus.attach(stranger);
+    stranger.on_frame(*can::parse_frame("000#8105"), world.bus.now());
+  };
+  const auto outcome = move_to(world, 3, 5);
+  EXPECT_EQ(outcome.end, AddressEnd::failed);
+  ASSERT_TRUE(outcome.error);
+  EXPECT_NE(outcome.error->message.find("is another drive"), std::string::npos) << outcome.error->message;
+}
+
 TEST(AddressChange, ADriveThatStaysAwayIsToldOf) {
   AddressWorld world("gsd600", {3});
   world.hooks.before_send = [&](const can::Frame& frame) {
@@ -294,6 +312,15 @@ TEST(AddressChange, ADriveWithANewBitrateIsNotRestarted) {
             std::string::npos);
 }
 
+TEST(AddressChange, ADriveWithANewBitrateIsNotWaitedForEither) {
+  AddressWorld world("gsd600", {3});
+  const auto change = plan_address(world.desk, 3, {.bitrate = 500'000});
+  ASSERT_TRUE(change);
+  const auto outcome = change_address(world.desk, *change, {.patience = 60s});
+  EXPECT_EQ(outcome.end, AddressEnd::awaits_restart);
+  EXPECT_FALSE(outcome.error) << outcome.error->message;
+}
+
 TEST(AddressChange, BothValuesAreWrittenOrNone) {
   AddressWorld world("gsd600", {3});
   const auto change = plan_address(world.desk, 3, {.node = 5, .bitrate = 500'000});
@@ -308,6 +335,7 @@ TEST(AddressChange, BothValuesAreWrittenOrNone) {
   const auto outcome = change_address(world.desk, *change, {});
   EXPECT_TRUE(outcome.error);
   EXPECT_EQ(world.held(0, "Pn0048"), 8U);
+  EXPECT_EQ(world.held(0, "Pn0049"), 3U) << "the first was written, and is put back";
   EXPECT_EQ(world.count("000#8103"), 0U);
 }
 
