@@ -14,8 +14,8 @@ namespace servoctl::command {
 struct Context : show::Desk {
   std::span<const std::filesystem::path> drive_folders;
   std::vector<const cabinet::Axis*> axes;  ///< That the nodes are; empty where they are just nodes.
-  bool nodes_typed = false;       ///< In the line itself; else by `use` or the environment.
-  bool read_only = false;         ///< Nothing in a drive may be changed.
+  bool nodes_typed = false;                ///< In the line itself; else by `use` or the environment.
+  bool read_only = false;                  ///< Nothing in a drive may be changed.
   bool stays_open = false;        ///< Other lines follow on the same session: a prompt, a batch file.
   FrontEnd* front_end = nullptr;  ///< Null: there is none, and nothing is held.
 

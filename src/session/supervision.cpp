@@ -22,9 +22,7 @@ std::vector<ObjectAddress> objects_of_supervision(const drive::Profile& profile)
   return out;
 }
 
-std::chrono::milliseconds ms_of(std::uint64_t value) {
-  return std::chrono::milliseconds(value & 0xFFFFU);
-}
+std::chrono::milliseconds ms_of(std::uint64_t value) { return std::chrono::milliseconds(value & 0xFFFFU); }
 
 void take_in(Supervision& out, const drive::Profile& profile, ObjectAddress object, std::uint64_t value) {
   if (object == objects::kProducerHeartbeat) out.heartbeat = ms_of(value);

@@ -82,12 +82,12 @@ const std::set<std::string_view> kQuiet{"objects",      "param list",   "param s
                                         "units forget", "cabinet check"};
 
 /// Held against the family that the cabinet file names, see tests/cabinet.
-const std::set<std::string_view> kByFile{"cabinet init",  "cabinet show",   "cabinet plan",
-                                         "cabinet apply", "cabinet backup", "cabinet diff", "cabinet swap"};
+const std::set<std::string_view> kByFile{"cabinet init",   "cabinet show", "cabinet plan", "cabinet apply",
+                                         "cabinet backup", "cabinet diff", "cabinet swap"};
 
 /// Refused on a read already: the answer would make sense for the family alone.
-const std::set<std::string_view> kAnswers{"backup", "diff",    "info",       "report",
-                                          "scope",  "test io", "units show", "verify", "watchdog"};
+const std::set<std::string_view> kAnswers{"backup",  "diff",       "info",   "report",  "scope",
+                                          "test io", "units show", "verify", "watchdog"};
 const std::set<std::string_view> kWaysOut{"disable", "quick-stop"};
 
 TEST_F(WrongFamily, TheTableHasEveryCommand) {
