@@ -76,7 +76,8 @@ const Command kDisable{
         "Sends controlwords 07h and 00h to all nodes at the same time, without asking. 00h is written in "
         "every state, even Fault. A turning motor coasts, or ramps down if 605Ch says so; use `quick-stop` "
         "first to stop it. A drive that does not obey or answer is also sent NMT pre-operational. The result "
-        "is the state read afterwards.",
+        "is the state read afterwards. Over EtherCAT a drive that `state op` took to OP is in OP behind it, its outputs "
+        "preset anew; any other goes back to PRE-OP.",
     .parameters = {},
     .needs = Needs::node,
     .effect = Effect::writes,

@@ -6,12 +6,13 @@ namespace servoctl::motion {
 namespace {
 
 /// Longest wait for it to say in which state it is: one that is lost is left to its own watchdog soon.
-constexpr Duration kPatience = std::chrono::milliseconds(200);
+constexpr Duration kAnswerPatience = std::chrono::milliseconds(200);
 
 bool is_in_op(session::Session& session, std::uint8_t node) {
   const auto heard = session.watch().heartbeats(node);
   if (!session.network().ask_state(node)) return false;
-  (void)session.wait([&] { return session.watch().heartbeats(node) != heard; }, session.now() + kPatience);
+  (void)session.wait([&] { return session.watch().heartbeats(node) != heard; },
+                     session.now() + kAnswerPatience);
   return session.watch().state(node) == session::NodeState::operational;
 }
 

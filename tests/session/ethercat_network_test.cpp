@@ -62,7 +62,7 @@ TEST_F(EtherCatTest, AChannelSaysThatSomethingCameWhenItsAnswerIsThereAndNotBefo
 
 TEST_F(EtherCatTest, AGapMayStandInEitherPdoAndADataTypeForOneInRpdosAlone) {
   open("sv2@1");
-  for (const std::uint16_t mapping : {0x1600, 0x1A00}) {
+  for (const auto mapping : {std::uint16_t{0x1600}, std::uint16_t{0x1A00}}) {
     ASSERT_TRUE(session_->download(1, {mapping, 0}, {0}));
     EXPECT_TRUE(session_->download(1, {mapping, 1}, store_le(0x0000'0008U, 4))) << mapping;
   }
