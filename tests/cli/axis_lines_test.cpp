@@ -157,7 +157,8 @@ TEST_F(AxisLines, AnotherBusLetsNoDriveGo) {
 }
 
 TEST_F(AxisLines, APlanOfADriveInOpDoesNotListThePdosOfTheProcessData) {
-  ASSERT_EQ(run("write 0x1C12:0 0 -n table"), 0) << all();
+  ASSERT_EQ(run("write 0x1C12:1 0x1702 -n table"), 0) << all();
+  ASSERT_EQ(run("write 0x1C12:0 1 -n table"), 0) << all();
   EXPECT_EQ(run("cabinet plan --axis table"), 0) << all();
   EXPECT_TRUE(says("0x1C12")) << "in PRE-OP it is a setting like others: " << all();
   ASSERT_EQ(run("state op -n table"), 0) << all();
