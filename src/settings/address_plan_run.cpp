@@ -10,6 +10,7 @@
 #include "session/identify.hpp"
 #include "session/scan.hpp"
 #include "settings/address_journal.hpp"
+#include "show/identity.hpp"
 
 namespace servoctl::settings {
 namespace {
@@ -19,11 +20,6 @@ using report::Show;
 using report::Table;
 using report::Value;
 using session::Identity;
-
-bool tells_the_same(const Identity& one, const Identity& other) {
-  return one.device_type == other.device_type && one.vendor_id == other.vendor_id &&
-         one.product_code == other.product_code && one.serial == other.serial;
-}
 
 /// What came of one drive.
 struct RowEnd {
@@ -112,7 +108,7 @@ class PlanRun {
     if (!found) return fail(found.error());
     const auto is_at = [&](std::uint8_t node) {
       return std::any_of(found->begin(), found->end(), [&](const Identity& identity) {
-        return identity.node == node && tells_the_same(identity, journal_.drives[step.row]);
+        return identity.node == node && show::change_of(journal_.drives[step.row], identity).empty();
       });
     };
     if (is_at(step.from) && is_at(step.to))
@@ -206,7 +202,7 @@ class PlanRun {
     const auto row = rows_[step.row];
     const std::uint8_t to[] = {step.to};
     auto change = plan_address(*desk_, step.from, {.node = step.to});
-    if (change && !tells_the_same(change->identity, journal_.drives[step.row]))
+    if (change && !show::change_of(journal_.drives[step.row], change->identity).empty())
       change =
           fail(drive_error(Errc::refused, step.from, "another drive is there than when the plan was made",
                            "`scan --long` shows who is there"));

@@ -44,8 +44,8 @@ std::string other_kind(const session::Identity& one, const session::Identity& ot
 
 /// What a drive keeps of its identity for life: not its versions, nor its state.
 session::Identity lasting(const session::Identity& identity);
-/// In which of these a drive differs from what it was, such as `its serial number (1018h:04)`; empty when it is
-/// the same one, as far as it tells.
+/// In which of these a drive differs from what it was, such as `its serial number (1018h:04)`; empty when it
+/// is the same one, as far as it tells.
 std::string change_of(const session::Identity& before, const session::Identity& now);
 
 }  // namespace servoctl::show

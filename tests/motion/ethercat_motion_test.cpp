@@ -2,85 +2,14 @@
 #include <gtest/gtest.h>
 
 #include "drive/standard_objects.hpp"
+#include "ethercat_motion.hpp"
 #include "motion/power.hpp"
-#include "motion_support.hpp"
-#include "tests/session/ethercat_world.hpp"
 
 namespace servoctl::motion {
 namespace {
 
 using namespace std::chrono_literals;
 using drive::DriveState;
-
-class EtherCatMotion : public session::EtherCatTest {
- protected:
-  void SetUp() override {
-    open("sv2@1");
-    network().learn(1, rules());
-  }
-  const drive::Profile& profile() { return *port_->cell().profiles.front(); }
-
-  template <class Kind>
-  MotionReport run(const Kind& kind, Result<MotionPlan> (*plan)(Motion&, const Kind&),
-                   MotionReport (*go)(Motion&, const Kind&, const MotionPlan&)) {
-    MotionReport out;
-    Motion motion(*session_, profile(), 1, options_);
-    const auto ready = motion.prepare();
-    EXPECT_TRUE(ready) << ready.error().message;
-    const auto made = plan(motion, kind);
-    EXPECT_TRUE(made) << made.error().message;
-    before_ = objects();
-    return go(motion, kind, *made);
-  }
-  MotionReport jog(std::string speed = "60rpm", Duration length = 1s) {
-    return run(jog_for(std::move(speed), length), plan_jog, run_jog);
-  }
-
-  /// Every value a master can set, but the controlword, and 607Ah, which holds where the axis stood when OP
-  /// began.
-  std::map<std::string, Bytes> objects() {
-    std::map<std::string, Bytes> out;
-    for (const auto& object : profile().dictionary.objects())
-      for (const auto& entry : object.entries) {
-        Bytes value;
-        if (entry.access == od::Access::rw && entry.address.index != 0x6040 &&
-            entry.address.index != 0x607A && slave().model().read(entry.address, value) == 0)
-          out[to_string(entry.address)] = value;
-      }
-    return out;
-  }
-  std::vector<std::string> changed() {
-    std::vector<std::string> out;
-    for (const auto& [name, bytes] : objects())
-      if (bytes != before_[name]) out.push_back(name + " is " + to_hex(bytes));
-    return out;
-  }
-  void expect_left_alone(const MotionReport& done) {
-    EXPECT_TRUE(done.outcome) << done.outcome.error().message;
-    EXPECT_TRUE(done.end.verified);
-    EXPECT_EQ(done.end.notes, std::vector<std::string>{});
-    EXPECT_EQ(done.end.left, std::vector<std::string>{});
-    expect_safe();
-    EXPECT_EQ(slave().state(), sim::EscState::pre_op);
-    EXPECT_EQ(slave().al_code(), 0);
-    EXPECT_EQ(changed(), std::vector<std::string>{});
-  }
-  void expect_safe() {
-    EXPECT_FALSE(drive::is_energised(slave().model().power_state()));
-    EXPECT_FALSE(slave().model().is_moving());
-  }
-  /// The wire is not there from that time of the motion on.
-  void cut_after(Duration time) {
-    options_.on_sample = [this, time,
-                          begin = std::optional<TimePoint>()](const MotionSample& sample) mutable {
-      if (!begin) begin = sample.time;
-      if (sample.time - *begin >= time) ring().cut_cable(0);
-    };
-  }
-
-  MotionOptions options_;
-  std::map<std::string, Bytes> before_;
-};
 
 TEST_F(EtherCatMotion, JogTurnsForATimeAndLeavesNothingBehind) {
   const auto done = jog();
@@ -234,64 +163,6 @@ TEST_F(EtherCatMotion, ADriveThatWasEnabledIsHeldAndLetGo) {
   ASSERT_EQ(done.size(), 1U);
   EXPECT_TRUE(done.front().second);
   expect_safe();
-  EXPECT_EQ(slave().state(), sim::EscState::pre_op);
-}
-
-/// Enabled in the way `enable` does it, and disabled in the way of `disable` and `quick-stop`.
-PowerDownResult enabled_and_taken_down(session::Session& session, const drive::Profile& profile,
-                                       PowerAim aim) {
-  Motion motion(session, profile, 1, {});
-  EXPECT_TRUE(motion.prepare());
-  MotionGuard guard(session, motion.units(), 1);
-  EXPECT_TRUE(guard.start_node());
-  EXPECT_TRUE(guard.neutral_targets());
-  EXPECT_TRUE(guard.enable());
-  EXPECT_TRUE(guard.release());
-  std::vector<PowerDownPlan> plans(1);
-  plans.front().node = 1;
-  plans.front().aim = aim;
-  return take_down(session, std::move(plans)).front();
-}
-
-TEST_F(EtherCatMotion, ADriveThatTheUserHasInOpStaysThereWhenItIsEnabledAndDisabled) {
-  for (const auto aim : {PowerAim::disable, PowerAim::stop}) {
-    ASSERT_TRUE(network().request_state(1, session::NodeState::operational));
-    network().keep_operational(1);
-    const auto done = enabled_and_taken_down(*session_, profile(), aim);
-    EXPECT_TRUE(done.outcome);
-    EXPECT_EQ(done.notes, std::vector<std::string>{});
-    expect_safe();
-    pass(500ms);
-    EXPECT_EQ(slave().state(), sim::EscState::op);
-    EXPECT_EQ(session_->upload(1, objects::kTargetPosition).value(),
-              session_->upload(1, objects::kPositionActual).value());
-    ASSERT_TRUE(network().request_state(1, session::NodeState::pre_operational));
-    EXPECT_FALSE(network().stays_operational(1)) << "the user wants another state now";
-  }
-}
-
-TEST_F(EtherCatMotion, ADriveThatEnableTookToOpLeavesItWithItsPower) {
-  const auto done = enabled_and_taken_down(*session_, profile(), PowerAim::disable);
-  EXPECT_TRUE(done.outcome);
-  expect_safe();
-  EXPECT_EQ(slave().state(), sim::EscState::pre_op);
-}
-
-TEST_F(EtherCatMotion, WhenEverythingEndsADriveThatTheUserHadInOpEndsInPreOp) {
-  ASSERT_TRUE(network().request_state(1, session::NodeState::operational));
-  network().keep_operational(1);
-  session_->energised().insert(1);
-  ASSERT_TRUE(de_energise(*session_).front().second);
-  EXPECT_EQ(slave().state(), sim::EscState::pre_op);
-}
-
-TEST_F(EtherCatMotion, ADriveThatFellOutOfOpIsNotTakenThereByDisable) {
-  ASSERT_TRUE(network().request_state(1, session::NodeState::operational));
-  network().keep_operational(1);
-  slave().plan_fall({session_->now() + 50ms, sim::EscState::safe_op, 0x001A});
-  pass(500ms);
-  EXPECT_FALSE(network().stays_operational(1));
-  EXPECT_TRUE(Power(*session_, profile(), 1).disable());
   EXPECT_EQ(slave().state(), sim::EscState::pre_op);
 }
 

@@ -4,28 +4,12 @@
 
 #include <gtest/gtest.h>
 
-#include "drive/bitrate.hpp"
 #include "tests/settings/address_world.hpp"
 
 namespace servoctl::settings {
 namespace {
 
 using namespace std::chrono_literals;
-
-AddressOutcome move_to(AddressWorld& world, std::uint8_t from, std::uint8_t to, AddressOptions options = {}) {
-  const auto change = plan_address(world.desk, from, {.node = to});
-  EXPECT_TRUE(change) << change.error().message;
-  if (!change) return {};
-  return change_address(world.desk, *change, options);
-}
-
-bool is_write_to(const can::Frame& frame, ObjectAddress object) {
-  return frame.id >= 0x600 && frame.id < 0x680 && (frame.data[0] & 0xE0U) == 0x20 &&
-         frame.data[1] == (object.index & 0xFFU) && frame.data[2] == object.index >> 8U &&
-         frame.data[3] == object.sub;
-}
-
-bool is_reset(const can::Frame& frame) { return frame.id == 0 && frame.data[0] >= 0x81; }
 
 class AddressOf : public testing::TestWithParam<const char*> {};
 
@@ -171,106 +155,6 @@ TEST(AddressChange, AnAddressThatCannotBeKeptIsPutBack) {
   EXPECT_EQ(world.count("000#8103"), 0U);
 }
 
-TEST(AddressChange, ADriveThatForgetsAtItsRestartIsToldOf) {
-  AddressWorld world("gsd600", {3});
-  const auto place = *drive::place_of(world.profile, "Pn0049");
-  world.hooks.before_send = [&](const can::Frame& frame) {
-    if (is_reset(frame)) world.memory.cells("1")[place] = store_le(3, 2);
-  };
-  const auto outcome = move_to(world, 3, 5);
-  EXPECT_EQ(outcome.end, AddressEnd::failed);
-  ASSERT_TRUE(outcome.error);
-  EXPECT_NE(outcome.error->message.find("forgot"), std::string::npos) << outcome.error->message;
-}
-
-TEST(AddressChange, ADriveThatDoesNotTakeTheNmtCommandIsToBeSwitchedOff) {
-  AddressWorld world("gsd600", {3});
-  // The command never reaches it.
-  world.hooks.before_send = [&](const can::Frame& frame) {
-    if (is_reset(frame)) world.drives[0]->wire_faults().silent = true;
-  };
-  const auto at = world.bus.now() + 5s;
-  world.hooks.on_time = [&](TimePoint now) {
-    if (now >= at) world.drives[0]->wire_faults().silent = false;
-  };
-  const auto outcome = move_to(world, 3, 5);
-  EXPECT_EQ(outcome.end, AddressEnd::awaits_restart);
-  ASSERT_TRUE(outcome.error);
-  EXPECT_NE(outcome.error->hint.find("switch it off and on"), std::string::npos);
-}
-
-TEST(AddressChange, ADriveThatAnswersAtBothNodesIsToldOf) {
-  AddressWorld world("gsd600", {3});
-  bool added = false;
-  world.hooks.before_send = [&](const can::Frame& frame) {
-    if (!is_reset(frame) || added) return;
-    added = true;
-    (void)world.bus.send(frame);
-    world.add(3);
-  };
-  const auto outcome = move_to(world, 3, 5);
-  EXPECT_EQ(outcome.end, AddressEnd::failed);
-  ASSERT_TRUE(outcome.error);
-  EXPECT_NE(outcome.error->message.find("node 3 still answers"), std::string::npos) << outcome.error->message;
-}
-
-TEST(AddressChange, AnotherDriveAtTheNewNodeIsNotTakenForIt) {
-  AddressWorld world("gsd600", {3});
-  const auto other = drive::load_profile("dm", kFolders).value();
-  sim::SimDrive stranger(other, 5, world.memory, "stranger");
-  bool added = false;
-  world.hooks.before_send = [&](const can::Frame& frame) {
-    if (!is_reset(frame) || added) return;
-    added = true;
-    world.drives[0]->wire_faults().silent = true;
-    world.bus.attach(stranger);
-    stranger.on_frame(*can::parse_frame("000#8105"), world.bus.now());
-  };
-  const auto outcome = move_to(world, 3, 5);
-  EXPECT_EQ(outcome.end, AddressEnd::failed);
-  ASSERT_TRUE(outcome.error);
-  EXPECT_NE(outcome.error->message.find("is another drive"), std::string::npos) << outcome.error->message;
-}
-
-TEST(AddressChange, ADriveThatStaysAwayIsToldOf) {
-  AddressWorld world("gsd600", {3});
-  world.hooks.before_send = [&](const can::Frame& frame) {
-    if (is_reset(frame)) world.drives[0]->wire_faults().silent = true;
-  };
-  const auto outcome = move_to(world, 3, 5);
-  EXPECT_EQ(outcome.end, AddressEnd::failed);
-  ASSERT_TRUE(outcome.error);
-  EXPECT_EQ(outcome.error->code, Errc::timeout);
-}
-
-TEST(AddressChange, ABusThatIsLostBehindTheWriteLeavesTheEndOpenAndSaysSo) {
-  AddressWorld world("gsd600", {3});
-  world.hooks.before_send = [&](const can::Frame& frame) {
-    world.hooks.lost = world.hooks.lost || is_reset(frame);
-  };
-  const auto outcome = move_to(world, 3, 5);
-  EXPECT_EQ(outcome.end, AddressEnd::failed);
-  ASSERT_TRUE(outcome.error);
-  EXPECT_EQ(outcome.error->code, Errc::bus);
-  EXPECT_NE(outcome.error->message.find("was told to be node 5"), std::string::npos)
-      << outcome.error->message;
-}
-
-TEST(AddressChange, CtrlCIsHeardWhileTheDriveIsWaitedForAndNotBetweenWriteAndStore) {
-  AddressWorld world("gsd600", {3});
-  const auto place = *drive::place_of(world.profile, "Pn0049");
-  bool pressed = false;
-  world.hooks.before_send = [&](const can::Frame& frame) { pressed = pressed || is_write_to(frame, place); };
-  const auto change = plan_address(world.desk, 3, {.node = 5});
-  ASSERT_TRUE(change);
-  world.session->options().cancelled = [&] { return pressed; };
-  const auto outcome = change_address(world.desk, *change, {});
-  EXPECT_EQ(outcome.end, AddressEnd::failed);
-  ASSERT_TRUE(outcome.error);
-  EXPECT_EQ(outcome.error->code, Errc::interrupted);
-  EXPECT_EQ(world.count("603#2310100173617665"), 1U) << "what was begun is kept";
-}
-
 TEST(AddressChange, AnEnergisedDriveIsLeftAlone) {
   AddressWorld world("gsd600", {3});
   for (const auto word : {0x06U, 0x07U, 0x0FU})
@@ -363,32 +247,6 @@ TEST(AddressChange, NobodyElseIsWrittenTo) {
     const auto frame = *can::parse_frame(text);
     const bool of_it = frame.id == 0x603 || frame.id == 0x605 || text == "000#8103";
     EXPECT_TRUE(of_it) << text;
-  }
-}
-
-TEST(Bitrate, IsReadAsPeopleWriteIt) {
-  for (const auto* text : {"500k", "500 kbit/s", "500000", "0.5M", "500 kbps"})
-    EXPECT_EQ(drive::parse_bitrate(text).value_or(0), 500'000U) << text;
-  EXPECT_EQ(drive::parse_bitrate("1M").value_or(0), 1'000'000U);
-  for (const auto* text : {"", "fast", "0", "2M", "-500k", "5k", "500x", "nan", "inf", "1e9", "k"})
-    EXPECT_FALSE(drive::parse_bitrate(text)) << text;
-}
-
-TEST(Bitrate, HasTheCodesOfTheManuals) {
-  struct Row {
-    const char* family;
-    std::uint32_t bitrate;
-    std::optional<std::int64_t> code;
-  };
-  const Row rows[] = {{"gsd600", 1'000'000, 8}, {"gsd600", 10'000, 0},   {"gsd600", 800'000, 7},
-                      {"da200", 1'000'000, 0},  {"da200", 20'000, 5},    {"da200", 800'000, {}},
-                      {"ts", 500'000, 500},     {"ts", 1'000'000, 1000}, {"ts", 50'000, {}},
-                      {"ts", 333'000, {}},      {"dm", 500'000, {}},     {"cia402", 500'000, {}},
-                      {"gsd600", 333'000, {}}};
-  for (const auto& row : rows) {
-    const auto profile = drive::load_profile(row.family, kFolders).value();
-    const auto code = drive::bitrate_code(profile, row.bitrate);
-    EXPECT_EQ(code ? std::optional(*code) : std::nullopt, row.code) << row.family << " " << row.bitrate;
   }
 }
 

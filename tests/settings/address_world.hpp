@@ -98,4 +98,20 @@ class AddressWorld {
   show::Desk desk;
 };
 
+inline AddressOutcome move_to(AddressWorld& world, std::uint8_t from, std::uint8_t to,
+                              AddressOptions options = {}) {
+  const auto change = plan_address(world.desk, from, {.node = to});
+  EXPECT_TRUE(change) << change.error().message;
+  if (!change) return {};
+  return change_address(world.desk, *change, options);
+}
+
+inline bool is_write_to(const can::Frame& frame, ObjectAddress object) {
+  return frame.id >= 0x600 && frame.id < 0x680 && (frame.data[0] & 0xE0U) == 0x20 &&
+         frame.data[1] == (object.index & 0xFFU) && frame.data[2] == object.index >> 8U &&
+         frame.data[3] == object.sub;
+}
+
+inline bool is_reset(const can::Frame& frame) { return frame.id == 0 && frame.data[0] >= 0x81; }
+
 }  // namespace servoctl::settings

@@ -1,0 +1,251 @@
+#include <fmt/format.h>
+#include <algorithm>
+#include <utility>
+
+#include "base/duration.hpp"
+#include "drive/naming.hpp"
+#include "drive/standard_objects.hpp"
+#include "session/identify.hpp"
+#include "session/option_scope.hpp"
+#include "session/scan.hpp"
+#include "session/write.hpp"
+#include "settings/address_change.hpp"
+#include "settings/own_cob_ids.hpp"
+#include "show/identity.hpp"
+
+namespace servoctl::settings {
+namespace {
+
+using session::Identity;
+
+/// From an NMT reset to the boot-up message.
+constexpr Duration kBootPatience = std::chrono::seconds(10);
+constexpr Duration kSecondLook = std::chrono::seconds(1);
+
+bool tells_itself_apart(const Identity& identity) { return identity.serial.value_or(0) != 0; }
+
+std::string serial_text(const Identity& identity) {
+  return identity.serial ? fmt::format("serial number {}", *identity.serial) : "no serial number";
+}
+
+/// One drive on its way to its new address.
+class AddressRun {
+ public:
+  AddressRun(show::Desk& desk, const AddressChange& change, const AddressOptions& options)
+      : desk_(&desk), session_(desk.session), change_(&change), options_(&options) {}
+
+  AddressOutcome run() {
+    if (change_->idle()) {
+      out_.end = AddressEnd::nothing_to_do;
+      return std::move(out_);
+    }
+    if (change_->writes.empty() || write()) restart();
+    return std::move(out_);
+  }
+
+ private:
+  bool fail_with(AddressEnd end, Error error) {
+    out_.end = end;
+    out_.error = std::move(error);
+    return false;
+  }
+
+  /// What is begun is brought to its end, whoever is impatient.
+  bool write() {
+    const session::Deaf deaf(*session_);
+    session::StorageScope storage(*session_, desk_->profile, change_->node);
+    const bool keeps = session::can_store(*desk_->profile);
+    if (const auto opened = storage.open(keeps, options_->unlock, true); !opened)
+      return fail_with(AddressEnd::as_before, opened.error());
+    const auto written = session::write_all(*session_, change_->writes, true);
+    const auto wrong = std::find_if(written.begin(), written.end(), [](const auto& w) { return !w; });
+    const bool all = wrong == written.end();
+    const auto back = all ? Result<void>() : put_back(written);
+    const auto done =
+        std::count_if(written.begin(), written.end(), [](const auto& w) { return w.has_value(); });
+    const auto kept = storage.close(all, static_cast<std::size_t>(done));
+    for (const auto& notice : storage.notices()) desk_->notices.push_back(notice);
+    if (!all) return not_written(wrong->error(), back);
+    if (!kept) return not_kept(kept.error());
+    out_.kept = *kept;
+    return true;
+  }
+
+  /// A write that was refused has changed nothing; any other may have been done.
+  Result<void> put_back(std::span<const Result<session::Written>> written) {
+    Result<void> out;
+    for (std::size_t i = 0; i < written.size(); ++i) {
+      if (!written[i] && written[i].error().code == Errc::sdo_abort) continue;
+      const session::SdoRequest back[] = {{change_->node, change_->writes[i].object, change_->before[i]}};
+      const auto done = session::write_all(*session_, back, true).front();
+      if (!done) out = fail(done.error());
+    }
+    return out;
+  }
+
+  bool not_written(Error error, const Result<void>& back) {
+    const auto& store = desk_->profile->rules.store;
+    if (error.code == Errc::sdo_abort && !store.unlock.empty() && !options_->unlock)
+      error.hint = fmt::format("it may be locked by {}: add --unlock", store.unlock);
+    if (back) return fail_with(AddressEnd::as_before, std::move(error));
+    error.message += "; what it holds now is not known: " + back.error().message;
+    error.hint = fmt::format("before it is switched off: `read {} -n {}`, its node-ID for the next start",
+                             desk_->profile->rules.nmt.node_id, change_->node);
+    return fail_with(AddressEnd::failed, std::move(error));
+  }
+
+  /// An address that is written and not kept would come and go with the power.
+  bool not_kept(Error error) {
+    const std::vector<Result<session::Written>> written(change_->writes.size(), session::Written{});
+    const auto back = put_back(written);
+    error.message = "the address was written and could not be kept: " + error.message;
+    if (back) {
+      error.message += "; the old one was written back";
+      return fail_with(AddressEnd::as_before, std::move(error));
+    }
+    error.message += "; and writing the old one back failed: " + back.error().message;
+    return fail_with(AddressEnd::failed, std::move(error));
+  }
+
+  void restart() {
+    if (!change_->moves() && !change_->bitrate && change_->writes.empty()) return;
+    out_.end = AddressEnd::awaits_restart;
+    if (change_->bitrate || (!change_->restarts() && options_->patience == Duration::zero())) return;
+    if (!change_->restarts())
+      desk_->tell(fmt::format("switch node {} off and on again now: it is waited for at node {} for {}\n",
+                              change_->node, change_->to, to_string(options_->patience)));
+    if (const auto sent = session::restart_node(*session_, change_->node, change_->restart); !sent) {
+      fail_with(AddressEnd::failed, written_but(sent.error()));
+      return;
+    }
+    if (change_->moves()) session::forget_node(*session_, change_->to);
+    const auto patience = change_->restarts() ? kBootPatience : options_->patience;
+    const auto came =
+        session::wait_for_boot(*session_, change_->node, change_->to, session_->now() + patience);
+    if (came)
+      find();
+    else
+      fail_with(AddressEnd::failed, written_but(came.error()));
+  }
+
+  Error written_but(Error error) const {
+    error.message = fmt::format("node {} was told to be node {}; whether it is one by now is not known: {}",
+                                change_->node, change_->to, error.message);
+    error.hint = "`scan` shows who answers";
+    error.node = change_->node;
+    return error;
+  }
+
+  Error about(Errc code, std::string what, std::string hint) const {
+    return drive_error(code, change_->node, what, std::move(hint));
+  }
+
+  /// Who answers at the two nodes. A boot-up that was heard may have been another's, and some answer only a
+  /// while behind theirs: where nobody is at the new one, once more.
+  Result<std::vector<Identity>> look() {
+    const std::uint8_t both[] = {change_->node, change_->to};
+    const auto nodes = std::span(both).first(change_->moves() ? 2U : 1U);
+    auto found = session::scan(*session_, nodes);
+    const auto is_new = [&](const Identity& identity) { return identity.node == change_->to; };
+    if (!found || std::any_of(found->begin(), found->end(), is_new)) return found;
+    const auto waited = session_->wait([] { return false; }, session_->now() + kSecondLook);
+    if (!waited) return fail(waited.error());
+    return session::scan(*session_, nodes);
+  }
+
+  void find() {
+    const auto found = look();
+    if (!found) {
+      fail_with(AddressEnd::failed, written_but(found.error()));
+      return;
+    }
+    const auto at = [&](std::uint8_t node) {
+      return std::find_if(found->begin(), found->end(), [&](const Identity& i) { return i.node == node; });
+    };
+    const auto here = at(change_->to);
+    const bool old = change_->moves() && at(change_->node) != found->end();
+    if (here == found->end())
+      not_there(old);
+    else if (!show::change_of(change_->identity, *here).empty())
+      fail_with(AddressEnd::failed,
+                about(Errc::refused,
+                      fmt::format("node {} answers now, but is another drive: {}, and {} before", change_->to,
+                                  serial_text(*here), serial_text(change_->identity)),
+                      "`scan --long` shows who is there"));
+    else if (old)
+      fail_with(
+          AddressEnd::failed,
+          about(Errc::negative,
+                fmt::format("it answers as node {0} now, and node {1} still answers: two drives had the "
+                            "node-ID {1}, or one has two",
+                            change_->to, change_->node),
+                "`scan --long` shows both"));
+    else
+      arrived();
+  }
+
+  void not_there(bool old) {
+    if (!old)
+      return void(fail_with(
+          AddressEnd::failed,
+          about(Errc::timeout, fmt::format("neither node {} nor node {} answers", change_->node, change_->to),
+                change_->restarts() ? "switch it off and on, and look with `scan`"
+                                    : "is it still off? `scan` shows who answers")));
+    const auto& name = desk_->profile->rules.nmt.node_id;
+    const auto place = drive::place_of(*desk_->profile, name);
+    const auto held = session_->upload(change_->node, *place);
+    if (held && load_le(*held) != change_->to)
+      return void(fail_with(AddressEnd::failed,
+                            about(Errc::negative,
+                                  fmt::format("it forgot its new address when it restarted: {} is {} again",
+                                              name, load_le(*held)),
+                                  "does it keep its values? `store` may be refused, or its flash be worn")));
+    out_.end = AddressEnd::awaits_restart;
+    const std::string_view why = change_->restarts() ? "the NMT command did not put its new address in force"
+                                                     : "it was not switched off and on";
+    out_.error = about(Errc::negative, fmt::format("still answers at its old address: {}", why),
+                       fmt::format("switch it off and on; then it is node {}", change_->to));
+  }
+
+  void arrived() {
+    out_.end = AddressEnd::moved;
+    if (!change_->moves()) return;
+    if (!tells_itself_apart(change_->identity))
+      desk_->notices.push_back(fmt::format(
+          "node {}: it tells no serial number of its own: that it is the drive that was node {} is "
+          "known by its kind alone",
+          change_->to, change_->node));
+    const auto now = read_own_cob_ids(*desk_, change_->to);
+    if (!now) {
+      out_.error = now.error();
+      return;
+    }
+    out_.stayed = left_behind(change_->node, change_->cob_ids, *now);
+    tell_stayed(*now);
+  }
+
+  void tell_stayed(const session::Values& now) {
+    if (out_.stayed.empty()) return;
+    std::vector<std::string> each;
+    for (const auto object : out_.stayed)
+      each.push_back(fmt::format("{} = 0x{:08X}", to_string(object), load_le(now.at(object))));
+    desk_->notices.push_back(fmt::format(
+        "node {}: COB-IDs that did not follow, and still are those of node {}: {}; where that is not "
+        "meant, `pdo show` and `write` put them right",
+        change_->to, change_->node, fmt::join(each, ", ")));
+  }
+
+  show::Desk* desk_;
+  session::Session* session_;
+  const AddressChange* change_;
+  const AddressOptions* options_;
+  AddressOutcome out_;
+};
+
+}  // namespace
+
+AddressOutcome change_address(show::Desk& desk, const AddressChange& change, const AddressOptions& options) {
+  return AddressRun(desk, change, options).run();
+}
+
+}  // namespace servoctl::settings
