@@ -1,4 +1,4 @@
-#include "cabinet/cabinet_plan.hpp"
+#include "cabinet/displaced.hpp"
 
 #include "command/cabinet_options.hpp"
 #include "command/setting_options.hpp"
@@ -20,10 +20,11 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   const auto stations = open_stations(context, **cabinet, arguments);
   if (!stations) return fail(stations.error());
   const auto families = drive::find_families(context.drive_folders);
-  const auto looks = cabinet::look_at_all(context, **cabinet, *stations,
-                                          {.only = std::string(arguments.text("--only")),
-                                           .unlisted = !arguments.has("--no-unlisted"),
-                                           .families = families});
+  const cabinet::PlanChoice choice{.only = std::string(arguments.text("--only")),
+                                   .unlisted = !arguments.has("--no-unlisted"),
+                                   .families = families};
+  auto looks = cabinet::look_at_all(context, **cabinet, *stations, choice);
+  if (choice.only.empty()) (void)cabinet::find_displaced(context, *stations, choice, looks);
   cabinet::tell_looks(context, looks);
   if (context.errors.empty() && cabinet::any_to_do(looks))
     context.errors.push_back(cabinet::something_to_do(**cabinet, looks));

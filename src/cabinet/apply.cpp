@@ -5,6 +5,7 @@
 
 #include "base/file.hpp"
 #include "cabinet/axis_run.hpp"
+#include "cabinet/displaced.hpp"
 #include "session/option_scope.hpp"
 #include "session/state_pause.hpp"
 #include "settings/restore_journal.hpp"
@@ -30,10 +31,9 @@ class Applying {
  public:
   Applying(show::Desk& desk, const Cabinet& cabinet, std::span<const Station> stations,
            const ApplyOptions& options)
-      : desk_(&desk), cabinet_(&cabinet), options_(&options) {
-    auto choice = options.choice;
-    choice.keep = options.keep;
-    looks_ = look_at_all(desk, cabinet, stations, choice, options.resume);
+      : desk_(&desk), cabinet_(&cabinet), stations_(stations), options_(&options), choice_(options.choice) {
+    choice_.keep = options.keep;
+    looks_ = look_at_all(desk, cabinet, stations, choice_, options.resume);
     for (const auto& look : looks_)
       for (const auto& station : stations)
         if (station.axis == look.axis) runs_.emplace_back(station, &look);
@@ -43,6 +43,7 @@ class Applying {
     if (options_->resume && looks_.empty())
       return fail(Errc::usage, "there is nothing to resume: no apply of these axes was interrupted",
                   "leave --resume out");
+    if (const auto placed = place(); !placed) return fail(placed.error());
     if (const auto may = may_begin(); !may) return fail(may.error());
     const bool any = std::any_of(runs_.begin(), runs_.end(), [&](const auto& run) { return has_work(run); });
     if (any && !desk_->dry_run)
@@ -54,6 +55,16 @@ class Applying {
   }
 
  private:
+  /// Before anything else drives get the nodes that the file says.
+  Result<void> place() {
+    if (options_->resume || !choice_.only.empty()) return {};
+    if (desk_->dry_run || options_->all_or_nothing) {
+      (void)find_displaced(*desk_, stations_, choice_, looks_);
+      return {};
+    }
+    return place_displaced(*desk_, *cabinet_, stations_, choice_, options_->unlock, looks_);
+  }
+
   bool has_work(const AxisRun& run) const {
     return run.look->plan && (run.look->plan->different > 0 || options_->resume);
   }
@@ -272,7 +283,9 @@ class Applying {
 
   show::Desk* desk_;
   const Cabinet* cabinet_;
+  std::span<const Station> stations_;
   const ApplyOptions* options_;
+  PlanChoice choice_;
   std::vector<PlannedAxis> looks_;
   std::vector<AxisRun> runs_;
 };
