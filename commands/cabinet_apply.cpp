@@ -39,7 +39,9 @@ const Command kCabinetApply{
     .path = "cabinet apply",
     .summary = "Make the drives hold what the cabinet file says",
     .details =
-        "Shows the plan, asks once, and writes exactly that, to all drives at the same time. Each drive is "
+        "A drive that its serial number tells at another node of the bus gets the node of its axis first, as "
+        "`address` does it, after a question of its own. Then the plan is shown, asked for once, and exactly "
+        "that is written, to all drives at the same time. Each drive is "
         "changed as `restore` does it: its present values are saved next to the cabinet file "
         "(FILE.before-AXIS.json), every value is read back, and at the end all are kept (--no-keep: not). "
         "If a write fails, the old values of that drive are written back and the others go on; with "
@@ -49,7 +51,7 @@ const Command kCabinetApply{
         "apply does nothing.",
     .parameters = kParameters,
     .needs = Needs::nothing,
-    .effect = Effect::stores,
+    .effect = Effect::resets,
     .run = run,
 };
 

@@ -41,7 +41,8 @@ const Command kCabinetPlan{
         "Reads all axes at the same time and lists, axis by axis, every parameter, PDO and heartbeat that "
         "the drive holds otherwise than the file says, with both values and what the change needs: a "
         "restart, standstill, the password, Pre-operational, a drive that is de-energised. Family and serial "
-        "number are held against the file first. Settings that are not in the file and not as the factory "
+        "number are held against the file first; a drive that its serial number tells at another node of the "
+        "bus is named with it. Settings that are not in the file and not as the factory "
         "left them stand apart; --no-unlisted saves reading them. Exit code 1 if there is something to do. "
         "Nothing is written; drives may be running. `cabinet apply` does what the plan says.",
     .parameters = kParameters,

@@ -203,6 +203,9 @@ bool BusHolder::holds_drives() const {
 }
 
 Duration BusHolder::serve() {
+  // A session from which `beside` was taken is a thread's own for a while (cabinet::at_all()).
+  for (auto* session : sessions())
+    if (!session->options().beside) return Duration::max();
   if (!must_go_on() && !produces_sync()) return Duration::max();
   auto out = Duration::max();
   for (auto* session : sessions()) {

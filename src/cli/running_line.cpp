@@ -17,6 +17,7 @@ RunningLine::RunningLine(Shell& shell, const Settings& settings, command::Contex
 
 Result<void> RunningLine::confirm(std::string_view question) {
   if (settings_->yes) return {};
+  const auto turn = shell_->take_turn();
   auto& console = shell_->console();
   const auto shown = printable(settings_->names.in(question));
   if (!console.can_ask())
@@ -26,6 +27,7 @@ Result<void> RunningLine::confirm(std::string_view question) {
 }
 
 void RunningLine::emit(const report::Record& sample, std::string_view line) {
+  const auto turn = shell_->take_turn();
   const auto& names = settings_->names;
   if (settings_->samples && names.empty()) {
     shell_->console().out(report::to_json(sample) + "\n");
@@ -38,30 +40,40 @@ void RunningLine::emit(const report::Record& sample, std::string_view line) {
   }
 }
 
-void RunningLine::write(std::string_view lines) { shell_->console().out(lines); }
+void RunningLine::write(std::string_view lines) {
+  const auto turn = shell_->take_turn();
+  shell_->console().out(lines);
+}
 
 void RunningLine::tell(std::string_view text) {
+  const auto turn = shell_->take_turn();
   shell_->end_progress();
   // What a question is about stands before it.
   if (!settings_->quiet || !settings_->yes) shell_->console().err(settings_->names.in(text));
 }
 
 std::unique_ptr<show::LiveView> RunningLine::open_view(const show::LiveView::Layout& layout) {
+  const auto turn = shell_->take_turn();
   if (settings_->json || settings_->samples) return nullptr;
   auto view = shell_->console().open_view(layout);
   if (view) view->set_names(settings_->names);
   return view;
 }
 
-bool RunningLine::is_gone() const { return shell_->console().output_lost(); }
+bool RunningLine::is_gone() const {
+  const auto turn = shell_->take_turn();
+  return shell_->console().output_lost();
+}
 
 Result<session::Session*> RunningLine::open_bus() {
+  const auto turn = shell_->take_turn();
   const auto opened = shell_->open(*settings_);
   if (opened) context_->session = *opened;
   return opened;
 }
 
 Result<const cabinet::Cabinet*> RunningLine::cabinet() {
+  const auto turn = shell_->take_turn();
   if (settings_->force_family)
     return fail(Errc::usage, "--force-family is for lines that name a family with -d",
                 "the cabinet file says what each axis is: change its `family` there");
@@ -94,7 +106,10 @@ Result<void> RunningLine::hold_family(std::span<const std::uint8_t> nodes, const
   return gate.hold(nodes, profile, weight);
 }
 
-Result<const drive::Profile*> RunningLine::family(const std::string& name) { return shell_->profile(name); }
+Result<const drive::Profile*> RunningLine::family(const std::string& name) {
+  const auto turn = shell_->take_turn();
+  return shell_->profile(name);
+}
 
 std::unique_ptr<command::Keys> RunningLine::open_keys() { return shell_->console().open_keys(); }
 

@@ -77,13 +77,16 @@ session::Options Shell::session_options() {
   const auto time = static_cast<std::uint64_t>(steady_now().time_since_epoch().count());
   out.claim_seed = (static_cast<std::uint64_t>(::getpid()) * kSpread ^ time * kSpread) >> 16U;
   out.tell = [this](std::string_view line) {
+    const auto turn = take_turn();
     progress_.end();
     console_->note("notice: " + std::string(line) + "\n");
   };
   out.progress = [this](std::size_t done, std::optional<std::size_t> total, TimePoint now) {
+    const auto turn = take_turn();
     progress_.update(done, total, now);
   };
   out.list_progress = [this](std::size_t done, std::size_t total, TimePoint now) {
+    const auto turn = take_turn();
     progress_.update_list(done, total, now);
   };
   return out;
@@ -118,9 +121,9 @@ Outcome Shell::help(const std::vector<std::string>& words, Settings settings) {
   return {.command = "help", .settings = std::move(settings), .result = std::move(*text)};
 }
 
-Result<Value> Shell::execute(Run& run, const command::Arguments& arguments) {
+Result<void> Shell::make_ready(Run& run, const command::Arguments& arguments) {
   run.turn = arguments.text("--turn");
-  if (const auto ready = prepare(run, arguments); !ready) return fail(ready.error());
+  if (const auto ready = prepare(run, arguments); !ready) return ready;
   auto& context = run.context;
   context.axes = run.axes;
   context.nodes_typed = run.settings.nodes_typed;
@@ -134,7 +137,7 @@ Result<Value> Shell::execute(Run& run, const command::Arguments& arguments) {
   context.wants_records = run.settings.samples;
   for (const auto* axis : run.axes)
     if (axis->load) context.loads.emplace(axis->node, *axis->load);
-  return run.command->run(context, arguments);
+  return {};
 }
 
 Result<void> Shell::prepare(Run& run, const command::Arguments& arguments) {
@@ -226,7 +229,7 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
   auto* session = run.context.session;
   const bool leaves_power = session != nullptr && !session->energised().empty();
   // A lost interface does not come back by itself: the next line opens it again.
-  if (!errors.empty() && errors.front().code == Errc::bus) lose_bus();
+  if (!errors.empty() && errors.front().code == Errc::bus && session != nullptr) bus_.lose(*session);
   auto words = errors.empty() ? std::string() : show::abort_words(run.context, errors.front());
   auto value = result ? *result : Value();
   name_axes_in(run.settings.names, run.context, value);

@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -52,6 +53,9 @@ class Shell {
   int report_error(const Error& error, bool json, std::string_view command = {});
 
   Console& console() { return *console_; }
+  /// Held while something is shown or asked, or what all lines share is used: a line may work on several
+  /// buses at the same time, in a thread each.
+  std::unique_lock<std::recursive_mutex> take_turn() { return std::unique_lock(turn_); }
   /// What goes on is shown no longer: something else is.
   void end_progress() { progress_.end(); }
   /// Whether the user wants what is running to end.
@@ -128,8 +132,11 @@ class Shell {
 
   session::Options session_options();
   Outcome perform_parsed(const ParsedLine& line, const Settings& settings);
+  struct PartRun;
+  std::vector<Outcome> perform_in_turn(const ParsedLine& line, std::vector<LinePart> parts);
+  std::vector<Outcome> perform_side_by_side(const ParsedLine& line, std::vector<LinePart> parts);
   Outcome perform_part(const ParsedLine& line, LinePart part);
-  Result<report::Value> execute(Run& run, const command::Arguments& arguments);
+  Result<void> make_ready(Run& run, const command::Arguments& arguments);
   Result<void> prepare(Run& run, const command::Arguments& arguments);
   Result<void> prepare_profile(Run& run, bool changes);
   Result<void> ask_drive(Run& run);
@@ -151,6 +158,7 @@ class Shell {
 
   Console* console_;
   Options options_;
+  std::recursive_mutex turn_;
   Progress progress_;
   session::Protection protection_;
   BusHolder bus_;

@@ -1,9 +1,11 @@
 // Lines that name axes of a cabinet: which buses and families they concern, and one outcome of all.
 #include <fmt/format.h>
 #include <algorithm>
+#include <list>
 #include <variant>
 
 #include "base/text.hpp"
+#include "cabinet/station.hpp"
 #include "can/socketcan.hpp"
 #include "cli/shell.hpp"
 #include "session/open_bus.hpp"
@@ -34,6 +36,16 @@ Result<void> check_several(const command::Command& command, const command::Argum
               fmt::format("'{}' is for axes of one bus and one family at a time; these are of {}",
                           command.path, parts.size()),
               first.empty() ? "name the bus: --bus " + parts.front().settings.bus : "such as -n " + first);
+}
+
+/// Whether the parts are of several buses, and none of them asks: one question at a time.
+bool is_side_by_side(const command::Command& command, const command::Arguments& arguments,
+                     const std::vector<LinePart>& parts) {
+  const auto& first = parts.front().settings;
+  const bool asks = command.effect_with(arguments) > Effect::writes && !first.yes;
+  if (asks || command.opens_bus || !includes(command.needs, Needs::bus)) return false;
+  return std::any_of(parts.begin(), parts.end(),
+                     [&](const LinePart& part) { return part.settings.bus != first.bus; });
 }
 
 /// Where nothing but the bus tells rows apart.
@@ -129,31 +141,79 @@ Result<std::vector<LinePart>> Shell::parts_of_line(const ParsedLine& line, const
   return parts;
 }
 
+/// One part of a line on its way.
+struct Shell::PartRun {
+  PartRun(Shell& shell, const ParsedLine& line, LinePart part)
+      : arguments(line.arguments), of_bus(part.axes.empty()), run(shell, *line.command, std::move(part)) {
+    if (run.axes.size() == 1) add_axis_options(*run.axes.front(), *line.command, arguments);
+    if (const auto ready = shell.make_ready(run, arguments); !ready) result = fail(ready.error());
+  }
+  void carry_out() { result = run.command->run(run.context, arguments); }
+
+  command::Arguments arguments;
+  bool of_bus;
+  Run run;
+  std::optional<Result<Value>> result;
+};
+
 Outcome Shell::perform_parsed(const ParsedLine& line, const Settings& settings) {
   auto parts = parts_of_line(line, settings);
   if (!parts) return failed(parts.error(), settings, line.command->path);
   if (parts->empty()) return perform_part(line, {settings, {}});
-  std::optional<Outcome> all;
-  for (auto& part : *parts) {
-    const bool of_bus = part.axes.empty() && parts->size() > 1;
-    auto outcome = perform_part(line, std::move(part));
-    if (of_bus) put_bus_into(outcome.result, outcome.settings.bus);
-    if (all)
-      add_outcome(*all, std::move(outcome));
-    else
-      all = std::move(outcome);
+  const bool together = is_side_by_side(*line.command, line.arguments, *parts);
+  auto outcomes =
+      together ? perform_side_by_side(line, std::move(*parts)) : perform_in_turn(line, std::move(*parts));
+  auto all = std::move(outcomes.front());
+  for (std::size_t i = 1; i < outcomes.size(); ++i) add_outcome(all, std::move(outcomes[i]));
+  return all;
+}
+
+std::vector<Outcome> Shell::perform_in_turn(const ParsedLine& line, std::vector<LinePart> parts) {
+  std::vector<Outcome> out;
+  const bool several = parts.size() > 1;
+  for (auto& part : parts) {
+    const bool of_bus = part.axes.empty() && several;
+    out.push_back(perform_part(line, std::move(part)));
+    if (of_bus) put_bus_into(out.back().result, out.back().settings.bus);
     if (cancelled()) break;
   }
-  return std::move(*all);
+  return out;
+}
+
+/// All are made ready first, and what came of them is told at the end, one after the other; those of one bus
+/// go one after the other too.
+std::vector<Outcome> Shell::perform_side_by_side(const ParsedLine& line, std::vector<LinePart> parts) {
+  std::list<PartRun> runs;
+  for (auto& part : parts) runs.emplace_back(*this, line, std::move(part));
+  std::vector<cabinet::Station> buses;
+  for (auto& one : runs) {
+    auto* const session = one.run.context.session;
+    const bool known =
+        std::any_of(buses.begin(), buses.end(), [&](const auto& bus) { return bus.session == session; });
+    if (!one.result && !known) buses.push_back({nullptr, nullptr, session, {}});
+  }
+  cabinet::at_all(buses, [&](std::size_t i) {
+    for (auto& one : runs)
+      if (!one.result && one.run.context.session == buses[i].session) one.carry_out();
+  });
+  progress_.end();
+  std::vector<Outcome> out;
+  for (auto& one : runs) {
+    // What became of another part may have closed the bus.
+    const auto open = bus_.sessions();
+    if (std::find(open.begin(), open.end(), one.run.context.session) == open.end())
+      one.run.context.session = nullptr;
+    out.push_back(finish(one.run, *one.result));
+    if (one.of_bus) put_bus_into(out.back().result, out.back().settings.bus);
+  }
+  return out;
 }
 
 Outcome Shell::perform_part(const ParsedLine& line, LinePart part) {
-  auto arguments = line.arguments;
-  if (part.axes.size() == 1) add_axis_options(*part.axes.front(), *line.command, arguments);
-  Run run(*this, *line.command, std::move(part));
-  const auto result = execute(run, arguments);
+  PartRun one(*this, line, std::move(part));
+  if (!one.result) one.carry_out();
   progress_.end();
-  return finish(run, result);
+  return finish(one.run, *one.result);
 }
 
 }  // namespace servoctl::cli

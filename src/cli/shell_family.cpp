@@ -44,7 +44,7 @@ std::vector<std::string> suggested(Session& session, Identity identity,
 std::string lasting_name(const std::string& drive) {
   namespace fs = std::filesystem;
   std::error_code error;
-  return fs::is_regular_file(drive, error) ? fs::absolute(drive, error).string() : drive;
+  return fs::is_regular_file(drive, error) ? fs::canonical(drive, error).string() : drive;
 }
 
 tl::unexpected<Error> needs_family(const command::Command& command, std::string hint) {

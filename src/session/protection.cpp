@@ -2,26 +2,33 @@
 
 namespace servoctl::session {
 
-Care Protection::worst() const {
+Care Protection::highest() const {
   for (const auto care : {Care::guarded, Care::energised})
     if (held_[static_cast<std::size_t>(care)] > 0) return care;
   return Care::none;
 }
 
+Care Protection::worst() const {
+  const std::lock_guard lock(mutex_);
+  return highest();
+}
+
 void Protection::add(Care care) {
-  const auto before = worst();
+  const std::lock_guard lock(mutex_);
+  const auto before = highest();
   ++held_[static_cast<std::size_t>(care)];
   tell(before);
 }
 
 void Protection::remove(Care care) {
-  const auto before = worst();
+  const std::lock_guard lock(mutex_);
+  const auto before = highest();
   --held_[static_cast<std::size_t>(care)];
   tell(before);
 }
 
 void Protection::tell(Care before) const {
-  if (on_change_ && worst() != before) on_change_(worst());
+  if (on_change_ && highest() != before) on_change_(highest());
 }
 
 void EnergisedNodes::insert(std::uint8_t node) {

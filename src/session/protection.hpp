@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <mutex>
 #include <set>
 #include <utility>
 
@@ -17,7 +18,8 @@ enum class Care : std::uint8_t {
 };
 
 /// Counts what must not be left unattended. The holder takes a Hold and releases it by destroying it:
-/// so nobody can forget it, and nobody ends what another still needs. Outlives its holds.
+/// so nobody can forget it, and nobody ends what another still needs. Outlives its holds, which several
+/// threads may have.
 class Protection {
  public:
   /// Called with the highest care whenever it changes: before a drive is energised, and after it is at rest.
@@ -59,8 +61,11 @@ class Protection {
   void remove(Care care);
   void tell(Care before) const;
 
+  Care highest() const;
+
   OnChange on_change_;
-  std::array<std::size_t, 3> held_{};  ///< By Care.
+  mutable std::mutex mutex_;
+  std::array<std::size_t, 3> held_{};  ///< By Care. Under the mutex.
 };
 
 /// The drives that were left energised, by their node-ID; protected as long as there is one.

@@ -1,11 +1,15 @@
 // Axes of a cabinet by name: which bus, node and family they stand for, and what is told of them.
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
 #include <unistd.h>
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <mutex>
+#include <set>
 #include <sstream>
+#include <thread>
 
 #include "../source_dir.hpp"
 #include "cli/line_runner.hpp"
@@ -90,6 +94,34 @@ TEST_F(AxisLines, AxesOfSeveralBusesAndFamiliesHaveOneAnswer) {
   EXPECT_EQ(run("read statusword --json -n all --retries 0 --timeout 50ms"), 0) << all();
   EXPECT_EQ(run("read Pn0202 -n feeder1,table"), 2) << all();  // The other family has no such number.
   EXPECT_TRUE(says("feeder1") && says("'Pn0202' is not an object or parameter of sv2")) << all();
+}
+
+TEST_F(AxisLines, SeveralBusesAreWorkedOnAtTheSameTime) {
+  std::mutex mutex;
+  std::set<std::thread::id> threads;
+  Shell::Options options;
+  options.drive_folders = {fs::path(source_dir()) / "eds"};
+  options.clock = sim::SimBus::Clock::virtual_time;
+  options.defaults.cabinet = folder / "cabinet.toml";
+  // Asked for in every wait, by whoever waits.
+  options.cancelled = [&] {
+    const std::lock_guard lock(mutex);
+    threads.insert(std::this_thread::get_id());
+    return false;
+  };
+  shell = std::make_unique<Shell>(console, options);
+  shell->stay_open(true);
+  EXPECT_EQ(run("read 0x6041 -n all --json"), 0) << all();
+  for (const auto* name : {"feeder1", "feeder2", "送料", "table"})
+    EXPECT_TRUE(says(fmt::format(R"("axis":"{}")", name))) << all();
+  EXPECT_GE(threads.size(), 2U) << "a thread for each bus";
+  EXPECT_EQ(run("disable -n all"), 0) << all();
+  EXPECT_EQ(run("write 0x6040 0x99999 -n all"), 2) << all();
+  EXPECT_EQ(run("read 0x5FFF -n all"), 5) << all();
+  threads.clear();
+  (void)run("store -n feeder1,table");
+  EXPECT_TRUE(says("confirmation needed")) << all();
+  EXPECT_EQ(threads.count(std::this_thread::get_id()), threads.size()) << "what asks goes bus by bus";
 }
 
 TEST_F(AxisLines, WhatMovesOrGoesOnIsOfOneBusAndFamily) {
