@@ -38,15 +38,21 @@ Result<session::Identity> hold_axis_identity(show::Desk& desk, const Axis& axis,
                                              std::span<const drive::Family> families) {
   if (const auto held = hold_family(desk, axis, families); !held) return fail(held.error());
   auto identity = session::read_identity(*desk.session, axis.node);
-  if (!identity || !axis.serial || identity->serial == axis.serial) return identity;
-  if (!identity->serial)
+  if (!identity) return identity;
+  if (const auto same = hold_serial(axis, *identity); !same) return fail(same.error());
+  return identity;
+}
+
+Result<void> hold_serial(const Axis& axis, const session::Identity& identity) {
+  if (!axis.serial || identity.serial == axis.serial) return {};
+  if (!identity.serial)
     return other_drive(axis, objects::kSerialNumber,
                        fmt::format("the drive tells no serial number, and the file says {}", *axis.serial),
                        "remove `serial` where the family has none");
-  return other_drive(axis, objects::kSerialNumber,
-                     fmt::format("the drive has the serial number {}, and the file says {}",
-                                 *identity->serial, *axis.serial),
-                     "was the drive replaced, or swapped with another? `info` shows what it is");
+  return other_drive(
+      axis, objects::kSerialNumber,
+      fmt::format("the drive has the serial number {}, and the file says {}", *identity.serial, *axis.serial),
+      "was the drive replaced, or swapped with another? `info` shows what it is");
 }
 
 }  // namespace servoctl::cabinet

@@ -16,4 +16,7 @@ namespace servoctl::cabinet {
 Result<session::Identity> hold_axis_identity(show::Desk& desk, const Axis& axis,
                                              std::span<const drive::Family> families);
 
+/// Errc::refused where the file says another serial number (1018h:04) than the drive.
+Result<void> hold_serial(const Axis& axis, const session::Identity& identity);
+
 }  // namespace servoctl::cabinet

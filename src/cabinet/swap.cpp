@@ -5,6 +5,7 @@
 
 #include "cabinet/axis_identity.hpp"
 #include "cabinet/axis_needs.hpp"
+#include "session/family_check.hpp"
 #include "session/scan.hpp"
 #include "settings/restoring.hpp"
 #include "show/audience.hpp"
@@ -66,6 +67,10 @@ class Swapping {
           Errc::refused, axis_.node,
           fmt::format("the place of {} is taken, and the new drive is at node {}", axis_.name, at_),
           "take the old drive off the bus; `scan --long` shows both"));
+    if (!is_there(at_) && !is_there(axis_.node))
+      return fail(make_error(Errc::timeout,
+                             fmt::format("neither node-ID {} nor node-ID {} answers", at_, axis_.node),
+                             "is the new drive powered and on this bus? `scan` shows who is there"));
     if (!is_there(at_)) at_ = axis_.node;
     return {};
   }
@@ -77,6 +82,8 @@ class Swapping {
     auto identity = hold_axis_identity(desk_, there, options_->apply.choice.families);
     if (!identity) return fail(identity.error());
     identity_ = std::move(*identity);
+    is_proven_ = session::judge_family(identity_, *desk_.profile, options_->apply.choice.families).kind ==
+                 session::FamilyVerdict::Kind::proven;
     if (const auto own = refuse_listed(); !own) return own;
     const bool same = axis_.serial && identity_.serial == axis_.serial;
     desk_.tell(fmt::format("{}: a {} at node {}, serial number {}; the file says {}{}\n", axis_.name,
@@ -93,7 +100,9 @@ class Swapping {
       if (other.name == axis_.name) continue;
       const bool has_serial = identity_.serial.value_or(0) != 0;
       const bool is_it = has_serial && other.serial == identity_.serial;
-      const bool may_be = &other == at_node && !(has_serial && other.serial);
+      // One that is proven to be of the family of the axis that it is for is none of another's.
+      const bool other_family = other.family != axis_.family && is_proven_;
+      const bool may_be = &other == at_node && !(has_serial && other.serial) && !other_family;
       if (!is_it && !may_be) continue;
       return fail(drive_error(
           Errc::refused, at_,
@@ -101,7 +110,10 @@ class Swapping {
                 : fmt::format("the file has axis {} there, and nothing tells that this is another drive",
                               other.name),
           is_it ? "is it the new drive? `cabinet plan` shows who is where"
-                : "`serial` of both in the file tells them apart; `address` moves a drive by its node"));
+                : fmt::format(
+                      "where it is the new drive: `address {} -n {} -b {} -d {}` gives it its node, then repeat "
+                      "the line without --from; or write `serial` of both into the file, if they have one",
+                      axis_.node, at_, axis_.bus, axis_.family)));
     }
     return {};
   }
@@ -213,6 +225,7 @@ class Swapping {
   Axis axis_;
   std::uint8_t at_ = 0;
   session::Identity identity_;
+  bool is_proven_ = false;
   std::string moved_;
   Value settings_;
 };

@@ -175,18 +175,26 @@ Result<std::vector<LinePart>> parts_of(const Cabinet& cabinet, const command::Co
               "add " + one_of(names) + ", or name the axes");
 }
 
-void add_axis_options(const Axis& axis, const command::Command& command, command::Arguments& arguments) {
-  const auto add = [&](std::string_view option, const std::string& value) {
+void add_axis_options(std::span<const Axis* const> axes, const command::Command& command,
+                      command::Arguments& arguments) {
+  using Get = std::string (*)(const Axis&);
+  const std::pair<std::string_view, Get> rows[] = {
+      {"--turn", [](const Axis& axis) { return axis.turn ? std::to_string(*axis.turn) : std::string(); }},
+      {"--encoder",
+       [](const Axis& axis) { return axis.encoder ? std::to_string(*axis.encoder) : std::string(); }},
+      {"--limit", [](const Axis& axis) { return axis.limits.speed; }},
+      {"--max-torque", [](const Axis& axis) { return axis.limits.torque; }},
+      {"--window", [](const Axis& axis) { return axis.limits.window; }},
+      {"--max-following-error", [](const Axis& axis) { return axis.limits.following_error; }}};
+  for (const auto& [option, get] : rows) {
+    if (axes.empty() || arguments.has(option)) continue;
     const auto takes = std::any_of(command.parameters.begin(), command.parameters.end(),
                                    [&](const command::Parameter& p) { return p.name == option; });
-    if (takes && !value.empty() && !arguments.has(option)) arguments.add(option, value);
-  };
-  add("--turn", axis.turn ? std::to_string(*axis.turn) : "");
-  add("--encoder", axis.encoder ? std::to_string(*axis.encoder) : "");
-  add("--limit", axis.limits.speed);
-  add("--max-torque", axis.limits.torque);
-  add("--window", axis.limits.window);
-  add("--max-following-error", axis.limits.following_error);
+    const auto value = get(*axes.front());
+    const bool same =
+        std::all_of(axes.begin(), axes.end(), [&](const Axis* axis) { return get(*axis) == value; });
+    if (takes && same && !value.empty()) arguments.add(option, value);
+  }
 }
 
 }  // namespace servoctl::cli

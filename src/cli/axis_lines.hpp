@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -48,9 +49,9 @@ std::vector<std::string> with_axis_option(std::vector<std::string> words, const 
 Result<std::vector<LinePart>> parts_of(const cabinet::Cabinet& cabinet, const command::Command& command,
                                        const command::Arguments& arguments, const Settings& settings);
 
-/// What the file says of an axis holds as if it was typed, as far as the command takes it and the line does
-/// not say otherwise: counts, encoder and limits.
-void add_axis_options(const cabinet::Axis& axis, const command::Command& command,
+/// What the file says of axes holds as if it was typed, as far as it is the same for all of them, the command
+/// takes it and the line does not say otherwise: counts, encoder and limits.
+void add_axis_options(std::span<const cabinet::Axis* const> axes, const command::Command& command,
                       command::Arguments& arguments);
 
 }  // namespace servoctl::cli

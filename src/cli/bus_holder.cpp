@@ -206,8 +206,9 @@ Duration BusHolder::serve() {
   // A session from which `beside` was taken is a thread's own for a while (cabinet::at_all()).
   for (auto* session : sessions())
     if (!session->options().beside) return Duration::max();
-  if (!must_go_on() && !produces_sync()) return Duration::max();
-  auto out = Duration::max();
+  // What nodes send is heard while somebody thinks: a heartbeat that nobody took in would count as lost.
+  constexpr auto kHeard = std::chrono::milliseconds(50);
+  auto out = open_.empty() ? Duration::max() : Duration(kHeard);
   for (auto* session : sessions()) {
     // What goes wrong is told to the next line.
     (void)session->listen();

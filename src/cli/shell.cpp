@@ -157,7 +157,10 @@ Result<void> Shell::prepare(Run& run, const command::Arguments& arguments) {
   if (const auto possible = check_network(command, **opened); !possible) return possible;
   if (const auto named = prepare_nodes(run); !named) return named;
   if (run.context.profile != nullptr) learn_family(**opened, run.context.nodes, *run.context.profile);
-  return run.line.hold_family(run.context.nodes, run.context.profile, weight_of(command, arguments));
+  const auto weight = weight_of(command, arguments);
+  if (const auto held = run.line.hold_family(run.context.nodes, run.context.profile, weight); !held)
+    return held;
+  return weight == FamilyGate::Weight::changes ? hold_serials(run) : Result<void>();
 }
 
 /// A command without a bus takes the nodes as they are written.

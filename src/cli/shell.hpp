@@ -142,6 +142,7 @@ class Shell {
   Result<void> ask_drive(Run& run);
   Result<const drive::Profile*> device_of_node(Run& run, const Error& why);
   Result<void> prepare_nodes(Run& run);
+  static Result<void> hold_serials(Run& run);
   void hear_second_node(const Run& run);
   static Result<void> name_nodes(Run& run);
   Result<void> find_family(Run& run, bool changes);

@@ -5,9 +5,11 @@
 #include <variant>
 
 #include "base/text.hpp"
+#include "cabinet/axis_identity.hpp"
 #include "cabinet/station.hpp"
 #include "can/socketcan.hpp"
 #include "cli/shell.hpp"
+#include "session/identify.hpp"
 #include "session/open_bus.hpp"
 
 namespace servoctl::cli {
@@ -141,11 +143,23 @@ Result<std::vector<LinePart>> Shell::parts_of_line(const ParsedLine& line, const
   return parts;
 }
 
+/// Before something is changed: the drive of an axis is the one that the file says, where it says its serial
+/// number.
+Result<void> Shell::hold_serials(Run& run) {
+  for (const auto* axis : run.axes) {
+    if (!axis->serial || run.settings.force_family) continue;
+    const auto identity = session::read_identity(*run.context.session, axis->node);
+    if (!identity) return fail(identity.error());
+    if (const auto same = cabinet::hold_serial(*axis, *identity); !same) return same;
+  }
+  return {};
+}
+
 /// One part of a line on its way.
 struct Shell::PartRun {
   PartRun(Shell& shell, const ParsedLine& line, LinePart part)
       : arguments(line.arguments), of_bus(part.axes.empty()), run(shell, *line.command, std::move(part)) {
-    if (run.axes.size() == 1) add_axis_options(*run.axes.front(), *line.command, arguments);
+    add_axis_options(run.axes, *line.command, arguments);
     if (const auto ready = shell.make_ready(run, arguments); !ready) result = fail(ready.error());
   }
   void carry_out() { result = run.command->run(run.context, arguments); }

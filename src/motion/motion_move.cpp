@@ -198,6 +198,12 @@ Result<MotionPlan> plan_move(Motion& motion, const Move& move) {
     return fail(Errc::usage, "a move needs a speed above 0", "add --speed 60rpm");
   if (const auto allowed = motion.check_speed(fast->value); !allowed) return fail(allowed.error());
   plan.speed = fast->value;
+  if (const auto window = motion.limits().travel; window && std::abs(plan.way) > *window)
+    return fail(
+        motion.error(Errc::refused,
+                     fmt::format("the way of {} is longer than --window allows, {}",
+                                 units.words(plan.way, plan.unit), units.words(*window, plan.unit)),
+                     "nothing was moved; --window is the longest way of one motion, from where it begins"));
   if (const auto ramps =
           motion.add_ramps(plan.speed, {objects::kProfileAcceleration, objects::kProfileDeceleration}, plan);
       !ramps)

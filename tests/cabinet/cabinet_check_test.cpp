@@ -1,8 +1,11 @@
 #include "cabinet/cabinet_check.hpp"
 
 #include <gtest/gtest.h>
+
+#include <filesystem>
 #include <map>
 
+#include "base/file.hpp"
 #include "tests/source_dir.hpp"
 
 namespace servoctl::cabinet {
@@ -42,6 +45,14 @@ TEST(CabinetCheck, FindsNothingInWhatADriveCanHave) {
                        "parameters = { Pn0202 = 2, \"0x6065\" = 1000 }\n")),
             "");
   for (const auto* family : {"dm", "da200", "ts", "sv2"}) EXPECT_EQ(found(axis(family, "")), "") << family;
+}
+
+TEST(CabinetCheck, FindsNothingInTheExampleOfTheDocs) {
+  const auto text = read_file(std::filesystem::path(source_dir()) / "docs/cabinet.md", 1U << 20U).value();
+  const auto begin = text.find("```toml\n") + 8;
+  const auto example = text.substr(begin, text.find("```", begin) - begin);
+  EXPECT_NE(example.find("[axis.lift]"), std::string::npos);
+  EXPECT_EQ(found(example), "");
 }
 
 TEST(CabinetCheck, NamesWhatNoDriveOfTheFamilyTakes) {

@@ -57,6 +57,21 @@ TEST_F(CabinetSwap, GivesTheNewDriveTheNodeAndTheValuesOfTheAxis) {
   EXPECT_EQ(fleet.different(), 0U);
 }
 
+TEST_F(CabinetSwap, ADriveThatIsProvenToBeOfAnotherFamilyIsNotTakenForTheOneOfItsNode) {
+  for (auto& axis : fleet.cabinet.axes) axis.serial.reset();
+  fleet.cabinet.axes[2].node = 1;  // The gsd600 of the file; a da200 is there.
+  const auto done = swap(fleet, 0, 1);
+  EXPECT_TRUE(done) << done.error().message;
+  EXPECT_EQ(fleet.drive(0).node(), 41);
+}
+
+TEST_F(CabinetSwap, WhereNobodyIsBothNodesAreNamed) {
+  const auto done = swap(fleet, 0, 9);
+  ASSERT_FALSE(done);
+  EXPECT_NE(done.error().message.find("neither node-ID 9 nor node-ID 41 answers"), std::string::npos)
+      << done.error().message;
+}
+
 TEST_F(CabinetSwap, DoneASecondTimeMovesNobody) {
   ASSERT_TRUE(swap(fleet, 0, 1));
   const auto again = swap(fleet, 0, 1);
@@ -104,6 +119,7 @@ TEST_F(CabinetSwap, RefusesADriveThatHasAPlaceInTheFileAlready) {
   EXPECT_NE(known.error().message.find("that of axis axis2"), std::string::npos) << known.error().message;
   fleet.cabinet.axes[1].serial.reset();
   fleet.cabinet.axes[1].node = 1;
+  fleet.cabinet.axes[1].family = "da200";
   const auto listed = swap(fleet, 0, 1);
   ASSERT_FALSE(listed);
   EXPECT_EQ(listed.error().code, Errc::refused);

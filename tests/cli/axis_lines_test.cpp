@@ -1,76 +1,8 @@
 // Axes of a cabinet by name: which bus, node and family they stand for, and what is told of them.
-#include <gtest/gtest.h>
-
-#include <fmt/format.h>
-#include <unistd.h>
-#include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <mutex>
-#include <set>
-#include <sstream>
-#include <thread>
-
-#include "../source_dir.hpp"
-#include "cli/line_runner.hpp"
-#include "cli/shell.hpp"
-#include "cli/terminal/completer.hpp"
-#include "recording_console.hpp"
+#include "axis_lines.hpp"
 
 namespace servoctl::cli {
 namespace {
-
-namespace fs = std::filesystem;
-
-class AxisLines : public testing::Test {
- protected:
-  AxisLines() : folder(fs::temp_directory_path() / ("servoctl-axes-" + std::to_string(::getpid()))) {
-    fs::create_directories(folder);
-    write(R"([bus.main]
-url = "sim:gsd600@1,gsd600@2,da200@3"
-[bus.ring]
-url = "coe:sim:sv2@1"
-[group.feeders]
-bus = "main"
-family = "gsd600"
-turn = 10000
-gear = "10:1"
-per_turn = "20 mm"
-limits = { speed = "100mm/s" }
-[axis."feeder{1-2}"]
-node = "1-2"
-group = "feeders"
-[axis."送料"]
-bus = "main"
-node = 3
-family = "da200"
-[axis.table]
-bus = "ring"
-node = 1
-family = "sv2"
-)");
-    Shell::Options options;
-    options.drive_folders = {fs::path(source_dir()) / "eds"};
-    options.clock = sim::SimBus::Clock::virtual_time;
-    options.defaults.cabinet = folder / "cabinet.toml";
-    shell = std::make_unique<Shell>(console, options);
-    shell->stay_open(true);
-  }
-  ~AxisLines() override { fs::remove_all(folder); }
-
-  void write(const std::string& text) const { std::ofstream(folder / "cabinet.toml") << text; }
-  int run(std::string_view line) {
-    console.out_text.clear();
-    console.err_text.clear();
-    return LineRunner(*shell).run(line);
-  }
-  std::string all() const { return console.out_text + console.err_text; }
-  bool says(std::string_view what) const { return all().find(what) != std::string::npos; }
-
-  fs::path folder;
-  RecordingConsole console;
-  std::unique_ptr<Shell> shell;
-};
 
 TEST_F(AxisLines, ANameStandsForBusNodeAndFamily) {
   EXPECT_EQ(run("param get Pn0202 -n feeder2 --json"), 0) << all();
@@ -140,31 +72,6 @@ TEST_F(AxisLines, AMotionIsToldInTheUnitOfTheLoadAndMovesThatFar) {
   EXPECT_TRUE(says(R"("value":100000,)")) << all();                     // Ten revolutions of 10000.
   EXPECT_EQ(run("jog feeder1 101mm/s --for 100ms --yes"), 8) << all();  // Above the limit of the file.
   EXPECT_EQ(run("move 送料 20mm --yes"), 2) << all();                   // Nobody said what it moves.
-}
-
-TEST_F(AxisLines, ALoadThatRunsTheOtherWayIsMovedItsWayAndLimitedAsItIs) {
-  write(R"([bus.main]
-url = "sim:gsd600@1"
-[axis.lift]
-node = 1
-family = "gsd600"
-turn = 10000
-per_turn = "-20 mm"
-limits = { speed = "100mm/s" }
-)");
-  EXPECT_EQ(run("cabinet check"), 0) << all();
-  EXPECT_EQ(run("move lift 20mm --speed 50mm/s --accel 500mm/s2 --yes"), 0) << all();
-  EXPECT_TRUE(says("go -360 deg (20 mm) to -360 deg (20 mm) at 150 rpm")) << all();
-  EXPECT_EQ(run("read 0x6064 -n lift --json"), 0) << all();
-  EXPECT_TRUE(says(R"("value":-10000,)")) << all();
-  EXPECT_EQ(run("jog lift 50mm/s --for 100ms --yes"), 0) << all();
-  EXPECT_TRUE(says("-150 rpm (50 mm/s)")) << all();
-  EXPECT_EQ(run("jog lift 101mm/s --for 100ms --yes"), 8) << all();
-  EXPECT_EQ(run("home 35 -n lift --offset 20mm --speed 20mm/s --search 10mm/s --dry-run"), 0) << all();
-  EXPECT_TRUE(says("0x607C:0")) << all();
-  EXPECT_TRUE(says("601#237C6000F0D8FFFF")) << all();  // -10000
-  EXPECT_EQ(run("move lift 20mm --speed -50mm/s --yes"), 2) << all();
-  EXPECT_EQ(run("move lift 20mm --speed 0.0001um/s --yes"), 2) << all();
 }
 
 TEST_F(AxisLines, ALineThatContradictsTheFileIsRefused) {

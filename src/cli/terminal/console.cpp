@@ -2,6 +2,7 @@
 
 #include <poll.h>
 #include <sys/ioctl.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -89,6 +90,7 @@ void StandardConsole::show_progress(std::string_view line) {
 
 bool StandardConsole::ask(std::string_view question) {
   if (!can_ask()) return false;
+  ::tcflush(STDIN_FILENO, TCIFLUSH);  // What was typed before the question is no answer to it.
   err(std::string(question) + " [y/N] ");
   const auto answer = typed_line();
   return answer == "y" || answer == "Y" || answer == "yes";
