@@ -40,12 +40,14 @@ Result<void> check_several(const command::Command& command, const command::Argum
               first.empty() ? "name the bus: --bus " + parts.front().settings.bus : "such as -n " + first);
 }
 
-/// Whether the parts are of several buses, and none of them asks: one question at a time.
+/// Whether the parts are of several buses, and none of them asks: one question at a time. What may begin
+/// process data goes bus by bus: behind a part that has ended its bus has to be served.
 bool is_side_by_side(const command::Command& command, const command::Arguments& arguments,
                      const std::vector<LinePart>& parts) {
   const auto& first = parts.front().settings;
   const bool asks = command.effect_with(arguments) > Effect::writes && !first.yes;
-  if (asks || command.opens_bus || !includes(command.needs, Needs::bus)) return false;
+  const bool begins_cycles = includes(command.needs, Needs::ethercat);
+  if (asks || begins_cycles || command.opens_bus || !includes(command.needs, Needs::bus)) return false;
   return std::any_of(parts.begin(), parts.end(),
                      [&](const LinePart& part) { return part.settings.bus != first.bus; });
 }
