@@ -166,6 +166,10 @@ TEST_F(AxisLines, ThePromptTakesAnAxisForTheLinesThatFollow) {
   EXPECT_EQ(run("param get Pn0202 --json"), 0) << all();
   EXPECT_TRUE(says(R"("axis":"feeder2")")) << all();
   EXPECT_EQ(run("use feeder8"), 2) << all();
+  EXPECT_EQ(run("bus ring"), 0) << "a bus of the file by its name: " << all();
+  EXPECT_EQ(run("read statusword -n 1 --json"), 0) << all();
+  EXPECT_TRUE(says(R"("axis":"table")")) << all();
+  EXPECT_EQ(run("bus nowhere"), 3) << all();
   EXPECT_EQ(run("use table"), 0) << all();
   EXPECT_EQ(run("status --json"), 0) << all();
   EXPECT_TRUE(says(R"("axis":"table")")) << all();

@@ -27,6 +27,14 @@ Result<void> check_nodes(Shell& shell, const Settings& settings, const std::stri
   return {};
 }
 
+/// The bus of the settings; a bus of the cabinet by its name.
+Result<session::Session*> open_bus(Shell& shell, const Settings& settings) {
+  const bool may_be_name = settings.bus.find(':') == std::string::npos;
+  const auto cabinet = may_be_name ? shell.cabinet(settings) : Result<const cabinet::Cabinet*>(nullptr);
+  const auto* bus = cabinet && *cabinet != nullptr ? (*cabinet)->bus(settings.bus) : nullptr;
+  return shell.open(bus == nullptr ? settings : on_bus(**cabinet, settings, *bus).settings);
+}
+
 }  // namespace
 
 std::vector<PromptWord> prompt_words() {
@@ -71,7 +79,7 @@ std::optional<Outcome> choose(Shell& shell, const std::vector<std::string>& word
   auto settings = chosen(shell, shell.defaults(), words);
   if (!settings) return failed(settings.error(), shell.defaults(), word->name);
   if (word->name == "bus")
-    if (const auto opened = shell.open(*settings); !opened)
+    if (const auto opened = open_bus(shell, *settings); !opened)
       return failed(opened.error(), shell.defaults(), word->name);
   shell.defaults() = std::move(*settings);
   return Outcome{.command = std::string(word->name), .settings = shell.defaults()};
