@@ -133,6 +133,7 @@ class Shell {
   session::Options session_options();
   Outcome perform_parsed(const ParsedLine& line, const Settings& settings);
   struct PartRun;
+  Result<void> check_parts(const ParsedLine& line, const std::vector<LinePart>& parts);
   std::vector<Outcome> perform_in_turn(const ParsedLine& line, std::vector<LinePart> parts);
   std::vector<Outcome> perform_side_by_side(const ParsedLine& line, std::vector<LinePart> parts);
   Outcome perform_part(const ParsedLine& line, LinePart part);

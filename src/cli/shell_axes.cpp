@@ -176,12 +176,36 @@ Outcome Shell::perform_parsed(const ParsedLine& line, const Settings& settings) 
   auto parts = parts_of_line(line, settings);
   if (!parts) return failed(parts.error(), settings, line.command->path);
   if (parts->empty()) return perform_part(line, {settings, {}});
+  if (const auto right = check_parts(line, *parts); !right)
+    return failed(right.error(), settings, line.command->path);
   const bool together = is_side_by_side(*line.command, line.arguments, *parts);
   auto outcomes =
       together ? perform_side_by_side(line, std::move(*parts)) : perform_in_turn(line, std::move(*parts));
   auto all = std::move(outcomes.front());
   for (std::size_t i = 1; i < outcomes.size(); ++i) add_outcome(all, std::move(outcomes[i]));
   return all;
+}
+
+/// What one family does not take is told before another one is written to.
+Result<void> Shell::check_parts(const ParsedLine& line, const std::vector<LinePart>& parts) {
+  const auto& command = *line.command;
+  if (parts.size() < 2 || !command.check || command.effect_with(line.arguments) < Effect::writes) return {};
+  for (const auto& part : parts) {
+    if (part.settings.drive.empty()) continue;
+    const auto family = profile(part.settings.drive);
+    if (!family) return fail(family.error());
+    command::Context context;
+    context.profile = *family;
+    context.chinese = part.settings.chinese;
+    context.drive_folders = options_.drive_folders;
+    for (const auto* axis : part.axes) context.nodes.push_back(axis->node);
+    auto right = command.check(context, line.arguments);
+    if (!right) {
+      right.error().message = part.settings.names.in(right.error().message);
+      return right;
+    }
+  }
+  return {};
 }
 
 std::vector<Outcome> Shell::perform_in_turn(const ParsedLine& line, std::vector<LinePart> parts) {

@@ -6,6 +6,13 @@ namespace {
 
 using AxisMotion = AxisLines;
 
+TEST_F(AxisMotion, WhatOneFamilyDoesNotTakeKeepsTheOthersFromBeingWritten) {
+  EXPECT_EQ(run("param set feeder1,送料 Pn0202 47Hz"), 2) << all();
+  EXPECT_TRUE(says("'Pn0202' is not a panel parameter of da200")) << all();
+  EXPECT_EQ(run("param get feeder1 Pn0202 --json"), 0) << all();
+  EXPECT_TRUE(says(R"("raw":400,)")) << all();
+}
+
 TEST_F(AxisMotion, ALoadThatRunsTheOtherWayIsMovedItsWayAndLimitedAsItIs) {
   write(R"([bus.main]
 url = "sim:gsd600@1"
