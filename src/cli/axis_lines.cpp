@@ -178,7 +178,11 @@ Result<std::vector<LinePart>> parts_of(const Cabinet& cabinet, const command::Co
 void add_axis_options(std::span<const Axis* const> axes, const command::Command& command,
                       command::Arguments& arguments) {
   using Get = std::string (*)(const Axis&);
-  const std::pair<std::string_view, Get> rows[] = {
+  struct Row {
+    std::string_view option;
+    Get get;
+  };
+  const Row rows[] = {
       {"--turn", [](const Axis& axis) { return axis.turn ? std::to_string(*axis.turn) : std::string(); }},
       {"--encoder",
        [](const Axis& axis) { return axis.encoder ? std::to_string(*axis.encoder) : std::string(); }},
@@ -186,14 +190,14 @@ void add_axis_options(std::span<const Axis* const> axes, const command::Command&
       {"--max-torque", [](const Axis& axis) { return axis.limits.torque; }},
       {"--window", [](const Axis& axis) { return axis.limits.window; }},
       {"--max-following-error", [](const Axis& axis) { return axis.limits.following_error; }}};
-  for (const auto& [option, get] : rows) {
-    if (axes.empty() || arguments.has(option)) continue;
+  for (const auto& row : rows) {
+    if (axes.empty() || arguments.has(row.option)) continue;
     const auto takes = std::any_of(command.parameters.begin(), command.parameters.end(),
-                                   [&](const command::Parameter& p) { return p.name == option; });
-    const auto value = get(*axes.front());
+                                   [&](const command::Parameter& p) { return p.name == row.option; });
+    const auto value = row.get(*axes.front());
     const bool same =
-        std::all_of(axes.begin(), axes.end(), [&](const Axis* axis) { return get(*axis) == value; });
-    if (takes && same && !value.empty()) arguments.add(option, value);
+        std::all_of(axes.begin(), axes.end(), [&](const Axis* axis) { return row.get(*axis) == value; });
+    if (takes && same && !value.empty()) arguments.add(row.option, value);
   }
 }
 
