@@ -236,11 +236,19 @@ Result<void> SocketCanBus::fill(Take which) {
   return {};
 }
 
+/// A frame that was on its way when the controller left the bus may come behind the report of it: only with a
+/// carrier does it show that the controller takes part again.
+void SocketCanBus::note_bus_off(const Frame& frame) {
+  if (!frame.error) {
+    is_bus_off_ = is_bus_off_ && socketcan_carrier(interface_name_) != true;
+    return;
+  }
+  is_bus_off_ = (is_bus_off_ || (frame.id & CAN_ERR_BUSOFF) != 0) && (frame.id & CAN_ERR_RESTARTED) == 0;
+}
+
 void SocketCanBus::take(const can_frame& raw, std::optional<std::uint32_t> lost_in_all, TimePoint time) {
   const auto frame = frame_of(raw);
-  // A frame of the bus, or the report of a restart, shows that the controller takes part again.
-  is_bus_off_ =
-      frame.error && (is_bus_off_ || (frame.id & CAN_ERR_BUSOFF) != 0) && (frame.id & CAN_ERR_RESTARTED) == 0;
+  note_bus_off(frame);
   if (lost_in_all && std::exchange(lost_frames_, *lost_in_all) != *lost_in_all)
     inbox_.push_back({overflow_report(), time});
   inbox_.push_back({frame, time});

@@ -42,6 +42,10 @@ Result<std::unique_ptr<Bus>> open_socketcan(std::string_view interface_name,
 /// The socket of open_socketcan(); errors as there.
 Result<Descriptor> socketcan_socket(const std::string& name, std::span<const Filter> filters);
 
+/// Whether a controller takes part in its bus: one that is bus-off has no carrier, and what is sent then is
+/// dropped without an error. Empty where it is not known, as for an interface that is down.
+std::optional<bool> socketcan_carrier(const std::string& name);
+
 /// The CAN interfaces of this machine, up or down, in alphabetical order.
 std::vector<std::string> can_interfaces();
 
@@ -74,6 +78,7 @@ class SocketCanBus final : public Bus {
   };
   Result<void> fill(Take which);
   void drain(Take take = Take::present);
+  void note_bus_off(const Frame& frame);
   void take(const ::can_frame& raw, std::optional<std::uint32_t> lost_in_all, TimePoint time);
 
   Descriptor socket_;
@@ -82,7 +87,7 @@ class SocketCanBus final : public Bus {
   std::vector<Filter> filters_;
   std::uint32_t lost_frames_ = 0;  ///< As last told by the kernel.
   bool waits_in_slices_ = false;   ///< recv() of the socket ends after a slice.
-  bool is_bus_off_ = false;        ///< As last reported.
+  bool is_bus_off_ = false;        ///< As last reported, until it takes part again.
   struct Received {
     Frame frame;
     TimePoint time;

@@ -31,11 +31,6 @@ std::optional<std::uint64_t> number_in(const std::filesystem::path& file) {
   return text ? parse_digits(trim(*text), 10) : std::nullopt;
 }
 
-/// A controller that is bus-off has no carrier; what is sent then is dropped without an error.
-bool has_carrier(const std::string& name) {
-  return number_in(fmt::format("{}/{}/carrier", kNetwork, name)) != 0U;
-}
-
 /// Finds the interface and makes sure that it can be used.
 Result<int> interface_index(int fd, const std::string& name) {
   ifreq request{};
@@ -49,7 +44,7 @@ Result<int> interface_index(int fd, const std::string& name) {
   if (request.ifr_hwaddr.sa_family != ARPHRD_CAN) return interface_is_no_can(name);
   if (::ioctl(fd, SIOCGIFFLAGS, &request) != 0) return interface_cannot_open(name, errno);
   if ((request.ifr_flags & IFF_UP) == 0) return interface_down(name);
-  if (!has_carrier(name)) return interface_bus_off(name);
+  if (socketcan_carrier(name) == false) return interface_bus_off(name);
   return index;
 }
 
@@ -81,6 +76,11 @@ bool configure(int fd, std::span<const Filter> filters) {
 }
 
 }  // namespace
+
+std::optional<bool> socketcan_carrier(const std::string& name) {
+  const auto carrier = number_in(fmt::format("{}/{}/carrier", kNetwork, name));
+  return carrier ? std::optional(*carrier != 0) : std::nullopt;
+}
 
 Result<Descriptor> socketcan_socket(const std::string& name, std::span<const Filter> filters) {
   if (name.empty() || name.size() >= IFNAMSIZ || name.find('/') != std::string::npos)
