@@ -100,6 +100,8 @@ std::optional<LinkState> parse_link(ByteSpan message) {
   return out;
 }
 
+bool is_interface(const std::string& name) { return ::if_nametoindex(name.c_str()) != 0; }
+
 std::optional<LinkState> link_state(std::string_view interface_name) {
   const auto index = ::if_nametoindex(std::string(interface_name).c_str());
   const Descriptor socket(::socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC, NETLINK_ROUTE));

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "base/bytes.hpp"
@@ -29,6 +30,9 @@ struct LinkState {
       tx_errors;  ///< Error counters of the controller (ISO 11898-1, 12.1.4.2), where
   std::optional<std::uint16_t> rx_errors;  ///< its driver tells them.
 };
+
+/// Whether the kernel has a network interface of this name, of whatever kind.
+bool is_interface(const std::string& name);
 
 /// Asks the kernel (rtnetlink). Empty when it does not answer or there is no such interface; a virtual one
 /// has a state without anything in it.

@@ -133,6 +133,7 @@ void DuplicateWatch::on_answer(std::uint8_t id, const can::Frame& frame, TimePoi
   const auto request = request_of(node, frame);
   if (request == node.open.end()) return on_surplus(id, frame, now);
   slowest_ = std::max<Duration>(slowest_, now - request->time);
+  last_answer_ = now;
   if (!request->segment) node.answered.push_back({request->object, false});
   if (node.answered.size() > kRemembered) node.answered.erase(node.answered.begin());
   node.open.erase(request);

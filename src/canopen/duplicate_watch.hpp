@@ -42,6 +42,8 @@ class DuplicateWatch {
   void forget(std::uint8_t node) { nodes_[node] = {}; }
   /// The longest time from a request to its first answer so far; zero until there was one.
   Duration slowest_answer() const { return slowest_; }
+  /// When the last answer came to a request that was open; empty until there was one.
+  std::optional<TimePoint> last_answer() const { return last_answer_; }
 
   /// Reported once per node.
   std::optional<NodeEvent> take_event();
@@ -84,6 +86,7 @@ class DuplicateWatch {
 
   std::array<Node, 128> nodes_;
   Duration slowest_{};
+  std::optional<TimePoint> last_answer_;
   std::deque<NodeEvent> events_;
 };
 

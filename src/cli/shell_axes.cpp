@@ -24,7 +24,7 @@ using report::Value;
 
 /// A word without a colon that is no interface may be the name of a bus in the cabinet.
 bool may_name_bus(const std::string& bus) {
-  return !bus.empty() && bus.find(':') == std::string::npos && !session::link_of(bus);
+  return !bus.empty() && bus.find(':') == std::string::npos && !can::is_interface(bus);
 }
 
 /// What is shown while it runs, and what moves, is of one bus and family.

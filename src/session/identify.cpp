@@ -16,10 +16,9 @@ bool tells(const Result<Bytes>& answer) {
   return answer || answer.error().code == Errc::sdo_abort || answer.error().code == Errc::protocol;
 }
 
-Result<void> listen_for(Session& session, Duration time) {
-  const auto waited = session.wait([] { return false; }, session.now() + time);
-  if (!waited) return fail(waited.error());
-  return {};
+Result<void> listen_until(Session& session, TimePoint end) {
+  if (const auto waited = session.wait([] { return false; }, end); !waited) return fail(waited.error());
+  return session.listen();  // What came before, too, where the end is past.
 }
 
 /// Of 1000h, 1018h:01 and :02, 1008h, and 1018h:03 where it was asked for.
@@ -133,7 +132,8 @@ Result<void> settle_duplicates(Session& session, std::span<const std::uint8_t> n
   if (can == nullptr) return {};
   auto& duplicates = can->duplicates();
   const auto patience = std::clamp<Duration>(2 * duplicates.slowest_answer(), least, kThoroughly);
-  if (const auto heard = listen_for(session, patience); !heard) return heard;
+  const auto since = duplicates.last_answer().value_or(session.now());
+  if (const auto heard = listen_until(session, since + patience); !heard) return heard;
   std::vector<SdoRequest> requests;
   for (const auto node : nodes)
     if (duplicates.is_suspect(node))
@@ -142,7 +142,7 @@ Result<void> settle_duplicates(Session& session, std::span<const std::uint8_t> n
         requests.push_back({node, object, {}});
   if (requests.empty()) return {};
   (void)session.transfer(requests);
-  return listen_for(session, kThoroughly);
+  return listen_until(session, session.now() + kThoroughly);
 }
 
 Result<void> refuse_duplicate(Session& session, std::uint8_t node) {
