@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "base/pdo_index.hpp"
 #include "base/text.hpp"
+#include "drive/drive_settings.hpp"
 #include "drive/naming.hpp"
 #include "drive/standard_objects.hpp"
 #include "pdo/pdo_changing.hpp"
@@ -61,16 +61,6 @@ std::string who(const session::Identity& identity) {
   return out;
 }
 
-/// Whether the object says which PDOs are exchanged, and what is in them.
-bool is_of_pdos(const drive::Profile& profile, ObjectAddress object) {
-  const auto assigns = [&](const std::string& name) {
-    const auto place = drive::place_of(profile, name);
-    return place && place->index == object.index;
-  };
-  return pdo_at(object.index) || assigns(profile.rules.pdo.assign_rpdo) ||
-         assigns(profile.rules.pdo.assign_tpdo);
-}
-
 std::string family_lines(const FoundAxis& axis) {
   if (axis.family.empty())
     return "# No family fits: name one (`servoctl drives`) or an .eds or .xml file, and take the # away.\n"
@@ -117,9 +107,10 @@ Result<FoundSettings> find_settings(show::Desk& desk, std::uint8_t node) {
   bool other_pdos = false;
   for (const auto& entry : snapshot->entries) {
     const auto usual = factory.values.find(entry.object);
-    const bool known = entry.bytes && entry.left_out.empty() && usual != factory.values.end();
-    if (!known || *entry.bytes == usual->second || settings::is_address(desk.profile, entry.object)) continue;
-    if (is_of_pdos(*desk.profile, entry.object))
+    if (!entry.bytes || !entry.left_out.empty() || settings::is_address(desk.profile, entry.object)) continue;
+    if (usual == factory.values.end()) ++out.unstated;
+    if (usual == factory.values.end() || *entry.bytes == usual->second) continue;
+    if (drive::is_of_pdos(*desk.profile, entry.object))
       other_pdos = true;
     else if (entry.object == objects::kProducerHeartbeat)
       out.heartbeat_ms = static_cast<std::uint16_t>(load_le(*entry.bytes));

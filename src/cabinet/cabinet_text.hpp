@@ -32,6 +32,7 @@ struct FoundAxis {
 /// whose text is the second of the pair, empty where they are as from the factory. Node-ID and bitrate are
 /// left out, and what cannot be said in one value. Only reads.
 struct FoundSettings {
+  std::size_t unstated = 0;  ///< Settings without a factory value to hold them against.
   std::vector<std::string> parameters;
   std::optional<std::uint16_t> heartbeat_ms;
   std::string pdos;

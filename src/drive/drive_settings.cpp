@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "base/pdo_index.hpp"
 #include "drive/naming.hpp"
 
 namespace servoctl::drive {
@@ -51,6 +52,17 @@ std::vector<DriveSetting> settings_of(const Profile& profile) {
       out.push_back({&entry, parameter, mean != means.end() ? mean->second : reason(entry, parameter)});
     }
   return out;
+}
+
+bool is_of_pdos(const Profile& profile, ObjectAddress object) {
+  const auto* parameter = profile.parameter(object);
+  if (parameter != nullptr && parameter->mirror && pdo_at(parameter->mirror->index)) return true;
+  const auto assigns = [&](const std::string& name) {
+    const auto place = place_of(profile, name);
+    return place && place->index == object.index;
+  };
+  return pdo_at(object.index) || assigns(profile.rules.pdo.assign_rpdo) ||
+         assigns(profile.rules.pdo.assign_tpdo);
 }
 
 }  // namespace servoctl::drive

@@ -25,4 +25,9 @@ std::vector<std::pair<ObjectAddress, std::string_view>> means_of_writing(const P
 /// lock for the writes themselves are no settings.
 std::vector<DriveSetting> settings_of(const Profile& profile);
 
+/// Whether the object says which PDOs are exchanged, when, and what is in them: communication and mapping
+/// records (1400h to 1BFFh), what assigns them (PdoRules::assign_rpdo, assign_tpdo), and the parameters in
+/// which the drive stores them (od::Parameter::mirror).
+bool is_of_pdos(const Profile& profile, ObjectAddress object);
+
 }  // namespace servoctl::drive

@@ -4,15 +4,21 @@
 #include <algorithm>
 #include <set>
 
-#include "base/pdo_index.hpp"
 #include "base/text.hpp"
+#include "drive/drive_settings.hpp"
 
 namespace servoctl::settings {
 
 Result<Selection> selection_of(const drive::Profile& profile, std::string_view word) {
   if (word.empty()) return Selection{};
-  if (word == "communication") return Selection{[](ObjectAddress object) { return object.index < 0x2000; }};
-  if (word == "pdo") return Selection{[](ObjectAddress object) { return pdo_at(object.index).has_value(); }};
+  if (word == "communication")
+    return Selection{[&profile](ObjectAddress object) {
+      const auto* parameter = profile.parameter(object);
+      const bool stored = parameter != nullptr && parameter->mirror;
+      return (stored ? parameter->mirror->index : object.index) < 0x2000;
+    }};
+  if (word == "pdo")
+    return Selection{[&profile](ObjectAddress object) { return drive::is_of_pdos(profile, object); }};
   if (word == "params")
     return Selection{[&profile](ObjectAddress object) { return profile.parameter(object) != nullptr; }};
   std::set<std::string> groups;
