@@ -2,11 +2,23 @@
 
 #include <algorithm>
 
+#include "canopen/cob_id.hpp"
+#include "canopen/sdo_frame.hpp"
+
 namespace servoctl::canopen {
 
 namespace {
 
 constexpr std::size_t kMostEmergencies = 8;
+constexpr ObjectAddress kHeartbeatTime{0x1017, 0};
+/// Command specifier of an initiate download request, in the upper three bits of byte 0 (CiA 301, 7.2.4.3.3).
+constexpr std::uint8_t kDownload = 1;
+
+bool writes_heartbeat_time(const can::Frame& frame) {
+  return !frame.extended && !frame.remote && !frame.error && frame.size == 8 && frame.id > kSdoRequest &&
+         frame.id <= kSdoRequest + kLastNode && frame.data[0] >> 5U == kDownload &&
+         sdo_object(frame) == kHeartbeatTime;
+}
 
 }  // namespace
 
@@ -21,6 +33,18 @@ void NodeWatch::on_frame(const can::Frame& frame, TimePoint now) {
     on_error_control(*message, now);
     update_deadline();
   }
+  on_sent(frame);  // Another master's.
+}
+
+void NodeWatch::on_sent(const can::Frame& frame) {
+  if (writes_heartbeat_time(frame)) forget_period(static_cast<std::uint8_t>(frame.id & 0x7FU));
+}
+
+void NodeWatch::forget_period(std::uint8_t node) {
+  nodes_[node].last.reset();
+  nodes_[node].intervals = 0;
+  nodes_[node].period = Duration::zero();
+  update_deadline();
 }
 
 /// A node that repeats itself while nobody takes its events is counted, not listed.

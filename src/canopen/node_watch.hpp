@@ -51,6 +51,8 @@ struct NodeEvent {
 class NodeWatch {
  public:
   void on_frame(const can::Frame& frame, TimePoint now);
+  /// A frame that this program sends. Whoever writes 1017h gives the node another period: it is learned anew.
+  void on_sent(const can::Frame& frame);
   void on_time(TimePoint now);
   TimePoint deadline() const { return deadline_; }
 
@@ -93,6 +95,7 @@ class NodeWatch {
   };
   void on_emergency(const Emergency& emergency, TimePoint now);
   void on_error_control(const ErrorControl& message, TimePoint now);
+  void forget_period(std::uint8_t node);
 
   void update_deadline();
 

@@ -77,6 +77,7 @@ class CanNetwork final : public Network {
   /// Sends a frame of any kind. Errors as can::Bus::send().
   Result<void> send(const can::Frame& frame) {
     duplicates_.on_sent(frame, now());
+    watch_.on_sent(frame);
     return bus_->send(frame);
   }
   /// The frame that the last step took in; empty when it took none.

@@ -226,6 +226,23 @@ TEST_F(NodeWatchTest, MissesEveryNodeInItsOwnTime) {
   EXPECT_FALSE(watch.take_event());
 }
 
+/// A node that is told to send half as often has not fallen silent.
+TEST_F(NodeWatchTest, LearnsThePeriodAnewWhenSomebodyWrites1017h) {
+  for (int i = 0; i < 4; ++i) hear("705#05", 20ms);
+  for (int i = 0; i < 4; ++i) hear("706#05", 20ms);
+  watch.on_sent(frame("605#2B171000F4010000"));
+  EXPECT_EQ(watch.period(5), 0ms);
+  EXPECT_EQ(watch.deadline(), now + 120ms) << "that of node 6";
+  hear("606#2B171000F4010000", 0ms);
+  EXPECT_EQ(watch.deadline(), kNever);
+  for (int i = 0; i < 3; ++i) hear("705#05", 500ms);
+  EXPECT_TRUE(kinds().empty());
+  EXPECT_EQ(watch.deadline(), now + 1500ms);
+  for (const auto* other : {"605#4017100000000000", "605#2B161000F4010000", "585#2B171000F4010000"})
+    hear(other, 0ms);
+  EXPECT_EQ(watch.deadline(), now + 1500ms);
+}
+
 TEST_F(NodeWatchTest, CountsAnEmergencyThatANodeRepeats) {
   for (const auto* text : {"083#00FF810000000000", "084#00FF810000000000", "083#00FF810000000000",
                            "083#00FF810000000000", "083#00FF810000000001", "083#00FF810000000000"})
