@@ -1,6 +1,8 @@
 #include "cabinet/cabinet_check.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
+#include <iterator>
 
 #include "base/text.hpp"
 #include "command/command.hpp"
@@ -54,9 +56,10 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   if (!given) return fail(given.error());
   const auto found = file.empty() ? context.front_end->cabinet() : Result<const cabinet::Cabinet*>(&*given);
   if (!found) return fail(found.error());
-  auto errors = cabinet::check_cabinet(
+  auto findings = cabinet::check_cabinet(
       **found, [&](const std::string& family) { return context.front_end->family(family); });
-  for (auto& error : errors) context.errors.push_back(std::move(error));
+  std::move(findings.errors.begin(), findings.errors.end(), std::back_inserter(context.errors));
+  std::move(findings.notices.begin(), findings.notices.end(), std::back_inserter(context.notices));
   return Value(table_of(**found));
 }
 

@@ -9,6 +9,7 @@
 #include "cabinet/axis_values.hpp"
 #include "drive/drive_settings.hpp"
 #include "drive/naming.hpp"
+#include "drive/standard_objects.hpp"
 #include "drive/unit.hpp"
 #include "pdo/pdo_changing.hpp"
 #include "pdo/pdo_source.hpp"
@@ -28,6 +29,9 @@ class AxisCheck {
     desk_.profile = &profile;
   }
 
+  /// What is no fault, and worth a look.
+  std::vector<std::string> take_notices() { return std::move(notices_); }
+
   std::vector<Error> run() {
     for (const auto& setting : axis_->parameters) check_setting(setting);
     check_heartbeat();
@@ -40,6 +44,12 @@ class AxisCheck {
   void check_setting(const Setting& setting) {
     const auto target = drive::resolve(profile_, setting.name);
     if (!target) return add(setting.at, target.error());
+    if (target->entry == nullptr && !profile_->is_generic())
+      notices_.push_back(
+          cabinet_error(*cabinet_, *axis_, setting.at,
+                        fmt::format("{} is not in the data of {}: its size and limits are asked of the drive",
+                                    setting.name, profile_->family))
+              .message);
     const auto twice = places_.emplace(target->address, &setting);
     if (!twice.second)
       return add(setting.at, make_error(Errc::file, fmt::format("{} is {} as well, in line {}", setting.name,
@@ -136,11 +146,23 @@ class AxisCheck {
         number && number->number > 0 && std::any_of(units.begin(), units.end(), [&](std::string_view unit) {
           return drive::conversion(number->unit, unit).has_value();
         });
-    if (fits) return;
+    if (fits) return check_range(name, text, *number);
     auto known = std::string(fmt::format("{}", fmt::join(units, ", ")));
     if (axis_->load && name != "torque") known += ", " + axis_->load->unit + (name == "speed" ? "/s" : "");
     add(axis_->limits.at, make_error(Errc::file, fmt::format("limits: {} = \"{}\" is no limit", name, text),
                                      fmt::format("a number above 0 in {}", known)));
+  }
+
+  /// A torque that is in the unit of the drive's own limit is held against the range of that.
+  void check_range(std::string_view name, const std::string& text, const drive::NumberWithUnit& number) {
+    const auto target = drive::target_at(profile_, objects::kMaxTorque);
+    if (name != "torque" || target.entry == nullptr) return;
+    if (drive::meaning(target, axis_->node).unit != number.unit) return;
+    const auto fits = settings::check_change(desk_, axis_->node, target, text, {});
+    if (fits) return;
+    add(axis_->limits.at,
+        make_error(Errc::file, fmt::format("limits: torque = \"{}\": {}", text, fits.error().message),
+                   fits.error().hint));
   }
 
   void add(Place at, const Error& error) {
@@ -154,28 +176,45 @@ class AxisCheck {
   std::map<ObjectAddress, const Setting*> places_;
   std::map<ObjectAddress, std::string_view> left_out_;
   std::vector<Error> errors_;
+  std::vector<std::string> notices_;
 };
 
 }  // namespace
 
-std::vector<Error> check_axis(const Cabinet& cabinet, const Axis& axis, const LoadProfile& load) {
-  const auto profile = load(axis.family);
-  if (profile) return AxisCheck(cabinet, axis, **profile).run();
-  return {cabinet_error(cabinet, axis, axis.at, profile.error().message, profile.error().hint)};
-}
+namespace {
 
-std::vector<Error> check_cabinet(const Cabinet& cabinet, const LoadProfile& load) {
-  std::vector<Error> out;
-  std::set<std::string> told;
-  for (const auto& axis : cabinet.axes)
-    for (auto& error : check_axis(cabinet, axis, load)) {
-      // Forty axes that share a line share its faults.
-      const auto name = fmt::format("axis {}: ", axis.name);
-      const auto at = error.message.find(name);
-      auto fault = error.message;
-      if (at != std::string::npos) fault.erase(at, name.size());
-      if (told.insert(std::move(fault)).second) out.push_back(std::move(error));
+/// Forty axes that share a line share what there is to say of it.
+class ToldOnce {
+ public:
+  bool is_new(const Axis& axis, std::string text) {
+    const auto name = fmt::format("axis {}: ", axis.name);
+    if (const auto at = text.find(name); at != std::string::npos) text.erase(at, name.size());
+    return told_.insert(std::move(text)).second;
+  }
+
+ private:
+  std::set<std::string> told_;
+};
+
+}  // namespace
+
+CabinetFindings check_cabinet(const Cabinet& cabinet, const LoadProfile& load) {
+  CabinetFindings out;
+  ToldOnce told;
+  for (const auto& axis : cabinet.axes) {
+    const auto profile = load(axis.family);
+    if (!profile) {
+      auto hint = fmt::format("correct `family`; {}", profile.error().hint);
+      auto error = cabinet_error(cabinet, axis, axis.at, profile.error().message, std::move(hint));
+      if (told.is_new(axis, error.message)) out.errors.push_back(std::move(error));
+      continue;
     }
+    AxisCheck check(cabinet, axis, **profile);
+    for (auto& error : check.run())
+      if (told.is_new(axis, error.message)) out.errors.push_back(std::move(error));
+    for (auto& notice : check.take_notices())
+      if (told.is_new(axis, notice)) out.notices.push_back(std::move(notice));
+  }
   return out;
 }
 

@@ -12,12 +12,14 @@ namespace servoctl::cabinet {
 /// The data of a family or a file; errors as drive::load_profile().
 using LoadProfile = std::function<Result<const drive::Profile*>(const std::string& family)>;
 
-/// What is wrong with one axis, as far as it can be told without its drive: family, names and values of its
-/// parameters, two values for one object, PDOs, heartbeat, units of its limits. Each error has file, line and
-/// column; empty: nothing.
-std::vector<Error> check_axis(const Cabinet& cabinet, const Axis& axis, const LoadProfile& load);
+struct CabinetFindings {
+  std::vector<Error> errors;         ///< Each with file, line and column.
+  std::vector<std::string> notices;  ///< No fault, and worth a look: objects that no manual lists.
+};
 
-/// The same of all axes; what a group or a family says wrong is told once.
-std::vector<Error> check_cabinet(const Cabinet& cabinet, const LoadProfile& load);
+/// What is wrong with the axes, as far as it can be told without their drives: family, names and values of
+/// parameters, two values for one object, PDOs, heartbeat, limits. What a group or a family says wrong is
+/// told once.
+CabinetFindings check_cabinet(const Cabinet& cabinet, const LoadProfile& load);
 
 }  // namespace servoctl::cabinet

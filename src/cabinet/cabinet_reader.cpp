@@ -1,20 +1,22 @@
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <set>
 
 #include "base/duration.hpp"
 #include "base/file.hpp"
-#include "base/number.hpp"
 #include "base/text.hpp"
 #include "cabinet/axis_part.hpp"
 #include "cabinet/cabinet.hpp"
 #include "cabinet/name_pattern.hpp"
 #include "canopen/node_list.hpp"
+#include "drive/bitrate.hpp"
 #include "drive/naming.hpp"
 #include "drive/toml_depth.hpp"
 #include "drive/toml_reader.hpp"
+#include "session/open_bus.hpp"
 
 namespace servoctl::cabinet {
 namespace {
@@ -24,6 +26,11 @@ using drive::get_int;
 using drive::TableReader;
 
 constexpr std::uintmax_t kMostBytes = 4U << 20U;
+/// In bit/s: those of CiA 301, 5.2, and 100 kbit/s, which is in use as well.
+constexpr std::array<std::uint32_t, 9> kBitrates{10'000,  20'000,  50'000,  100'000,  125'000,
+                                                 250'000, 500'000, 800'000, 1'000'000};
+constexpr std::string_view kBitrateForm =
+    "bitrate = \"500k\" (10k, 20k, 50k, 100k, 125k, 250k, 500k, 800k or 1M)";
 
 /// Tables by name, `[axis.NAME]`, in the order of the file: toml++ sorts them by name.
 Result<std::vector<std::pair<std::string, const toml::table*>>> named_tables(const TableReader& root,
@@ -79,9 +86,12 @@ class CabinetReader {
       const auto done =
           reader.read({{"url", drive::into(bus.url)},
                        {"bitrate", [&](const auto& n) { return read_bitrate(n, bus.bitrate); }}},
-                      {{"url", "url = \"can0\""}, {"bitrate", "bitrate = \"500k\" or \"1M\""}});
+                      {{"url", "url = \"can0\""}, {"bitrate", kBitrateForm}});
       if (!done) return done;
       if (bus.url.empty()) return reader.fail_at(*one, fmt::format("bus {}: 'url' is missing", name));
+      if (const auto good = session::check_url(bus.url); !good)
+        return fail_at(*one->get("url"), fmt::format("bus {}: {}", name, good.error().message),
+                       good.error().hint);
       for (const auto& other : out_.buses)
         if (other.url == bus.url)
           return reader.fail_at(*one, fmt::format("bus {} is {} as bus {} is", name, bus.url, other.name));
@@ -91,10 +101,8 @@ class CabinetReader {
   }
 
   static bool read_bitrate(const toml::node& node, std::string& out) {
-    if (!get(node, out) || out.empty()) return false;
-    const auto digits = std::string_view(out).substr(0, out.size() - 1);
-    const auto number = parse_digits(digits, 10);
-    return number && *number > 0 && (out.back() == 'k' || out.back() == 'M');
+    const auto bitrate = get(node, out) ? drive::parse_bitrate(out) : Result<std::uint32_t>();
+    return bitrate && std::count(kBitrates.begin(), kBitrates.end(), *bitrate) > 0;
   }
 
   Result<void> defaults(const TableReader& root, const toml::table& table) {
@@ -161,9 +169,8 @@ class CabinetReader {
       }
       std::vector<std::string> known;
       for (const auto& one : groups_) known.push_back(one.first);
-      auto error = fail_at(table, fmt::format("axis {}: there is no [group.{}]", name, *group)).value();
-      error.hint = did_you_mean(*group, known);
-      return fail(std::move(error));
+      return fail_at(table, fmt::format("axis {}: there is no [group.{}]", name, *group),
+                     did_you_mean(*group, known));
     }
     if (part.family.empty())
       return fail_at(table, fmt::format("axis {}: 'family' is missing: gsd600, or a file", name));
@@ -173,8 +180,12 @@ class CabinetReader {
     if (part.bus.empty() && out_.buses.size() == 1) part.bus = out_.buses.front().name;
     if (part.bus.empty())
       return fail_at(table, fmt::format("axis {}: 'bus' is missing: there are {}", name, out_.buses.size()));
-    if (out_.bus(part.bus) == nullptr)
-      return fail_at(table, fmt::format("axis {}: there is no [bus.{}]", name, part.bus));
+    if (out_.bus(part.bus) == nullptr) {
+      std::vector<std::string> known;
+      for (const auto& bus : out_.buses) known.push_back(bus.name);
+      return fail_at(table, fmt::format("axis {}: there is no [bus.{}]", name, part.bus),
+                     did_you_mean(part.bus, known));
+    }
     out.bus = part.bus;
     if (const auto load = set_load(part, out); !load) return fail(load.error());
     take_over(std::move(part), out);
@@ -235,9 +246,10 @@ class CabinetReader {
     return {};
   }
 
-  tl::unexpected<Error> fail_at(const toml::table& table, const std::string& what,
+  tl::unexpected<Error> fail_at(const toml::node& node, const std::string& what,
                                 std::string hint = {}) const {
-    auto error = TableReader(table, name_).fail_at(table, what).value();
+    const auto at = node.source().begin;
+    auto error = file_error(name_, at.line, at.column, what);
     error.hint = std::move(hint);
     return fail(std::move(error));
   }
@@ -257,7 +269,9 @@ Result<Cabinet> parse_cabinet(std::string_view toml, const std::filesystem::path
   const auto parsed = toml::parse(toml, name);
   if (parsed) return CabinetReader(file).read(parsed.table());
   const auto at = parsed.error().source().begin;
-  return fail(file_error(name, at.line, at.column, parsed.error().description()));
+  auto error = file_error(name, at.line, at.column, parsed.error().description());
+  error.hint = "one key = value a line, and what is no number in quotes: family = \"gsd600\"";
+  return fail(std::move(error));
 }
 
 Result<Cabinet> read_cabinet(const std::filesystem::path& file) {

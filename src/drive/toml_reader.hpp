@@ -98,6 +98,18 @@ inline const toml::node& at(const toml::node& node, std::string_view key) {
   return *node.as_table()->get(key);
 }
 
+/// What stands there, for a message: a plain value as it is, at most its first 40 bytes.
+inline std::string value_in_words(const toml::node& node) {
+  constexpr std::size_t kMost = 40;
+  std::string text;
+  if (const auto whole = node.value_exact<std::int64_t>()) return fmt::format("{}", *whole);
+  if (const auto number = node.value_exact<double>()) return fmt::format("{}", *number);
+  if (const auto flag = node.value_exact<bool>()) return *flag ? "true" : "false";
+  if (get(node, text))
+    return text.size() > kMost ? fmt::format("a text of {} bytes", text.size()) : fmt::format("\"{}\"", text);
+  return node.is_table() ? "a table" : node.is_array() ? "this list" : "a date or time";
+}
+
 /// Reads one table key by key; remembers the first thing that is wrong.
 class TableReader {
  public:
@@ -114,7 +126,7 @@ class TableReader {
       const auto handler = handlers.find(std::string_view(key.str()));
       if (handler == handlers.end()) return unknown(key, handlers);
       if (handler->second(node)) continue;
-      auto error = fail_at(node, fmt::format("the value of '{}' is of the wrong kind", key.str())).value();
+      auto error = fail_at(node, fmt::format("'{}' cannot be {}", key.str(), value_in_words(node))).value();
       if (const auto form = forms.find(handler->first); form != forms.end())
         error.hint = fmt::format("write {}", form->second);
       return fail(std::move(error));

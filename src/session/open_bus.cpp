@@ -1,6 +1,8 @@
 #include "session/open_bus.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
+#include <array>
 
 #include "base/text.hpp"
 #include "can/local.hpp"
@@ -13,6 +15,16 @@
 namespace servoctl::session {
 namespace {
 
+constexpr std::array<std::string_view, 5> kSchemes{"socketcan", "local", "sim", "replay", "coe"};
+constexpr std::string_view kForms = "write can0, coe:eth0, local:NAME, sim:FAMILY@NODE or replay:FILE";
+
+tl::unexpected<Error> no_bus(std::string_view url) {
+  auto hint =
+      did_you_mean(url.substr(0, url.find(':')), std::vector<std::string>(kSchemes.begin(), kSchemes.end()));
+  if (hint.empty()) hint = kForms;
+  return fail(Errc::usage, fmt::format("'{}' is not a bus", url), std::move(hint));
+}
+
 Result<std::unique_ptr<can::Bus>> open_plain(std::string_view url, const BusOptions& options) {
   const auto colon = url.find(':');
   if (colon == std::string_view::npos && !url.empty()) return can::open_socketcan(url);
@@ -22,13 +34,20 @@ Result<std::unique_ptr<can::Bus>> open_plain(std::string_view url, const BusOpti
   if (scheme == "local") return can::open_local(rest);
   if (scheme == "sim") return sim::open_sim(rest, options.drive_folders, options.clock);
   if (scheme == "replay") return can::open_replay(rest);
-  const std::string schemes[] = {"socketcan", "local", "sim", "replay", "coe"};
-  auto hint = did_you_mean(scheme, schemes);
-  if (hint.empty()) hint = "write can0, coe:eth0, local:NAME, sim:FAMILY@NODE or replay:FILE";
-  return fail(Errc::usage, fmt::format("'{}' is not a bus", url), std::move(hint));
+  return no_bus(url);
 }
 
 }  // namespace
+
+Result<void> check_url(std::string_view url) {
+  const auto colon = url.find(':');
+  const bool known = colon == std::string_view::npos
+                         ? !url.empty()
+                         : std::count(kSchemes.begin(), kSchemes.end(), url.substr(0, colon)) > 0;
+  if (!known) return no_bus(url);
+  if (colon + 1 != url.size()) return {};
+  return fail(Errc::usage, fmt::format("'{}' names no bus", url), std::string(kForms));
+}
 
 Result<std::unique_ptr<can::Bus>> open_bus(std::string_view url, const BusOptions& options) {
   if (is_pcap(options.trace))

@@ -28,6 +28,10 @@ struct BusOptions {
 /// missing or down.
 Result<std::unique_ptr<can::Bus>> open_bus(std::string_view url, const BusOptions& options);
 
+/// Whether it may be the URL of a bus, before anything is opened: Errc::usage for a kind that there is not,
+/// and for one without a name.
+Result<void> check_url(std::string_view url);
+
 /// The URL in the one form in which the same bus has the same: `socketcan:can0` is `can0`.
 std::string canonical_url(std::string_view url);
 

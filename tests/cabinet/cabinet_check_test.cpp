@@ -26,7 +26,7 @@ std::string found(std::string_view toml) {
   const auto cabinet = parse_cabinet(toml, "c.toml");
   EXPECT_TRUE(cabinet) << cabinet.error().message;
   std::string out;
-  for (const auto& error : check_cabinet(*cabinet, checked_family)) {
+  for (const auto& error : check_cabinet(*cabinet, checked_family).errors) {
     EXPECT_EQ(error.code, Errc::file);
     out += error.message + "\n";
   }
@@ -82,6 +82,26 @@ TEST(CabinetCheck, NamesLimitsThatLimitNothing) {
                   .find("c.toml:6:10: axis feeder: limits: "),
               std::string::npos)
         << bad;
+}
+
+TEST(CabinetCheck, HoldsATorqueAgainstTheRangeOfTheDrivesOwnLimit) {
+  EXPECT_EQ(found(axis("gsd600", "limits = { torque = \"400%\" }\n")), "");
+  const auto above = found(axis("gsd600", "limits = { torque = \"401%\" }\n"));
+  EXPECT_EQ(above.substr(0, 60), "c.toml:6:10: axis feeder: limits: torque = \"401%\": Max torqu") << above;
+  EXPECT_EQ(found(axis("dm", "limits = { torque = \"800%\" }\n")), "") << "its 6072h is in Nm";
+}
+
+TEST(CabinetCheck, TellsOfObjectsThatTheFamilyDoesNotList) {
+  const auto cabinet = parse_cabinet(
+      "[bus.main]\nurl = \"can0\"\n[axis.\"a{1-2}\"]\nnode = \"1-2\"\nfamily = \"sv2\"\n"
+      "parameters = { \"0x2FFF\" = 1, \"0x6083\" = 5 }\n",
+      "c.toml");
+  ASSERT_TRUE(cabinet);
+  const auto findings = check_cabinet(*cabinet, checked_family);
+  EXPECT_TRUE(findings.errors.empty());
+  EXPECT_EQ(findings.notices,
+            std::vector<std::string>{"c.toml:6:16: axis a1: 0x2FFF is not in the data of sv2: its size and "
+                                     "limits are asked of the drive"});
 }
 
 TEST(CabinetCheck, TellsOnceWhatManyAxesShare) {

@@ -122,13 +122,13 @@ TEST(CabinetFile, TellsWithLineAndColumnWhatItCannotUse) {
   EXPECT_EQ(refused(with_axis("nod = 1\n")), "cabinet.toml:6:1: unknown key 'nod'|did you mean node?");
   EXPECT_EQ(
       refused(with_axis("turn = 0\n")),
-      "cabinet.toml:6:8: the value of 'turn' is of the wrong kind|write turn = 131072: increments of 6064h per motor revolution");
+      "cabinet.toml:6:8: 'turn' cannot be 0|write turn = 131072: increments of 6064h per motor revolution");
   EXPECT_EQ(
       refused(with_axis("heartbeat = 100\n")),
-      "cabinet.toml:6:13: the value of 'heartbeat' is of the wrong kind|write heartbeat = \"100ms\" (at most 65535ms), or \"off\"");
+      "cabinet.toml:6:13: 'heartbeat' cannot be 100|write heartbeat = \"100ms\" (at most 65535ms), or \"off\"");
   EXPECT_EQ(
       refused(with_axis("heartbeat = \"70s\"\n")),
-      "cabinet.toml:6:13: the value of 'heartbeat' is of the wrong kind|write heartbeat = \"100ms\" (at most 65535ms), or \"off\"");
+      "cabinet.toml:6:13: 'heartbeat' cannot be \"70s\"|write heartbeat = \"100ms\" (at most 65535ms), or \"off\"");
   EXPECT_EQ(refused(with_axis("limits = { sped = \"1rpm\" }\n")),
             "cabinet.toml:6:12: unknown key 'sped'|did you mean speed?");
   EXPECT_EQ(refused(with_axis("parameters = { PA1 = true }\n")),
@@ -141,10 +141,20 @@ TEST(CabinetFile, TellsWithLineAndColumnWhatItCannotUse) {
       "of another name: \"360 tabledeg\"");
   EXPECT_EQ(refused(with_axis("group = \"feeders\"\n")),
             "cabinet.toml:3:1: axis feeder: there is no [group.feeders]|");
-  EXPECT_EQ(refused(with_axis("bus = \"man\"\n")), "cabinet.toml:3:1: axis feeder: there is no [bus.man]|");
-  EXPECT_EQ(
-      refused("[bus.main]\nurl = \"can0\"\nbitrate = \"fast\"\n"),
-      "cabinet.toml:3:11: the value of 'bitrate' is of the wrong kind|write bitrate = \"500k\" or \"1M\"");
+  EXPECT_EQ(refused(with_axis("bus = \"man\"\n")),
+            "cabinet.toml:3:1: axis feeder: there is no [bus.man]|did you mean main?");
+  EXPECT_EQ(refused("[bus.main]\nurl = \"can0\"\nbitrate = \"fast\"\n"),
+            "cabinet.toml:3:11: 'bitrate' cannot be \"fast\"|write bitrate = \"500k\" (10k, 20k, "
+            "50k, 100k, 125k, 250k, 500k, 800k or 1M)");
+  EXPECT_TRUE(refused("[bus.main]\nurl = \"can0\"\nbitrate = \"501k\"\n")
+                  .starts_with("cabinet.toml:3:11: 'bitrate' cannot be \"501k\""));
+  EXPECT_EQ(refused("[bus.main]\nurl = \"local:\"\n"),
+            "cabinet.toml:2:7: bus main: 'local:' names no bus|write can0, coe:eth0, local:NAME, "
+            "sim:FAMILY@NODE or replay:FILE");
+  EXPECT_EQ(refused("[bus.main]\nurl = \"lokal:x\"\n"),
+            "cabinet.toml:2:7: bus main: 'lokal:x' is not a bus|did you mean local?");
+  EXPECT_EQ(refused("[bus.main]\nurl = \"can0\n").substr(0, 21), "cabinet.toml:2:12: Er");
+  EXPECT_NE(refused("[bus.main]\nurl = \"can0\n").find("|one key = value a line"), std::string::npos);
   EXPECT_EQ(refused("[axis.a]\nnode = 1\nfamily = \"ts\"\n"),
             "cabinet.toml has no bus|write [bus.main] with url = \"can0\"");
   EXPECT_EQ(refused("[bus.main]\nurl = \"can0\"\n"),

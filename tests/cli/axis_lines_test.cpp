@@ -156,7 +156,7 @@ TEST_F(AxisLines, AFileThatCannotBeUsedDisturbsOnlyLinesThatNeedIt) {
   write("[bus.main]\nurl = 5\n");
   EXPECT_EQ(run("read 0x6041 -b sim:dm@1 -n 1"), 0) << all();
   EXPECT_EQ(run("status -n feeder1"), 7) << all();
-  EXPECT_TRUE(says("cabinet.toml:2:7: the value of 'url' is of the wrong kind")) << all();
+  EXPECT_TRUE(says("cabinet.toml:2:7: 'url' cannot be 5")) << all();
   write("[bus.main]\nurl = \"sim:ts@5\"\n[axis.lift]\nnode = 5\nfamily = \"ts\"\n");  // Read again.
   EXPECT_EQ(run("status -n lift"), 0) << all();
 }

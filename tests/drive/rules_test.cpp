@@ -116,13 +116,10 @@ TEST(Rules, WithAMisspeltKeyAreRefusedBecauseTheRuleWouldSilentlyNotHold) {
 }
 
 TEST(Rules, WithAValueOfTheWrongKindAreRefusedWithItsPlace) {
-  expect_refused("format = 1\n[sdo]\nsegmented = \"no\"\n",
-                 "x.toml:3:13: the value of 'segmented' is of the wrong kind");
-  expect_refused("format = 1\n[[numbering]]\nblock = 0\n",
-                 "x.toml:3:9: the value of 'block' is of the wrong kind");
-  expect_refused("format = 1\n[[numbering]]\nfirst_sub = 300\n",
-                 "x.toml:3:13: the value of 'first_sub' is of the wrong kind");
-  expect_refused("format = 2\n", "x.toml:1:10: the value of 'format' is of the wrong kind");
+  expect_refused("format = 1\n[sdo]\nsegmented = \"no\"\n", "x.toml:3:13: 'segmented' cannot be \"no\"");
+  expect_refused("format = 1\n[[numbering]]\nblock = 0\n", "x.toml:3:9: 'block' cannot be 0");
+  expect_refused("format = 1\n[[numbering]]\nfirst_sub = 300\n", "x.toml:3:13: 'first_sub' cannot be 300");
+  expect_refused("format = 2\n", "x.toml:1:10: 'format' cannot be 2");
 }
 
 TEST(Rules, ThatAreNoTomlAreRefusedWithLine) {
