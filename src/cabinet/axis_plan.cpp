@@ -73,9 +73,11 @@ class AxisPlanner {
     auto identity = hold_axis_identity(*desk_, *axis_, choice_->families);
     if (!identity) return fail(identity.error());
     out_.identity = std::move(*identity);
-    auto part = settings::selection_of(*desk_->profile, choice_->only);
-    if (!part) return fail(part.error());
-    part_ = std::move(*part);
+    // A group of parameters that another family has is no part of this one's settings.
+    part_ = settings::selection_of(*desk_->profile, choice_->only).value_or([](ObjectAddress /*object*/) {
+      return false;
+    });
+    resumes_ = wanted.has_value();
     if (const auto chosen = choose(std::move(wanted)); !chosen) return fail(chosen.error());
     if (const auto compared = compare_wanted(); !compared) return fail(compared.error());
     if (choice_->unlisted)
@@ -111,9 +113,10 @@ class AxisPlanner {
     if (const auto fits = target.prepare(); !fits) return fail(fits.error());
     out_.present = target.present();
     const auto node = axis_->node;
-    const auto comparison =
-        settings::compare(desk_->profile, {"drive", node, target.present()},
-                          {cabinet_->file.filename().string(), node, target.wanted()}, true, desk_->chinese);
+    const auto comparison = settings::compare(
+        desk_->profile, {"drive", node, target.present()},
+        {resumes_ ? "interrupted apply" : cabinet_->file.filename().string(), node, target.wanted()}, true,
+        desk_->chinese);
     out_.different = comparison.different;
     out_.compared = comparison.compared;
     out_.differences = differences(table_of(comparison, "present", "wanted"));
@@ -194,6 +197,7 @@ class AxisPlanner {
   const Axis* axis_;
   const PlanChoice* choice_;
   settings::Selection part_;
+  bool resumes_ = false;  ///< An apply that was interrupted: what it was to write goes before the file.
   std::set<ObjectAddress> listed_;
   AxisPlan out_;
 };

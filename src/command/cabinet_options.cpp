@@ -1,6 +1,9 @@
 #include "command/cabinet_options.hpp"
 
 #include <map>
+#include <span>
+
+#include "settings/selection.hpp"
 
 namespace servoctl::command {
 namespace {
@@ -18,6 +21,18 @@ Result<void> fill(Context& context, const cabinet::Cabinet& cabinet,
   if (!bus->second) return fail(bus->second.error());
   station.session = *bus->second;
   return {};
+}
+
+/// A part of the settings that no family of these axes has is a slip of the pen.
+Result<void> check_part(std::span<const cabinet::Station> stations, std::string_view part) {
+  Result<void> out;
+  for (const auto& station : stations) {
+    if (station.profile == nullptr) continue;
+    const auto known = settings::selection_of(*station.profile, part);
+    if (known) return {};
+    if (out) out = fail(known.error());
+  }
+  return out;
 }
 
 }  // namespace
@@ -38,6 +53,7 @@ Result<std::vector<cabinet::Station>> open_stations(Context& context, const cabi
     if (const auto there = fill(context, cabinet, opened, out.back()); !there)
       out.back().away = there.error();
   }
+  if (const auto known = check_part(out, arguments.text("--only")); !known) return fail(known.error());
   return out;
 }
 

@@ -16,7 +16,8 @@ Result<std::vector<const cabinet::Axis*>> chosen_axes(const cabinet::Cabinet& ca
                                                       const Arguments& arguments);
 
 /// Loads the families of the chosen axes and opens their buses. What is not to be had is told at the axes
-/// that need it. Errors as chosen_axes().
+/// that need it. Errors as chosen_axes(); Errc::usage when no family of theirs has the part that `--only`
+/// names.
 Result<std::vector<cabinet::Station>> open_stations(Context& context, const cabinet::Cabinet& cabinet,
                                                     const Arguments& arguments);
 

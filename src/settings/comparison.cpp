@@ -24,7 +24,9 @@ Shown show(const drive::Profile* profile, const Side& side, ObjectAddress object
   const show::Reading reading{side.node, drive::target_at(profile, object), {}, found->second};
   const auto decoded = show::decode_value(reading, found->second);
   // COB-IDs, mappings and heartbeat entries are made of fields: decimal says nothing.
-  const bool fields = object.index < 0x2000 && found->second.size() == 4 && decoded.unit.empty();
+  const auto* parameter = reading.target.parameter;
+  const auto index = parameter != nullptr && parameter->mirror ? parameter->mirror->index : object.index;
+  const bool fields = index < 0x2000 && found->second.size() == 4 && decoded.unit.empty();
   auto text = fields                  ? fmt::format("0x{:08X}", load_le(found->second))
               : found->second.empty() ? std::string("\"\"")
                                       : decoded.text;

@@ -120,11 +120,10 @@ Result<void> RestoreTarget::read_present() {
       continue;
     }
     if (!choice_.force)
-      return fail(
-          Errc::negative,
-          fmt::format("{}:{}: {} of the backup: {}", title_, line_of(entry.object), to_string(entry.object),
-                      entry.bytes ? "the length in the drive differs" : entry.left_out),
-          "nothing was written; --force restores the rest");
+      return fail(Errc::negative,
+                  fmt::format("{}:{}: {}: {}", title_, line_of(entry.object), to_string(entry.object),
+                              entry.bytes ? "it has another length in the drive" : entry.left_out),
+                  "nothing was written; --force restores the rest");
     wanted_.erase(entry.object);
   }
   return {};

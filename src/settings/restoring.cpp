@@ -198,8 +198,9 @@ class Restoring {
 
   void add_astray(const session::RestoreOutcome& outcome) {
     for (const auto object : outcome.astray) {
-      desk_->errors.push_back(drive_error(Errc::negative, node_, object,
-                                          "it may hold neither the value of the backup nor its old one"));
+      desk_->errors.push_back(
+          drive_error(Errc::negative, node_, object,
+                      "it may hold neither the value that was to be written nor its old one"));
     }
   }
 

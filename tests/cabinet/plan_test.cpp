@@ -10,6 +10,7 @@
 #include "fleet_checks.hpp"
 #include "session/write.hpp"
 #include "settings/comparison.hpp"
+#include "settings/selection.hpp"
 
 namespace servoctl::cabinet {
 namespace {
@@ -66,6 +67,17 @@ TEST(CabinetPlan, ListsApartWhatIsNeitherInTheFileNorFromTheFactory) {
     EXPECT_EQ(objects_of(look.plan->unlisted), changed) << profile.family;
     EXPECT_EQ(look.plan->different, 0U);
     EXPECT_EQ(fleet.look({.unlisted = false})[i].plan->unlisted_count, 0U);
+  }
+}
+
+/// A group of parameters is a part of one family; the axes of the others have nothing in it.
+TEST(CabinetPlan, OfAGroupLeavesOtherFamiliesAlone) {
+  Fleet fleet(5);
+  for (const auto& look : fleet.look({.only = "gain"})) {
+    ASSERT_TRUE(look.plan) << look.plan.error().message;
+    const auto& family = look.axis->family;
+    if (family == "gsd600") EXPECT_GT(look.plan->different, 0U);
+    if (!settings::selection_of(family_of(family), "gain")) EXPECT_EQ(look.plan->different, 0U) << family;
   }
 }
 
