@@ -5,7 +5,9 @@
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "cabinet/axis_states.hpp"
+#include "cabinet/cabinet_plan.hpp"
 #include "can/descriptor.hpp"
+#include "command/cabinet_options.hpp"
 #include "command/command.hpp"
 #include "command/duration_option.hpp"
 #include "show/records.hpp"
@@ -51,9 +53,52 @@ std::string position_text(const AxisState& look) {
   return look.position ? fmt::format("{} {}", number_text(look.position->value), look.position->unit) : "-";
 }
 
+/// Of a table that has 80 columns: the words of CAN are long.
+std::string network_text(const AxisState& look) {
+  if (look.network == session::name(session::NodeState::pre_operational)) return "pre-op";
+  if (look.network == session::name(session::NodeState::operational)) return "op";
+  return look.network.empty() ? "-" : look.network;
+}
+
+/// How many values of each axis are not as the file says. Read more rarely than the rest: it is what `cabinet
+/// plan` reads.
+class Differences {
+ public:
+  Differences(Context& context, const cabinet::Cabinet& cabinet)
+      : context_(&context), cabinet_(&cabinet), families_(drive::find_families(context.drive_folders)) {}
+
+  /// Of the axes that answered just now, if that is due.
+  void read(const std::vector<AxisState>& looks) {
+    constexpr Duration kEvery = std::chrono::seconds(5);
+    const auto now = steady_now();
+    if (read_at_ && now < *read_at_ + kEvery) return;
+    read_at_ = now;
+    found_.clear();
+    std::vector<cabinet::Station> stations;
+    for (const auto& look : looks)
+      if (!look.error) stations.push_back(open_station(*context_, *cabinet_, *look.axis));
+    const cabinet::PlanChoice choice{.unlisted = false, .families = families_};
+    for (const auto& look : cabinet::look_at_all(*context_, *cabinet_, stations, choice))
+      if (look.plan) found_[look.axis] = look.plan->different;
+  }
+
+  /// Empty: not known.
+  std::optional<std::size_t> of(const AxisState& look) const {
+    const auto found = found_.find(look.axis);
+    return look.error || found == found_.end() ? std::nullopt : std::optional(found->second);
+  }
+
+ private:
+  Context* context_;
+  const cabinet::Cabinet* cabinet_;
+  std::vector<drive::Family> families_;
+  std::optional<TimePoint> read_at_;
+  std::map<const cabinet::Axis*, std::size_t> found_;
+};
+
 Value or_null(const auto& optional) { return optional ? Value(*optional) : Value(); }
 
-Record record_of(const AxisState& look) {
+Record record_of(const AxisState& look, const Differences& differences) {
   const auto position =
       look.position ? Value(Record{{"value", look.position->value}, {"unit", look.position->unit}}) : Value();
   return {{"axis", look.axis->name},
@@ -67,19 +112,20 @@ Record record_of(const AxisState& look) {
           {"fault", or_null(look.fault)},
           {"fault_text", report::text_or_null(look.fault_text)},
           {"position", position},
+          {"different", or_null(differences.of(look))},
           {"error", look.error ? show::error_record(*look.error) : Value()}};
 }
 
-report::Table table_of(const std::vector<AxisState>& looks, bool chinese) {
+report::Table table_of(const std::vector<AxisState>& looks, const Differences& differences, bool chinese) {
   report::Table out;
-  out.columns = {{"axis"},  {"bus"},  {"node"},  {"family"},  {"network"},
-                 {"state"}, {"mode"}, {"fault"}, {"position"}};
+  out.columns = {{"axis"},  {"bus"},  {"node"},  {"family"},   {"network"},
+                 {"state"}, {"mode"}, {"fault"}, {"position"}, {"different", "differ"}};
   for (const auto& look : looks) {
     const auto shown = [](std::string text) { return text == "-" ? Value() : Value(std::move(text)); };
     out.rows.push_back({look.axis->name, look.axis->bus, look.axis->node, look.axis->family,
-                        report::text_or_null(look.network), state_text(look, chinese), shown(mode_text(look)),
-                        shown(fault_text(look)), shown(position_text(look))});
-    out.documents.emplace_back(record_of(look));
+                        shown(network_text(look)), state_text(look, chinese), shown(mode_text(look)),
+                        shown(fault_text(look)), shown(position_text(look)), or_null(differences.of(look))});
+    out.documents.emplace_back(record_of(look, differences));
   }
   return out;
 }
@@ -87,15 +133,17 @@ report::Table table_of(const std::vector<AxisState>& looks, bool chinese) {
 /// Shows look after look: in place on a terminal, else a line for each axis that has changed.
 class Watching {
  public:
-  explicit Watching(Context& context)
+  Watching(Context& context, const Differences& differences)
       : context_(&context),
+        differences_(&differences),
         view_(context.open_view({.columns = {{.title = "axis"},
                                              {.title = "node", .right = true},
-                                             {.title = "family"},
+                                             {.title = "network"},
                                              {.title = "state"},
                                              {.title = "mode"},
                                              {.title = "fault"},
-                                             {.title = "position", .right = true}},
+                                             {.title = "position", .right = true},
+                                             {.title = "differ", .right = true}},
                                  .plots = false,
                                  .alternate_screen = true})) {}
 
@@ -107,29 +155,37 @@ class Watching {
   void take(const std::vector<AxisState>& looks, double seconds) {
     for (const auto& look : looks) {
       if (view_)
-        view_->set(look.axis->name, {look.axis->name, fmt::format("{}", look.axis->node), look.axis->family,
+        view_->set(look.axis->name, {look.axis->name, fmt::format("{}", look.axis->node), network_text(look),
                                      state_text(look, context_->chinese), mode_text(look), fault_text(look),
-                                     position_text(look)});
+                                     position_text(look), differ_text(look)});
       else
         take_line(look, seconds);
     }
   }
 
  private:
+  std::string differ_text(const AxisState& look) const {
+    const auto different = differences_->of(look);
+    return different ? fmt::format("{}", *different) : "-";
+  }
+
   /// A position changes all the time: it is told with what else changes.
   void take_line(const AxisState& look, double seconds) {
-    auto text = fmt::format("{}  {}  {}  {}", look.network.empty() ? "-" : look.network,
-                            state_text(look, context_->chinese), mode_text(look), fault_text(look));
+    auto text = fmt::format("{}  {}  {}  {}", network_text(look), state_text(look, context_->chinese),
+                            mode_text(look), fault_text(look));
+    if (const auto different = differences_->of(look); different.value_or(0) > 0)
+      text += fmt::format("  {} differ", *different);
     auto& before = lines_[look.axis];
     if (text == before) return;
     before = text;
     Record record{{"time", seconds}};
-    for (auto& field : record_of(look)) record.push_back(std::move(field));
+    for (auto& field : record_of(look, *differences_)) record.push_back(std::move(field));
     context_->emit(record,
                    fmt::format("{:8.3f} s  {}  {}  {}", seconds, look.axis->name, text, position_text(look)));
   }
 
   Context* context_;
+  const Differences* differences_;
   std::unique_ptr<show::LiveView> view_;
   std::map<const cabinet::Axis*, std::string> lines_;
 };
@@ -176,8 +232,10 @@ Result<Value> run(Context& context, const Arguments& arguments) {
       **cabinet, std::move(*axes), open,
       [&](const std::string& family) { return context.front_end->family(family); }, context);
   auto now = looks.look();
+  Differences differences(context, **cabinet);
+  differences.read(now);
   if (arguments.has("--watch")) {
-    Watching watching(context);
+    Watching watching(context, differences);
     const auto begin = steady_now();
     for (;;) {
       const auto since = steady_now() - begin;
@@ -186,11 +244,12 @@ Result<Value> run(Context& context, const Arguments& arguments) {
       auto next = looks.look();
       if (was_interrupted(next)) break;
       now = std::move(next);
+      differences.read(now);
     }
   }
   for (const auto& look : now)
     if (look.error) context.errors.push_back(*look.error);
-  return Value(table_of(now, context.chinese));
+  return Value(table_of(now, differences, context.chinese));
 }
 
 }  // namespace
@@ -201,9 +260,10 @@ const Command kCabinetShow{
     .summary = "Show every axis of the cabinet, one line each",
     .details =
         "Axis, node, family, NMT or AL state, drive state, mode, fault, and position, which is of the load "
-        "where the file says what that moves. --watch looks four times a second: on a terminal a table that "
+        "where the file says what that moves, and how many values are not as the file says (`cabinet plan` "
+        "names them). --watch looks four times a second: on a terminal a table that "
         "is updated where it stands (space pauses, s sorts, q ends), in a pipe a line for each axis "
-        "whose state changed. A bus that is lost is opened again. Drives are only read.",
+        "whose state changed; what differs is read every five seconds. A bus that is lost is opened again. Drives are only read.",
     .parameters = kParameters,
     .needs = Needs::nothing,
     .effect = Effect::reads,
