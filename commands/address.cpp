@@ -83,6 +83,18 @@ Result<void> check_words(const Context& context, const Arguments& arguments) {
   return {};
 }
 
+/// The axis that the cabinet file has at the node to which another one goes; null: none, or there is no such
+/// file.
+const cabinet::Axis* axis_at(const Context& context, const AddressChange& change) {
+  if (!change.moves()) return nullptr;
+  for (const auto* axis : context.axes) {
+    if (axis->node != change.node) continue;
+    const auto cabinet = context.front_end->cabinet();
+    return cabinet ? (*cabinet)->at(axis->bus, change.to) : nullptr;
+  }
+  return nullptr;
+}
+
 std::string question(const Context& context, std::span<const AddressChange> changes) {
   std::string out;
   for (const auto& change : changes) {
@@ -90,9 +102,12 @@ std::string question(const Context& context, std::span<const AddressChange> chan
     out += fmt::format("{}node {}", out.empty() ? "Re-address " : ", ", change.node);
     if (change.identity.serial.value_or(0) != 0)
       out += fmt::format(" (serial number {})", *change.identity.serial);
-    if (change.moves()) out += fmt::format(" to node {}", change.to);
+    if (change.moves()) out += fmt::format(" to node-ID {}", change.to);
     if (change.bitrate) out += fmt::format(" to {}", drive::bitrate_text(*change.bitrate));
   }
+  for (const auto& change : changes)
+    if (const auto* other = axis_at(context, change); other != nullptr)
+      out += fmt::format("; in the cabinet file {} is the place of axis {}", change.to, other->name);
   const auto& rules = context.profile->rules.nmt;
   const bool restarts =
       std::any_of(changes.begin(), changes.end(), [](const auto& c) { return c.restarts(); });
@@ -107,8 +122,8 @@ void tell_axes(Context& context, const AddressChange& change, const AddressOutco
   for (const auto* axis : context.axes) {
     if (axis->node != change.node) continue;
     context.notices.push_back(
-        fmt::format("the cabinet file still says {}: change `node = {}` of axis {} to `node = {}`",
-                    axis->node, axis->node, axis->name, change.to));
+        fmt::format("the cabinet file still has axis {} at node-ID {}: write the new one, {}, into it",
+                    axis->name, axis->node, change.to));
   }
 }
 

@@ -141,6 +141,11 @@ class Init {
     if (!settings) return context_->errors.push_back(settings.error());
     axis.parameters = std::move(settings->parameters);
     axis.heartbeat_ms = settings->heartbeat_ms;
+    if (settings->unstated > 0)
+      context_->notices.push_back(fmt::format(
+          "node {}: {} settings are not held against the factory's, which the data of {} do not state: "
+          "`backup` saves them all",
+          axis.node, settings->unstated, axis.family));
     if (settings->pdos.empty()) return;
     axis.pdo_file = axis.name + ".pdos.toml";
     pdos_.emplace_back(file_.parent_path() / axis.pdo_file, std::move(settings->pdos));
@@ -209,7 +214,7 @@ const Command kCabinetInit{
         "Looks who is on the bus and writes cabinet.toml: an axis for each drive, with its family as --family "
         "or --drive says, else as its identity suggests (marked as guessed), its serial number where it has "
         "one, and what is not as from the factory: parameters, heartbeat, and the PDOs in a file beside it. "
-        "Comments say what to fill in. Drives are only read. A file that is there is added to where it does "
+        "Comments say what to fill in. Drives are only read; a slave in INIT is taken to PRE-OP for it. A file that is there is added to where it does "
         "not have this bus yet: `cabinet init --bus coe:eth0 --name ring`.",
     .parameters = kParameters,
     .needs = Needs::bus,

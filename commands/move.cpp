@@ -8,7 +8,7 @@ using namespace command;
 
 constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
     {.name = "target",
-     .help = "90deg, 2rev, or the drive's own counts",
+     .help = "90deg, 2rev, the drive's own counts, or 20mm where the cabinet file tells the load",
      .kind = Kind::value,
      .required = true},
     {.name = "--relative", .help = "relative to the actual position", .kind = Kind::flag},

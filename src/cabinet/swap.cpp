@@ -19,7 +19,8 @@ using report::Value;
 using settings::AddressEnd;
 
 std::string number_text(const std::optional<std::uint32_t>& serial) {
-  return serial ? fmt::format("{} (0x{:08X})", *serial, *serial) : std::string("not known");
+  if (!serial) return "not known";
+  return *serial == 0 ? std::string("none") : fmt::format("{} (0x{:08X})", *serial, *serial);
 }
 
 /// One new drive on its way into the cabinet.
@@ -109,11 +110,12 @@ class Swapping {
           is_it ? fmt::format("its serial number is that of axis {} in the file", other.name)
                 : fmt::format("the file has axis {} there, and nothing tells that this is another drive",
                               other.name),
-          is_it ? "is it the new drive? `cabinet plan` shows who is where"
-                : fmt::format(
-                      "where it is the new drive: `address {} -n {} -b {} -d {}` gives it its node, then repeat "
-                      "the line without --from; or write `serial` of both into the file, if they have one",
-                      axis_.node, at_, axis_.bus, axis_.family)));
+          is_it
+              ? "is it the new drive? `cabinet plan` shows who is where"
+              : fmt::format(
+                    "where it is the new drive: `address {} -n {} -b {} -d {}` gives it its node, then repeat "
+                    "the line without --from; or write `serial` of both into the file, if they have one",
+                    axis_.node, at_, axis_.bus, axis_.family)));
     }
     return {};
   }
@@ -184,10 +186,11 @@ class Swapping {
   /// What a person has still to do.
   void tell_rest() {
     if (axis_.serial && identity_.serial && axis_.serial != identity_.serial)
-      desk_.notices.push_back(
-          fmt::format("in {}, [axis.{}]: change `serial` to \"0x{:08X}\"; until then `plan` and "
-                      "`apply` refuse the new drive",
-                      cabinet_.file.filename().string(), axis_.name, *identity_.serial));
+      desk_.notices.push_back(fmt::format(
+          "in {}, [axis.{}]: {}; until then `plan` and `apply` refuse the new drive",
+          cabinet_.file.filename().string(), axis_.name,
+          *identity_.serial == 0 ? std::string("take `serial` out, the new drive tells none")
+                                 : fmt::format("change `serial` to \"0x{:08X}\"", *identity_.serial)));
     desk_.notices.push_back(fmt::format(
         "axis {}: the encoder's offset and the home position are not among the settings: `home` it, "
         "and check the direction and the limits before it runs",

@@ -175,30 +175,36 @@ Result<std::vector<LinePart>> parts_of(const Cabinet& cabinet, const command::Co
               "add " + one_of(names) + ", or name the axes");
 }
 
-void add_axis_options(std::span<const Axis* const> axes, const command::Command& command,
-                      command::Arguments& arguments) {
+std::vector<OptionOfAxis> add_axis_options(std::span<const Axis* const> axes, const command::Command& command,
+                                           command::Arguments& arguments) {
   using Get = std::string (*)(const Axis&);
   struct Row {
-    std::string_view option;
+    OptionOfAxis names;
     Get get;
   };
   const Row rows[] = {
-      {"--turn", [](const Axis& axis) { return axis.turn ? std::to_string(*axis.turn) : std::string(); }},
-      {"--encoder",
+      {{"--turn", "turn"},
+       [](const Axis& axis) { return axis.turn ? std::to_string(*axis.turn) : std::string(); }},
+      {{"--encoder", "encoder"},
        [](const Axis& axis) { return axis.encoder ? std::to_string(*axis.encoder) : std::string(); }},
-      {"--limit", [](const Axis& axis) { return axis.limits.speed; }},
-      {"--max-torque", [](const Axis& axis) { return axis.limits.torque; }},
-      {"--window", [](const Axis& axis) { return axis.limits.window; }},
-      {"--max-following-error", [](const Axis& axis) { return axis.limits.following_error; }}};
+      {{"--limit", "limits.speed"}, [](const Axis& axis) { return axis.limits.speed; }},
+      {{"--max-torque", "limits.torque"}, [](const Axis& axis) { return axis.limits.torque; }},
+      {{"--window", "limits.window"}, [](const Axis& axis) { return axis.limits.window; }},
+      {{"--max-following-error", "limits.following_error"},
+       [](const Axis& axis) { return axis.limits.following_error; }}};
+  std::vector<OptionOfAxis> out;
   for (const auto& row : rows) {
-    if (axes.empty() || arguments.has(row.option)) continue;
+    if (axes.empty() || arguments.has(row.names.option)) continue;
     const auto takes = std::any_of(command.parameters.begin(), command.parameters.end(),
-                                   [&](const command::Parameter& p) { return p.name == row.option; });
+                                   [&](const command::Parameter& p) { return p.name == row.names.option; });
     const auto value = row.get(*axes.front());
     const bool same =
         std::all_of(axes.begin(), axes.end(), [&](const Axis* axis) { return row.get(*axis) == value; });
-    if (takes && same && !value.empty()) arguments.add(row.option, value);
+    if (!takes || !same || value.empty()) continue;
+    arguments.add(row.names.option, value);
+    out.push_back(row.names);
   }
+  return out;
 }
 
 }  // namespace servoctl::cli

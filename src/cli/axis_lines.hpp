@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cabinet/cabinet.hpp"
@@ -49,9 +50,15 @@ std::vector<std::string> with_axis_option(std::vector<std::string> words, const 
 Result<std::vector<LinePart>> parts_of(const cabinet::Cabinet& cabinet, const command::Command& command,
                                        const command::Arguments& arguments, const Settings& settings);
 
+/// An option that the file says, and the key under which it does: `--limit`, `limits.speed`.
+struct OptionOfAxis {
+  std::string_view option;
+  std::string_view key;
+};
+
 /// What the file says of axes holds as if it was typed, as far as it is the same for all of them, the command
-/// takes it and the line does not say otherwise: counts, encoder and limits.
-void add_axis_options(std::span<const cabinet::Axis* const> axes, const command::Command& command,
-                      command::Arguments& arguments);
+/// takes it and the line does not say otherwise: counts, encoder and limits. The answer is what was taken.
+std::vector<OptionOfAxis> add_axis_options(std::span<const cabinet::Axis* const> axes,
+                                           const command::Command& command, command::Arguments& arguments);
 
 }  // namespace servoctl::cli

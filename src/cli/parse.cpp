@@ -178,7 +178,12 @@ class LineParser {
   }
 
   tl::unexpected<Error> one_too_many(const std::string& word) const {
-    return fail(Errc::usage, fmt::format("{}: unexpected argument '{}'", command_->path, word), help_hint());
+    // Axes of a cabinet file that are there were found before.
+    const std::string of_nodes = includes(command_->needs, command::Needs::node)
+                                     ? "nodes, and axes of the cabinet file, are named by -n; "
+                                     : "";
+    return fail(Errc::usage, fmt::format("{}: unexpected argument '{}'", command_->path, word),
+                of_nodes + help_hint());
   }
 
   tl::unexpected<Error> superfluous(const std::string& word) const {

@@ -143,12 +143,15 @@ Result<void> Shell::make_ready(Run& run, const command::Arguments& arguments) {
 Result<void> Shell::prepare(Run& run, const command::Arguments& arguments) {
   const auto& command = *run.command;
   if (const auto allowed = check_allowed(command, arguments, run.settings); !allowed) return allowed;
+  const bool on_bus = includes(command.needs, Needs::bus) && !command.opens_bus;
+  // What is wrong in the line itself is told before a bus is opened, and before a drive is asked for its
+  // family.
+  if (on_bus && includes(command.needs, Needs::node) && run.settings.nodes.empty())
+    return fail(no_node(command));
   if (!run.settings.drive.empty() || includes(command.needs, Needs::dictionary))
     if (const auto ready = prepare_profile(run, command.effect_with(arguments) > Effect::reads); !ready)
       return ready;
-  if (!includes(command.needs, Needs::bus) || command.opens_bus) return name_nodes(run);
-  // What is wrong in the line itself is told before a bus is opened.
-  if (includes(command.needs, Needs::node) && run.settings.nodes.empty()) return fail(no_node(command));
+  if (!on_bus) return name_nodes(run);
   if (!run.settings.nodes.empty())
     if (const auto nodes = parse_nodes(run.settings.nodes); !nodes) return fail(nodes.error());
   const auto opened = open(run.settings);

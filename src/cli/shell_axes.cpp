@@ -161,12 +161,20 @@ Result<void> Shell::hold_serials(Run& run) {
 struct Shell::PartRun {
   PartRun(Shell& shell, const ParsedLine& line, LinePart part)
       : arguments(line.arguments), of_bus(part.axes.empty()), run(shell, *line.command, std::move(part)) {
-    add_axis_options(run.axes, *line.command, arguments);
+    from_file = add_axis_options(run.axes, *line.command, arguments);
     if (const auto ready = shell.make_ready(run, arguments); !ready) result = fail(ready.error());
   }
   void carry_out() { result = run.command->run(run.context, arguments); }
 
+  /// Who did not type an option finds it where it was said.
+  void name_file(Error& error) const {
+    for (const auto& [option, key] : from_file)
+      if (error.hint.find(fmt::format("{} ", option)) != std::string::npos)
+        error.hint += fmt::format("; the cabinet file says it: `{}`", key);
+  }
+
   command::Arguments arguments;
+  std::vector<OptionOfAxis> from_file;
   bool of_bus;
   Run run;
   std::optional<Result<Value>> result;
@@ -244,6 +252,7 @@ std::vector<Outcome> Shell::perform_side_by_side(const ParsedLine& line, std::ve
     if (std::find(open.begin(), open.end(), one.run.context.session) == open.end())
       one.run.context.session = nullptr;
     out.push_back(finish(one.run, *one.result));
+    for (auto& error : out.back().errors) one.name_file(error);
     if (one.of_bus) put_bus_into(out.back().result, out.back().settings.bus);
   }
   return out;
@@ -253,7 +262,9 @@ Outcome Shell::perform_part(const ParsedLine& line, LinePart part) {
   PartRun one(*this, line, std::move(part));
   if (!one.result) one.carry_out();
   progress_.end();
-  return finish(one.run, *one.result);
+  auto out = finish(one.run, *one.result);
+  for (auto& error : out.errors) one.name_file(error);
+  return out;
 }
 
 }  // namespace servoctl::cli

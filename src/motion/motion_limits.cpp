@@ -111,7 +111,7 @@ Error Motion::quarrel(double shown, double speed) const {
   const auto& name = profile_->rules.learn.speed;
   if (units_->uses_learned())
     return error(Errc::negative,
-                 fmt::format("turns at {} rpm by {}, but at {} rpm by the kept counts per revolutionolution",
+                 fmt::format("turns at {} rpm by {}, but at {} rpm by the kept counts per revolution",
                              number_text(shown), name, number_text(speed)),
                  "another motor or drive? `units learn` measures again, `units forget` deletes the counts");
   auto hint = restart_note(*profile_, *units_->turn_way());
@@ -148,7 +148,7 @@ Result<double> Motion::find_speed_cap() {
       return fail(error(Errc::refused,
                         fmt::format("the limit of {} {} is above what the drive allows, {} {}", numbers.first,
                                     unit, numbers.second, unit),
-                        "607Fh and 6080h set it"));
+                        "607Fh and 6080h set it, or --limit below it"));
     }
     return asked;
   }
@@ -195,7 +195,7 @@ Result<double> Motion::torque_cap() const {
       return fail(error(Errc::refused,
                         fmt::format("--max-torque of {} {} is above what the drive allows, {} {}",
                                     numbers.first, unit, numbers.second, unit),
-                        "6072h sets it"));
+                        "6072h sets it, or --max-torque below it"));
     }
     return asked;
   }

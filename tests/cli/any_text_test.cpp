@@ -1,4 +1,5 @@
 // Whatever text a drive holds is a value in every format, and nothing else.
+#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 #include <random>
 

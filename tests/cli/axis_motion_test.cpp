@@ -31,6 +31,10 @@ limits = { speed = "100mm/s" }
   EXPECT_EQ(run("jog lift 50mm/s --for 100ms --yes"), 0) << all();
   EXPECT_TRUE(says("-150 rpm (50 mm/s)")) << all();
   EXPECT_EQ(run("jog lift 101mm/s --for 100ms --yes"), 8) << all();
+  EXPECT_TRUE(says("raises it, if the machine may move that fast; the cabinet file says it: `limits.speed`"))
+      << all();
+  EXPECT_EQ(run("jog lift 101mm/s --limit 100mm/s --for 100ms --yes"), 8) << all();
+  EXPECT_FALSE(says("limits.speed")) << "it was typed: " << all();
   EXPECT_EQ(run("home 35 -n lift --offset 20mm --speed 20mm/s --search 10mm/s --dry-run"), 0) << all();
   EXPECT_TRUE(says("0x607C:0")) << all();
   EXPECT_TRUE(says("601#237C6000F0D8FFFF")) << all();  // -10000

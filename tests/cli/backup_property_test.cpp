@@ -1,4 +1,5 @@
 // A backup that servoctl wrote is always one it takes: whatever a drive of any family holds.
+#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 #include <random>
 

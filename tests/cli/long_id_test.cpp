@@ -1,4 +1,5 @@
 // PDOs whose CAN-ID has 29 bits: shown, watched, decoded, sent and taken, or refused from the start.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>

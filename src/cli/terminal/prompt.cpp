@@ -18,6 +18,7 @@
 #include "cli/line_runner.hpp"
 #include "cli/state_folder.hpp"
 #include "cli/terminal/completer.hpp"
+#include "cli/terminal/prompt_words.hpp"
 #include "cli/terminal/signals.hpp"
 
 namespace servoctl::cli {
@@ -77,14 +78,7 @@ class Prompt {
 
 Prompt* Prompt::active_ = nullptr;
 
-std::string Prompt::prompt_text() const {
-  const auto& settings = shell_->defaults();
-  std::string out = "servoctl";
-  if (!settings.bus.empty()) out += " " + settings.bus.substr(0, settings.bus.find('?'));
-  if (!settings.nodes.empty()) out += (parse_nodes(settings.nodes) ? " node " : " ") + settings.nodes;
-  if (!settings.drive.empty()) out += " " + settings.drive;
-  return printable(out) + "> ";
-}
+std::string Prompt::prompt_text() const { return printable("servoctl" + place_text(*shell_)) + "> "; }
 
 /// The library writes a file from its beginning: one of ours, which then replaces the other as a whole.
 void Prompt::save_history() const {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <set>
 #include <span>
 
 namespace servoctl::cli {
@@ -35,7 +36,33 @@ Result<session::Session*> open_bus(Shell& shell, const Settings& settings) {
   return shell.open(bus == nullptr ? settings : on_bus(**cabinet, settings, *bus).settings);
 }
 
+/// Bus and family of the axes, as the file says them; empty where it cannot be used.
+std::string place_of_axes(Shell& shell, const Settings& settings) {
+  const auto cabinet = shell.cabinet(settings);
+  if (!cabinet || *cabinet == nullptr) return {};
+  const auto axes = (*cabinet)->select(settings.nodes);
+  if (!axes) return {};
+  std::set<std::string> buses;
+  std::set<std::string> families;
+  for (const auto* axis : *axes) {
+    buses.insert(axis->bus);
+    families.insert(axis->family);
+  }
+  return fmt::format(" {} {} {}", fmt::join(buses, ","), settings.nodes, fmt::join(families, ","));
+}
+
 }  // namespace
+
+std::string place_text(Shell& shell) {
+  const auto& settings = shell.defaults();
+  if (names_axes(settings.nodes))
+    if (auto text = place_of_axes(shell, settings); !text.empty()) return text;
+  std::string out;
+  if (!settings.bus.empty()) out += " " + settings.bus.substr(0, settings.bus.find('?'));
+  if (!settings.nodes.empty()) out += (parse_nodes(settings.nodes) ? " node " : " ") + settings.nodes;
+  if (!settings.drive.empty()) out += " " + settings.drive;
+  return out;
+}
 
 std::vector<PromptWord> prompt_words() {
   return {{"use", "NODE", "use this node or axis, list or `all` for the following lines"},

@@ -18,6 +18,10 @@ struct PromptWord {
 };
 std::vector<PromptWord> prompt_words();
 
+/// Where lines go that name no place, each word behind a space: bus, node and family; of axes of the cabinet
+/// those of the file.
+std::string place_text(Shell& shell);
+
 /// Whether the line is `exit` or `quit`.
 bool is_exit(const std::vector<std::string>& words);
 
