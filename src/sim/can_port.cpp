@@ -47,6 +47,8 @@ CanPort::CanPort(DriveModel& model)
 void CanPort::on_frame(const can::Frame& frame, TimePoint now) {
   model_->set_time(now);
   if (faults_.silent || boot_at_ != kNever) return;
+  on_lss(frame, now);
+  if (is_unconfigured()) return;
   if (const auto message = canopen::parse_nmt(frame)) {
     if (message->node == 0 || message->node == model_->node()) on_nmt(message->command, now);
     return;
@@ -57,6 +59,16 @@ void CanPort::on_frame(const can::Frame& frame, TimePoint now) {
   collect_pdos(now);
   server_.on_frame(frame, now);
   collect_answers(now);
+}
+
+/// A drive that gets its first node-ID starts with it by itself (CiA 305, 4.2).
+void CanPort::on_lss(const can::Frame& frame, TimePoint now) {
+  if (!lss_) return;
+  lss_->on_frame(frame);
+  while (const auto answer = lss_->take_frame()) tx_.push_back(*answer);
+  if (!lss_->take_start()) return;
+  full_restart_ = false;
+  boot_at_ = now + kBootTime;
 }
 
 /// A heartbeat that is watched, or the question of node guarding: then the master is there again.
@@ -162,11 +174,15 @@ void CanPort::on_written(ObjectAddress object) {
 
 void CanPort::boot(TimePoint now) {
   boot_at_ = kNever;
-  if (full_restart_)
+  if (full_restart_) {
     model_->power_on(now);
-  else
+  } else {
+    if (lss_) model_->set_node(lss_->pending_node());
     model_->reset_communication(now);
+  }
+  if (lss_) lss_->restart();
   emergencies_ = {};
+  if (is_unconfigured()) return pdos_.stop();
   server_ = canopen::SdoServer(model_->node(), *model_, server_options(rules()));
   const bool start = model_->setting(rules().nmt.autostart) == 1;
   nmt_ = start ? NmtState::operational : NmtState::pre_operational;

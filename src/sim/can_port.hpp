@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <optional>
 
 #include "canopen/error_control.hpp"
 #include "canopen/nmt.hpp"
@@ -10,6 +11,7 @@
 #include "sim/drive_model.hpp"
 #include "sim/emergency_producer.hpp"
 #include "sim/heartbeat_consumer.hpp"
+#include "sim/lss_slave.hpp"
 #include "sim/pdo_engine.hpp"
 
 namespace servoctl::sim {
@@ -41,6 +43,8 @@ class CanPort final : public Device, private DrivePort {
   WireFaults& faults() { return faults_; }
   void fall_silent_at(TimePoint time) { planned_silence_ = time; }
   canopen::NmtState nmt_state() const { return nmt_; }
+  /// From now on it answers LSS; without that a drive that has no node-ID is mute.
+  void enable_lss() { lss_.emplace(*model_); }
 
  private:
   struct Delayed {
@@ -52,6 +56,8 @@ class CanPort final : public Device, private DrivePort {
   void on_written(ObjectAddress object) override;
 
   void boot(TimePoint now);
+  bool is_unconfigured() const { return model_->node() == canopen::kUnconfigured; }
+  void on_lss(const can::Frame& frame, TimePoint now);
   void on_nmt(canopen::NmtCommand command, TimePoint now);
   void set_nmt(canopen::NmtState state, TimePoint now);
   void on_error_control(const can::Frame& frame, TimePoint now);
@@ -73,6 +79,7 @@ class CanPort final : public Device, private DrivePort {
   PdoEngine pdos_;
   canopen::ErrorControlSlave error_control_;
   HeartbeatConsumer consumer_;
+  std::optional<LssSlave> lss_;
   canopen::NmtState nmt_ = canopen::NmtState::initialising;
   TimePoint boot_at_ = TimePoint::min();  ///< When the boot-up message is due; kNever once it is sent.
   bool full_restart_ = true;

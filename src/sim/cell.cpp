@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/text.hpp"
+#include "canopen/lss.hpp"
 #include "sim/cell_spec.hpp"
 
 namespace servoctl::sim {
@@ -11,6 +12,12 @@ namespace {
 
 constexpr std::string_view kExample =
     "simulated drives are written sim:FAMILY@NODE, for example sim:gsd600@1,gsd600@2?state=FILE";
+
+/// With serial numbers that differ: it is by them that LSS tells drives of one kind apart.
+void enable_lss(const std::vector<std::unique_ptr<SimDrive>>& drives) {
+  std::uint32_t serial = 0;
+  for (const auto& drive : drives) drive->enable_lss(++serial);
+}
 
 Result<void> apply_option(const CellSpec& spec, const CellSpec::Option& option,
                           const std::vector<std::unique_ptr<SimDrive>>& drives, TimePoint now) {
@@ -20,8 +27,12 @@ Result<void> apply_option(const CellSpec& spec, const CellSpec::Option& option,
   const auto is_applied = apply_drive_option(spec, option, models, now);
   if (!is_applied) return fail(is_applied.error());
   if (*is_applied) return {};
+  if (option.key == "lss") {
+    enable_lss(drives);
+    return {};
+  }
   if (option.key != "silent" && option.key != "delay") {
-    const std::string keys[] = {"state", "fault", "silent", "delay", "counts"};
+    const std::string keys[] = {"state", "fault", "silent", "delay", "counts", "lss"};
     return spec.wrong(
         fmt::format("'{}' is not an option of a simulated bus: use {}", option.key, one_of(keys)));
   }
@@ -64,7 +75,7 @@ Result<Cell> build_cell(std::string_view text, std::span<const std::filesystem::
     const auto profile = profile_of(cell.profiles, place.family, folders);
     if (!profile) return fail(profile.error());
     for (const auto& other : cell.drives)
-      if (other->node() == place.node)
+      if (other->node() == place.node && place.node != canopen::kUnconfigured)
         return spec->wrong(fmt::format("node-ID {} is given twice", place.node));
     const auto key = fmt::format("{}.{}", cell.drives.size() + 1, place.family);
     cell.drives.push_back(std::make_unique<SimDrive>(**profile, place.node, *cell.memory, key));

@@ -13,6 +13,8 @@
 namespace servoctl::sim {
 namespace {
 
+constexpr std::uint64_t kNoNode = 255;  ///< CiA 305, 3.2.
+
 Result<CellSpec::Place> parse_place(const CellSpec& spec, std::string_view text) {
   const auto at = text.find('@');
   CellSpec::Place place;
@@ -22,7 +24,9 @@ Result<CellSpec::Place> parse_place(const CellSpec& spec, std::string_view text)
   if (place.family.empty()) return spec.wrong("a simulated drive has no family name");
   if (at == std::string_view::npos) return place;
   const auto node = parse_digits(text.substr(at + 1), 10);
-  if (!node || *node < canopen::kFirstNode || *node > canopen::kLastNode)
+  if (node == kNoNode && !spec.has("lss"))
+    return spec.wrong("a drive without a node-ID (255) can only be reached by LSS: add ?lss");
+  if (!node || ((*node < canopen::kFirstNode || *node > canopen::kLastNode) && *node != kNoNode))
     return spec.wrong(fmt::format("'{}' is not a node-ID (1..127)", text.substr(at + 1)));
   place.node = static_cast<std::uint8_t>(*node);
   return place;
@@ -82,6 +86,10 @@ Result<bool> set_counts(const CellSpec& spec, std::string_view text, std::span<D
 }
 
 }  // namespace
+
+bool CellSpec::has(std::string_view key) const {
+  return std::any_of(options.begin(), options.end(), [&](const Option& option) { return option.key == key; });
+}
 
 tl::unexpected<Error> CellSpec::wrong(std::string what) const {
   return fail(Errc::usage, std::move(what), std::string(example));

@@ -21,7 +21,7 @@ namespace servoctl::sim {
 struct CellSpec {
   struct Place {
     std::string family;     ///< In lower case, unless it is the path of a file.
-    std::uint8_t node = 1;  ///< 1..127.
+    std::uint8_t node = 1;  ///< 1..127; with the option `lss` also 255, no node-ID yet.
   };
   struct Option {
     std::string_view key;
@@ -32,6 +32,8 @@ struct CellSpec {
   std::vector<Option> options;  ///< In their order.
   std::string_view example;     ///< As parse_cell_spec() was given it.
 
+  /// Whether the option was given, with a value or without.
+  bool has(std::string_view key) const;
   /// Errc::usage; the hint is how such drives are written.
   tl::unexpected<Error> wrong(std::string what) const;
 };

@@ -24,12 +24,7 @@ DriveModel::DriveModel(const drive::Profile& profile, std::uint8_t node, Memory&
       values_(profile),
       power_(profile.rules),
       axis_(profile, values_) {
-  auto& cells = memory_->cells(key_);
-  const auto node_id = drive::place_of(profile, profile.rules.nmt.node_id);
-  const auto* entry = node_id ? profile.dictionary.find(*node_id) : nullptr;
-  if (entry == nullptr || cells.find(*node_id) != cells.end()) return;
-  if (!entry->default_value || od::to_double(entry->default_value->value) != node)
-    cells[*node_id] = store_le(node, od::size_of(entry->type).value_or(1));
+  begin_memory(node);
 }
 
 void DriveModel::power_on(TimePoint now) {
@@ -52,6 +47,7 @@ void DriveModel::begin_communication() {
     errors_.end(source);
   emergencies_.clear();
   values_.set_number(objects::kErrorRegister, errors_.error_register());
+  if (serial_ && values_.has(objects::kSerialNumber)) values_.set_number(objects::kSerialNumber, *serial_);
   load_mirrors();
 }
 
@@ -63,12 +59,9 @@ void DriveModel::load_values(TimePoint now) {
   };
   restore_if_asked();
   load();
-  if (const auto node_id = drive::place_of(*profile_, profile_->rules.nmt.node_id)) {
-    const auto set_to = values_.number(*node_id);
-    if (set_to >= canopen::kFirstNode && set_to <= canopen::kLastNode && set_to != node_) {
-      node_ = static_cast<std::uint8_t>(set_to);
-      load();
-    }
+  if (const auto kept = kept_node(); kept && *kept != node_) {
+    node_ = *kept;
+    load();
   }
   values_.start();
   power_.reset();

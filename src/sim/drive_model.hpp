@@ -106,7 +106,16 @@ class DriveModel final : public canopen::ObjectStore {
   double& own_counts() { return axis_.own_counts(); }
 
   const drive::Profile& profile() const { return *profile_; }
+  /// 255 when it has none (CiA 305).
   std::uint8_t node() const { return node_; }
+  /// The node-ID it is to have from reset_communication() on, 255 for none; power_on() brings back what is
+  /// stored.
+  void set_node(std::uint8_t node) { node_ = node; }
+  /// Keeps a node-ID for the time behind power-off; false when the memory cannot be written.
+  bool store_node(std::uint8_t node);
+  /// 1018h:04, where it is not its family's; holds from power_on() on.
+  void set_serial(std::uint32_t serial) { serial_ = serial; }
+  std::optional<std::uint32_t> serial() const { return serial_; }
   drive::DriveState power_state() const { return power_.state(); }
   bool is_moving() const { return axis_.is_moving(); }
   /// What its objects hold, past the checks of read().
@@ -131,6 +140,8 @@ class DriveModel final : public canopen::ObjectStore {
   std::uint32_t restore_objects(std::uint8_t group);
 
   void load_values(TimePoint now);
+  void begin_memory(std::uint8_t node);
+  std::optional<std::uint8_t> kept_node() const;
   void load_communication_area();
   void load_mirrors();
   void restore_if_asked();
@@ -165,6 +176,7 @@ class DriveModel final : public canopen::ObjectStore {
   std::uint64_t flash_writes_ = 0;
   Misbehaviour misbehaviour_;
   std::optional<Planned> planned_fault_;
+  std::optional<std::uint32_t> serial_;
 };
 
 }  // namespace servoctl::sim

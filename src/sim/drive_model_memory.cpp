@@ -1,7 +1,9 @@
 // What a drive model keeps when its power goes, and what it makes of that when it starts.
 #include <algorithm>
 
+#include "canopen/node_id.hpp"
 #include "canopen/sdo_abort.hpp"
+#include "drive/naming.hpp"
 #include "drive/standard_objects.hpp"
 #include "sim/drive_model.hpp"
 
@@ -21,6 +23,11 @@ bool is_in(std::uint8_t group, std::uint16_t index) {
   }
 }
 
+/// Where what LSS stores is kept, beside the drive's own objects.
+constexpr const char* kLssMemory = ".lss";
+constexpr ObjectAddress kLssNode{0, 1};
+constexpr std::uint8_t kNoNodeId = 255;  ///< CiA 305, 3.2.
+
 }  // namespace
 
 void DriveModel::restore_if_asked() {
@@ -34,6 +41,43 @@ void DriveModel::restore_if_asked() {
   if (set(profile_->rules.store.clear_alarms_at_start))
     cells.erase(*parameter(profile_->rules.store.clear_alarms_at_start)->object);
   (void)memory_->save();
+}
+
+/// A drive that is made without a node-ID gets none from its family's default either.
+void DriveModel::begin_memory(std::uint8_t node) {
+  auto& cells = memory_->cells(key_);
+  const auto node_id = drive::place_of(*profile_, profile_->rules.nmt.node_id);
+  const auto* entry = node_id ? profile_->dictionary.find(*node_id) : nullptr;
+  if (entry != nullptr && cells.find(*node_id) != cells.end()) return;
+  if (node == kNoNodeId)
+    memory_->cells(key_ + kLssMemory).try_emplace(kLssNode, Bytes{node});
+  else if (entry != nullptr && (!entry->default_value || od::to_double(entry->default_value->value) != node))
+    cells[*node_id] = store_le(node, od::size_of(entry->type).value_or(1));
+}
+
+/// What LSS has stored, where the family has no parameter of the node-ID or there is to be none; else that
+/// parameter.
+std::optional<std::uint8_t> DriveModel::kept_node() const {
+  const auto& own = memory_->cells(key_ + kLssMemory);
+  if (const auto found = own.find(kLssNode); found != own.end())
+    return static_cast<std::uint8_t>(load_le(found->second));
+  const auto node_id = drive::place_of(*profile_, profile_->rules.nmt.node_id);
+  const auto set_to = node_id ? values_.number(*node_id) : 0;
+  if (set_to < canopen::kFirstNode || set_to > canopen::kLastNode) return std::nullopt;
+  return static_cast<std::uint8_t>(set_to);
+}
+
+bool DriveModel::store_node(std::uint8_t node) {
+  auto& own = memory_->cells(key_ + kLssMemory);
+  const auto node_id = drive::place_of(*profile_, profile_->rules.nmt.node_id);
+  const auto* entry = node_id ? profile_->dictionary.find(*node_id) : nullptr;
+  if (entry == nullptr || node == kNoNodeId) {
+    own[kLssNode] = {node};
+  } else {
+    own.erase(kLssNode);
+    memory_->cells(key_)[*node_id] = store_le(node, od::size_of(entry->type).value_or(1));
+  }
+  return memory_->save().has_value();
 }
 
 void DriveModel::load_mirrors() {

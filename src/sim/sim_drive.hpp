@@ -31,6 +31,11 @@ class SimDrive final : public Device {
     model_.raise_fault(code, vendor, now);
     port_.collect_emergencies(now);
   }
+  /// It answers LSS, and has this serial number from its start on.
+  void enable_lss(std::uint32_t serial) {
+    model_.set_serial(serial);
+    port_.enable_lss();
+  }
   void raise_fault_at(Alarm alarm, TimePoint time) { model_.raise_fault_at(alarm, time); }
   void fall_silent_at(TimePoint time) { port_.fall_silent_at(time); }
   Misbehaviour& misbehaviour() { return model_.misbehaviour(); }
