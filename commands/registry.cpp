@@ -34,6 +34,11 @@ extern const Command kVerify;
 extern const Command kRestore;
 extern const Command kClone;
 extern const Command kAddress;
+extern const Command kLssScan;
+extern const Command kLssInquire;
+extern const Command kLssSetNode;
+extern const Command kLssSetBitrate;
+extern const Command kLssStore;
 extern const Command kStore;
 extern const Command kDefaults;
 extern const Command kFaultShow;
@@ -133,6 +138,11 @@ constexpr Named kNamed[] = {
     {"restore", &commands::kRestore},
     {"clone", &commands::kClone},
     {"address", &commands::kAddress},
+    {"lss scan", &commands::kLssScan},
+    {"lss inquire", &commands::kLssInquire},
+    {"lss set-node", &commands::kLssSetNode},
+    {"lss set-bitrate", &commands::kLssSetBitrate},
+    {"lss store", &commands::kLssStore},
     {"store", &commands::kStore},
     {"defaults", &commands::kDefaults},
     {"fault show", &commands::kFaultShow},

@@ -45,15 +45,6 @@ Result<void> add_write(show::Desk& desk, AddressChange& change, const std::strin
   return {};
 }
 
-Result<void> refuse_energised(session::Session& session, std::uint8_t node) {
-  const auto word = session.upload(node, objects::kStatusword);
-  if (!word && word.error().code != Errc::sdo_abort) return fail(word.error());
-  if (!word || !drive::is_energised(drive::decode_state(static_cast<std::uint16_t>(load_le(*word)))))
-    return {};
-  return fail(drive_error(Errc::refused, node, "it is energised: its address cannot be changed now",
-                          "`disable` de-energises it; make sure that the load is held"));
-}
-
 Result<void> hold_serial(const Identity& identity, const AddressWish& wish) {
   if (!wish.serial || identity.serial == wish.serial) return {};
   return fail(drive_error(
@@ -120,6 +111,15 @@ Result<AddressChange> plan_address(show::Desk& desk, std::uint8_t node, const Ad
   if (!cob_ids) return fail(cob_ids.error());
   out.cob_ids = std::move(*cob_ids);
   return out;
+}
+
+Result<void> refuse_energised(session::Session& session, std::uint8_t node) {
+  const auto word = session.upload(node, objects::kStatusword);
+  if (!word && word.error().code != Errc::sdo_abort) return fail(word.error());
+  if (!word || !drive::is_energised(drive::decode_state(static_cast<std::uint16_t>(load_le(*word)))))
+    return {};
+  return fail(drive_error(Errc::refused, node, "it is energised: its address cannot be changed now",
+                          "`disable` de-energises it; make sure that the load is held"));
 }
 
 Result<void> refuse_taken(session::Session& session, std::span<const std::uint8_t> nodes,

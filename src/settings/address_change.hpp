@@ -43,6 +43,10 @@ struct AddressChange {
 /// number, one that is energised, and two of one number; else as Session::upload().
 Result<AddressChange> plan_address(show::Desk& desk, std::uint8_t node, const AddressWish& wish);
 
+/// Errc::refused when the drive has power on its motor; else as Session::upload(). One that has no statusword
+/// has none.
+Result<void> refuse_energised(session::Session& session, std::uint8_t node);
+
 /// Errc::refused, with what shows it, when somebody uses one of these node-IDs; as nodes_in_use().
 Result<void> refuse_taken(session::Session& session, std::span<const std::uint8_t> nodes,
                           Duration listening = session::kAddressListening);

@@ -7,11 +7,14 @@
 #include "can/controller_report.hpp"
 #include "canopen/cob_id.hpp"
 #include "canopen/error_control.hpp"
+#include "canopen/lss.hpp"
 #include "canopen/nmt.hpp"
 #include "drive/standard_objects.hpp"
 #include "show/notice.hpp"
 #include "show/reading.hpp"
 #include "show/records.hpp"
+#include "traffic/lss_words.hpp"
+#include "traffic/sdo_words.hpp"
 
 namespace servoctl::traffic {
 namespace {
@@ -27,42 +30,6 @@ constexpr std::uint32_t kFirstPdo =
 std::optional<std::uint8_t> node_of(const can::Frame& frame, std::uint32_t base) {
   if (frame.extended || frame.id <= base || frame.id > base + canopen::kLastNode) return std::nullopt;
   return static_cast<std::uint8_t>(frame.id - base);
-}
-
-std::string_view name(Step kind) {
-  switch (kind) {
-    case Step::read: return "read";
-    case Step::write: return "write";
-    case Step::answer: return "answer";
-    case Step::acknowledge: return "acknowledge";
-    case Step::next: return "next";
-    case Step::segment: return "segment";
-    case Step::end: return "end";
-    case Step::abort: return "abort";
-    case Step::unknown: break;
-  }
-  return "unknown";
-}
-
-/// What happens to the object, before its value.
-std::string phrase(const SdoStep& step, const std::string& object, std::string_view abort) {
-  switch (step.kind) {
-    case Step::read: return "read " + object;
-    case Step::write: return "write " + object;
-    case Step::answer: return "answer " + object;
-    case Step::acknowledge: return "taken " + object;
-    case Step::segment:
-    case Step::end:
-      if (step.data) return (step.from_client ? "write " : "answer ") + object;
-      if (step.kind == Step::end) return "end " + object;
-      return fmt::format("segment {}, {} bytes so far", object, step.received);
-    case Step::next: return "go on " + object;
-    case Step::abort:
-      return fmt::format("abort {} by the {}: 0x{:08X} {}", object, step.from_client ? "master" : "node",
-                         step.abort_code, abort);
-    case Step::unknown: break;
-  }
-  return "no SDO of CiA 301";
 }
 
 /// `2026-11-21 13:05:00.250`: milliseconds since midnight, days since 1984 (CiA 301, 7.1.6.5).
@@ -110,6 +77,7 @@ void FrameDecoder::decode_service(const can::Frame& frame) {
   if (frame.id == kTime) return decode_time(frame);
   if (node_of(frame, canopen::kSdoAnswer) || node_of(frame, canopen::kSdoRequest)) return decode_sdo(frame);
   if (node_of(frame, canopen::kErrorControl)) return decode_error_control(frame);
+  if (frame.id == canopen::kLssRequest || frame.id == canopen::kLssAnswer) return decode_lss(frame);
   if (frame.id > kFirstPdo && frame.id < canopen::kSdoAnswer && node != 0)
     return decode_pdo(frame, node, nullptr);
   out_.text = fmt::format("identifier 0x{:03X}, {} bytes", frame.id, frame.size);
@@ -154,6 +122,12 @@ void FrameDecoder::decode_emergency(const canopen::Emergency& emergency) {
   if (!options_.fields) return;
   fields_.member("code", emergency.code);
   fields_.member("error_register", emergency.error_register);
+}
+
+void FrameDecoder::decode_lss(const can::Frame& frame) {
+  out_.service = "lss";
+  out_.text = lss_text(frame);
+  if (options_.fields) fields_.member("from", frame.id == canopen::kLssRequest ? "master" : "slave");
 }
 
 /// By its mapping, or by the pre-defined connection set alone.
@@ -230,8 +204,8 @@ void FrameDecoder::decode_sdo(const can::Frame& frame) {
   out_.node = node;
   drive::Target target;
   if (step.object) target = drive::target_at(options_.profile, *step.object);
-  out_.text = phrase(step, step.object ? name_of(target) : "of a transfer begun before",
-                     step.kind == Step::abort ? abort_words_of(step) : std::string());
+  out_.text = step_text(step, step.object ? name_of(target) : "of a transfer begun before",
+                        step.kind == Step::abort ? abort_words_of(step) : std::string());
   if (step.object) out_.objects.push_back(*step.object);
   if (options_.fields) add_sdo_fields(step, target);
   if (step.object && step.data) add_sdo_value(*step.data, target);
@@ -245,7 +219,7 @@ std::string FrameDecoder::abort_words_of(const SdoStep& step) const {
 }
 
 void FrameDecoder::add_sdo_fields(const canopen::SdoStep& step, const drive::Target& target) {
-  fields_.member("step", name(step.kind));
+  fields_.member("step", step_name(step.kind));
   fields_.member("from", step.from_client ? "master" : "node");
   if (step.block) fields_.member("block", true);
   if (!step.object) return;

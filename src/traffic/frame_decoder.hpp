@@ -17,8 +17,9 @@
 namespace servoctl::traffic {
 
 /// What a frame can be, as `--service` names it.
-inline constexpr std::string_view kServices[] = {
-    "nmt", "sync", "time", "emcy", "pdo", "sdo", "boot-up", "heartbeat", "guarding", "controller", "other"};
+inline constexpr std::string_view kServices[] = {"nmt",      "sync", "time",       "emcy",
+                                                 "pdo",      "sdo",  "boot-up",    "heartbeat",
+                                                 "guarding", "lss",  "controller", "other"};
 
 /// What a frame means.
 struct DecodedFrame {
@@ -30,8 +31,8 @@ struct DecodedFrame {
 };
 
 /// Explains frames one by one: NMT, SYNC, TIME, emergencies in the family's words, PDOs by their mapping, SDO
-/// with the object's name and value, heartbeat, node guarding. Remembers what SDO transfers are under way,
-/// and learns PDO mappings from those that read or write them.
+/// with the object's name and value, heartbeat, node guarding, LSS. Remembers what SDO transfers are under
+/// way, and learns PDO mappings from those that read or write them.
 class FrameDecoder {
  public:
   struct Options {
@@ -55,6 +56,7 @@ class FrameDecoder {
   void decode_time(const can::Frame& frame);
   void decode_emergency(const canopen::Emergency& emergency);
   void decode_pdo(const can::Frame& frame, std::uint8_t node, const show::PdoView* view);
+  void decode_lss(const can::Frame& frame);
   void decode_error_control(const can::Frame& frame);
   void decode_sdo(const can::Frame& frame);
   void add_sdo_fields(const canopen::SdoStep& step, const drive::Target& target);

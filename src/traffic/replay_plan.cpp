@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "canopen/cob_id.hpp"
+#include "canopen/lss.hpp"
 #include "canopen/nmt.hpp"
 #include "canopen/sdo_observer.hpp"
 #include "drive/standard_objects.hpp"
@@ -17,8 +18,6 @@ namespace {
 
 using canopen::PdoDirection;
 
-/// LSS requests of a master (CiA 305, 5.2).
-constexpr std::uint32_t kLssRequest = 0x7E5;
 /// What programs a drive (CiA 302-3, 1F50h to 1F57h).
 constexpr std::uint16_t kFirstProgram = 0x1F50;
 constexpr std::uint16_t kLastProgram = 0x1F57;
@@ -92,7 +91,7 @@ class Choice {
   /// Whether only a master sends it (CiA 301, 7.3.5; CiA 305).
   bool is_of_master(const can::Frame& frame, const DecodedFrame& decoded, const show::PdoView* view) const {
     if (decoded.service == "nmt" || decoded.service == "sync" || decoded.service == "time" ||
-        decoded.service == "guarding" || frame.id == kLssRequest)
+        decoded.service == "guarding" || frame.id == canopen::kLssRequest)
       return true;
     if (decoded.service == "sdo") return frame.id > canopen::kSdoRequest;
     if (decoded.service != "pdo") return false;
@@ -127,7 +126,7 @@ class Choice {
 
   std::string lasting_kind(const can::Frame& frame, const DecodedFrame& decoded,
                            std::optional<ObjectAddress> write) const {
-    if (frame.id == kLssRequest) return "LSS command";
+    if (frame.id == canopen::kLssRequest) return "LSS command";
     if (decoded.service == "nmt") {
       const auto message = canopen::parse_nmt(frame);
       const bool reset = message && (message->command == canopen::NmtCommand::reset_node ||

@@ -41,6 +41,11 @@ const std::map<std::string, std::string> kSamples{
     {"restore", "restore DIR/backup.json -n 1 -y"},
     {"clone", "clone --from 1 --to 2 -y"},
     {"address", "address 9 -n 1 -y"},
+    {"lss scan", "lss scan --assign 9 -y"},
+    {"lss inquire", "lss inquire --only"},
+    {"lss set-node", "lss set-node 9 --only -y"},
+    {"lss set-bitrate", "lss set-bitrate 500k --only --activate 1s -y"},
+    {"lss store", "lss store --only -y"},
     {"store", "store -n 1 -y"},
     {"defaults", "defaults -n 1 -y"},
     {"fault show", "fault show -n 1"},
@@ -117,9 +122,16 @@ void replace(std::string& text, std::string_view from, std::string_view to) {
     text.replace(at, from.size(), to);
 }
 
+/// Whether it is a request of LSS that asks, or says who is asked (CiA 305).
+bool looks_by_lss(const can::Frame& frame) {
+  const auto service = frame.data[0];
+  return frame.id == 0x7E5 && (service == 0x04 || (service >= 0x40 && service <= 0x5E));
+}
+
 /// Whether it comes from a simulated drive, or is an SDO request that only reads.
 bool is_harmless(const can::Frame& frame) {
   if (frame.extended || frame.error) return false;
+  if (looks_by_lss(frame)) return true;
   if (frame.id > 0x600 && frame.id <= 0x67F && !frame.remote) {
     const auto command = frame.data[0] >> 5U;  // CiA 301, 7.2.4.3: client command specifier.
     return command == 2 || command == 3 || command == 4 || command == 5;

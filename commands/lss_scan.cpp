@@ -1,0 +1,242 @@
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "base/number.hpp"
+#include "canopen/node_id.hpp"
+#include "command/duration_option.hpp"
+#include "command/lss_options.hpp"
+#include "command/setting_options.hpp"
+#include "session/scan.hpp"
+#include "settings/address_change.hpp"
+#include "settings/lss_node.hpp"
+#include "show/identity.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using namespace command;
+
+using canopen::LssAddress;
+using report::Value;
+using Found = canopen::LssFastscan::Found;
+
+/// Slaves answer within some milliseconds; where nobody does, each bit costs this.
+constexpr Duration kDefaultPatience = std::chrono::milliseconds(50);
+
+constexpr Parameter kParameters[] = {
+    {.name = "--assign",
+     .help = "give them node-IDs in turn, from this one on; asks first",
+     .kind = Kind::number},
+    kKeepOption,
+    {.name = "--patience", .help = "longest wait for one answer (default 50ms)", .kind = Kind::duration},
+    kVendorOption,
+    kProductOption,
+    kRevisionOption,
+    kSerialOption,
+};
+
+/// What a line asks for.
+struct ScanWish {
+  std::optional<std::uint8_t> first;  ///< Of the node-IDs to be given.
+  Duration patience = kDefaultPatience;
+  std::optional<LssAddress> low, high;  ///< Looked for by identity, not by fastscan.
+};
+
+Result<void> read_range(const Arguments& arguments, ScanWish& wish) {
+  std::optional<std::uint32_t> numbers[4];
+  constexpr std::string_view names[] = {"--vendor", "--product", "--revision", "--serial"};
+  for (std::size_t i = 0; i < 4; ++i) {
+    auto number = lss_number(arguments, names[i]);
+    if (!number) return fail(number.error());
+    numbers[i] = *number;
+  }
+  const auto& [vendor, product, revision, serial] = numbers;
+  if (!vendor && !product && !revision && !serial) return {};
+  if (!vendor || !product)
+    return fail(Errc::usage, "a scan by identity needs --vendor and --product",
+                "without them fastscan finds every slave that has no node-ID");
+  wish.low = LssAddress{*vendor, *product, revision.value_or(0), serial.value_or(0)};
+  wish.high = LssAddress{*vendor, *product, revision.value_or(0xFFFF'FFFF), serial.value_or(0xFFFF'FFFF)};
+  return {};
+}
+
+Result<ScanWish> wish_of(const Arguments& arguments) {
+  ScanWish out;
+  const auto patience = duration_option(arguments, "--patience");
+  if (!patience) return fail(patience.error());
+  out.patience = patience->value_or(kDefaultPatience);
+  if (const auto range = read_range(arguments, out); !range) return fail(range.error());
+  if (!arguments.has("--assign")) {
+    if (arguments.has("--keep"))
+      return fail(Errc::usage, "--keep keeps what --assign gives", "add --assign 5, or see `lss store`");
+    return out;
+  }
+  if (out.low)
+    return fail(Errc::usage, "--assign gives node-IDs to slaves that have none",
+                "leave --vendor to --serial out, or give one slave its node-ID by `lss set-node`");
+  const auto number = parse_integer(arguments.text("--assign"));
+  const auto node = number ? number->as_unsigned() : std::nullopt;
+  if (!node || *node < canopen::kFirstNode || *node > canopen::kLastNode)
+    return fail(Errc::usage, fmt::format("'{}' is not a node-ID", arguments.text("--assign")),
+                "node-IDs are 1 to 127");
+  out.first = static_cast<std::uint8_t>(*node);
+  return out;
+}
+
+Result<std::vector<Found>> find(Context& context, const ScanWish& wish) {
+  session::LssDialogue lss(*context.session, wish.patience);
+  std::vector<Found> out;
+  if (wish.low) {
+    const auto found = lss.search(*wish.low, *wish.high);
+    if (!found) return fail(found.error());
+    for (const auto& address : *found) out.push_back({address, 1});
+  } else {
+    auto found = lss.scan();
+    if (!found) return fail(found.error());
+    out = std::move(*found);
+  }
+  if (const auto left = lss.leave(); !left) context.errors.push_back(left.error());
+  return out;
+}
+
+void tell_found(Context& context, const ScanWish& wish, std::span<const Found> found) {
+  for (const auto& each : found)
+    if (each.slaves > 1)
+      context.errors.push_back(make_error(
+          Errc::refused,
+          fmt::format("{} LSS slaves have one identity: {}", each.slaves, to_string(each.address)),
+          "LSS cannot tell them apart: switch all but one of them off, and take one after the other"));
+  if (!found.empty()) return;
+  context.notices.push_back(
+      wish.low
+          ? "no LSS slave of this identity answers"
+          : "no LSS slave without a node-ID answers; `scan` finds nodes that have one, `lss scan --vendor V "
+            "--product P` LSS slaves that have one");
+}
+
+/// What became of one: its node-ID, and how it ended.
+struct Given {
+  std::optional<std::uint8_t> node;
+  settings::LssNodeOutcome outcome;
+};
+
+report::Table table_of(const Context& context, std::span<const Found> found, std::span<const Given> given) {
+  report::Table table;
+  table.columns = {{"vendor_id", "vendor"},
+                   {"product_code", "product"},
+                   {"revision"},
+                   {"serial"},
+                   {"slaves", "", report::Show::json},
+                   {"family"},
+                   {"new_node", "node"},
+                   {"result"},
+                   {"kept"}};
+  const auto families = drive::find_families(context.drive_folders);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const auto& a = found[i].address;
+    session::Identity identity;
+    identity.vendor_id = a.vendor;
+    identity.product_code = a.product;
+    const auto guess =
+        a.vendor == 0 ? std::string() : show::guess_text(session::guess_by_sii(identity, families));
+    const auto end = i < given.size() ? given[i] : Given{};
+    table.rows.push_back({report::Hex{a.vendor, 8}, report::Hex{a.product, 8}, report::Hex{a.revision, 8},
+                          a.serial, found[i].slaves, report::text_or_null(guess),
+                          end.node ? Value(*end.node) : Value(), report::text_or_null(end.outcome.result),
+                          end.outcome.kept ? Value(*end.outcome.kept) : Value()});
+  }
+  table.json_only = found.empty();
+  return table;
+}
+
+std::string question(std::span<const Found> found, std::span<const std::uint8_t> nodes) {
+  std::string out =
+      found.size() == 1 ? "Give this LSS slave its node-ID?" : "Give these LSS slaves their node-IDs?";
+  for (std::size_t i = 0; i < found.size(); ++i)
+    out += fmt::format("{} node {}: {}", i == 0 ? "" : ";", nodes[i], to_string(found[i].address));
+  return out + ". Each starts with it at once.";
+}
+
+Value planned(std::span<const Found> found, std::span<const std::uint8_t> nodes, bool keep) {
+  report::Table table;
+  table.columns = {{"new_node", "node"}, {"frame"}};
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    std::vector<canopen::LssRequest> requests{canopen::lss_set_node(nodes[i])};
+    if (keep) requests.push_back(canopen::lss_store());
+    const auto frames = lss_planned_frames({found[i].address}, requests);
+    for (const auto& row : std::get<report::Table>(frames.data()).rows)
+      table.rows.push_back({nodes[i], row.front()});
+  }
+  return Value(std::move(table));
+}
+
+/// In the order they were found; ends with the first that fails, for what went wrong with one may concern
+/// all.
+Result<Value> assign(Context& context, const ScanWish& wish, std::span<const Found> found, bool keep) {
+  std::vector<std::uint8_t> nodes;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (*wish.first + i > canopen::kLastNode)
+      return fail(Errc::usage,
+                  fmt::format("{} slaves from node-ID {} on go beyond 127", found.size(), *wish.first),
+                  "begin lower");
+    nodes.push_back(static_cast<std::uint8_t>(*wish.first + i));
+  }
+  if (!context.errors.empty() || found.empty()) return Value(table_of(context, found, {}));
+  if (const auto free = settings::refuse_taken(*context.session, nodes); !free) return fail(free.error());
+  if (context.dry_run) return planned(found, nodes, keep);
+  if (const auto sure = context.confirm(question(found, nodes)); !sure) return fail(sure.error());
+  std::vector<Given> given;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const session::LssSlave slave{found[i].address, canopen::kUnconfigured};
+    given.push_back({nodes[i], settings::give_lss_node(context, slave, {slave.address, nodes[i], keep})});
+    if (!given.back().outcome.error) continue;
+    context.errors.push_back(*given.back().outcome.error);
+    break;
+  }
+  if (!keep)
+    context.notices.push_back(
+        "not stored: after power-off they have no node-ID again; `lss store` or --keep keeps it");
+  return Value(table_of(context, found, given));
+}
+
+Result<Value> run(Context& context, const Arguments& arguments) {
+  const auto wish = wish_of(arguments);
+  if (!wish) return fail(wish.error());
+  const auto found = find(context, *wish);
+  if (!found) return fail(found.error());
+  tell_found(context, *wish, *found);
+  if (wish->first) return assign(context, *wish, *found, arguments.has("--keep"));
+  return Value(table_of(context, *found, {}));
+}
+
+Result<void> check(Context&, const Arguments& arguments) {
+  const auto wish = wish_of(arguments);
+  return wish ? Result<void>() : fail(wish.error());
+}
+
+}  // namespace
+
+extern const Command kLssScan;
+const Command kLssScan{
+    .path = "lss scan",
+    .summary = "Find LSS slaves without a node-ID; --assign gives them one",
+    .details =
+        "Drives that know LSS (CiA 305) may come without a node-ID: they answer no `scan`. Fastscan finds them one "
+        "after the other, whatever their identity, in some seconds each: a bit that is 1 is one that nobody answers "
+        "to, and costs --patience. Nothing is changed; at the end all are back in the waiting state. With --vendor "
+        "and --product it looks for slaves of that kind instead, with a node-ID or without (and --revision, --serial). "
+        "--assign 5 gives those that were found the node-IDs 5, 6, 7 …, in the order of their identity, after a "
+        "question that names each: none of these may be in use. --keep stores them. Two slaves of one identity are "
+        "told, and get nothing. For example: lss scan; lss scan --assign 5 --keep; lss scan --vendor 0x445653 "
+        "--product 1.",
+    .parameters = kParameters,
+    .needs = Needs::can,
+    .effect = Effect::resets,
+    .family = FamilyCheck::never,
+    .reads_without = "--assign",
+    .run = run,
+    .check = check,
+    .elsewhere = "a drive on EtherCAT is addressed by its place on the ring: `scan` shows what each is",
+};
+
+}  // namespace servoctl::commands

@@ -1,0 +1,118 @@
+#include <fmt/format.h>
+
+#include "base/number.hpp"
+#include "canopen/node_id.hpp"
+#include "command/lss_options.hpp"
+#include "command/setting_options.hpp"
+#include "settings/lss_node.hpp"
+#include "show/records.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using namespace command;
+
+using canopen::kUnconfigured;
+using report::Value;
+
+constexpr Parameter kParameters[] = {
+    {.name = "new", .help = "the new node-ID, 1 to 127; 255: none", .kind = Kind::number, .required = true},
+    kVendorOption,
+    kProductOption,
+    kRevisionOption,
+    kSerialOption,
+    kOnlySlaveOption,
+    kKeepOption,
+};
+
+Result<std::uint8_t> new_node(const Arguments& arguments) {
+  const auto number = parse_integer(arguments.text("new"));
+  const auto node = number ? number->as_unsigned() : std::nullopt;
+  const bool good =
+      node && ((*node >= canopen::kFirstNode && *node <= canopen::kLastNode) || *node == kUnconfigured);
+  if (!good)
+    return fail(Errc::usage, fmt::format("'{}' is not a node-ID", arguments.text("new")),
+                "node-IDs are 1 to 127; 255 takes the node-ID away (CiA 305)");
+  return static_cast<std::uint8_t>(*node);
+}
+
+std::string node_text(std::uint8_t node) {
+  return node == kUnconfigured ? std::string("no node-ID") : fmt::format("node-ID {}", node);
+}
+
+std::string question(const session::LssSlave& slave, const settings::LssNodeChange& change) {
+  auto out = fmt::format("Give {} to the LSS slave with {}?", node_text(change.to), to_string(slave.address));
+  if (slave.is_unconfigured()) return out + " It has none, and starts with it.";
+  if (!slave.node) return out + " It does not tell which it has; the new one holds when it starts again.";
+  return out +
+         fmt::format(
+             " It is node {} now; its communication is reset (NMT): unstored PDOs, COB-IDs and heartbeats "
+             "are lost, and a moving axis may lose its control.",
+             *slave.node);
+}
+
+Value node_value(std::optional<std::uint8_t> node) {
+  return node && *node != kUnconfigured ? Value(*node) : Value();
+}
+
+Value planned(const LssChoice& choice, const settings::LssNodeChange& change) {
+  std::vector<canopen::LssRequest> requests{canopen::lss_set_node(change.to)};
+  if (change.keep) requests.push_back(canopen::lss_store());
+  return lss_planned_frames(choice, requests);
+}
+
+Result<Value> run(Context& context, const Arguments& arguments) {
+  const auto to = new_node(arguments);
+  if (!to) return fail(to.error());
+  const auto choice = lss_choice(context, arguments);
+  if (!choice) return fail(choice.error());
+  const settings::LssNodeChange change{choice->address, *to, arguments.has("--keep")};
+  if (context.dry_run) {
+    context.notices.push_back(
+        "a slave that has a node-ID already gets an NMT reset of its communication behind these frames");
+    return planned(*choice, change);
+  }
+  const auto slave = settings::look_at_lss_slave(*context.session, change);
+  if (!slave) return fail(slave.error());
+  if (const auto agreed = context.confirm(question(*slave, change)); !agreed) return fail(agreed.error());
+  const auto outcome = settings::give_lss_node(context, *slave, change);
+  if (outcome.error) context.errors.push_back(*outcome.error);
+  auto out = lss_identity_record(slave->address);
+  out.push_back({"node", node_value(slave->node)});
+  out.push_back({"new_node", node_value(change.to), report::Show::everywhere, "new"});
+  out.push_back({"result", outcome.result});
+  out.push_back({"kept", outcome.kept ? Value(*outcome.kept) : Value()});
+  if (outcome.done && !change.keep)
+    context.notices.push_back(
+        "it is not stored: after power-off the slave has what it stored last; `lss store`, or --keep, keeps it");
+  return Value(std::move(out));
+}
+
+Result<void> check(Context& context, const Arguments& arguments) {
+  if (const auto to = new_node(arguments); !to) return fail(to.error());
+  return check_lss_choice(context, arguments);
+}
+
+}  // namespace
+
+extern const Command kLssSetNode;
+const Command kLssSetNode{
+    .path = "lss set-node",
+    .summary = "Give an LSS slave a node-ID; asks first",
+    .details =
+        "The slave is named as for `lss inquire`: by its identity (--vendor, --product, --revision, --serial), by -n, "
+        "or by --only. A slave without a node-ID starts with the new one at once; of one that has a node-ID the "
+        "communication is reset (NMT), and an energised drive is left alone. A node-ID that somebody uses is refused: "
+        "all that answer, and all that are heard within 1.5 s. At the end the slave is looked for by its new node-ID "
+        "and its 1018h. --keep stores it; where that fails the old node-ID is set again. 255 takes the node-ID away. "
+        "For example: lss set-node 5 --only --keep.",
+    .parameters = kParameters,
+    .needs = Needs::can,
+    .effect = Effect::resets,
+    .family = FamilyCheck::never,
+    .run = run,
+    .check = check,
+    .elsewhere = "a drive on EtherCAT is addressed by its place on the ring; it has no node-ID to change",
+};
+
+}  // namespace servoctl::commands

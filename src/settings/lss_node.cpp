@@ -1,0 +1,144 @@
+#include "settings/lss_node.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <utility>
+
+#include "canopen/node_id.hpp"
+#include "session/identify.hpp"
+#include "session/option_scope.hpp"
+#include "settings/address_change.hpp"
+
+namespace servoctl::settings {
+namespace {
+
+using canopen::kUnconfigured;
+using session::LssDialogue;
+using session::LssSlave;
+
+/// From a reset to the boot-up message.
+constexpr Duration kLssBootPatience = std::chrono::seconds(10);
+
+/// One slave on its way to its node-ID.
+class LssNodeRun {
+ public:
+  LssNodeRun(show::Desk& desk, const LssSlave& slave, const LssNodeChange& change)
+      : session_(desk.session), slave_(&slave), change_(&change) {}
+
+  LssNodeOutcome run() {
+    {
+      const session::Deaf deaf(*session_);
+      if (!configure() || !restart()) return std::move(out_);
+    }
+    find();
+    return std::move(out_);
+  }
+
+ private:
+  bool fail_with(std::string result, Error error) {
+    out_.result = std::move(result);
+    out_.error = std::move(error);
+    return false;
+  }
+
+  bool configure() {
+    LssDialogue lss(*session_, session_->options().timeout);
+    const auto selected = lss.select(slave_->address);
+    if (!selected) return fail_with("not changed", selected.error());
+    if (const auto set = lss.order(canopen::lss_set_node(change_->to), "set its node-ID"); !set)
+      return fail_with(set.error().code == Errc::negative ? "not changed" : "not known", set.error());
+    if (change_->keep && !store(lss)) return false;
+    if (const auto left = lss.leave(); !left) return fail_with("set; see the error", left.error());
+    return true;
+  }
+
+  /// A node-ID that comes and goes with the power is worse than the old one.
+  bool store(LssDialogue& lss) {
+    const auto stored = lss.order(canopen::lss_store(), "stored its configuration",
+                                  std::max(session_->options().timeout, kLssStorePatience));
+    out_.kept = stored.has_value();
+    if (stored) return true;
+    auto error = stored.error();
+    const auto back =
+        lss.order(canopen::lss_set_node(slave_->node.value_or(kUnconfigured)), "taken its old node-ID");
+    error.message +=
+        back ? "; its node-ID is the old one again" : "; and it has not taken its old node-ID back";
+    if (error.code == Errc::timeout) out_.kept.reset();
+    return fail_with(back ? "not changed" : "not known", std::move(error));
+  }
+
+  bool restart() {
+    if (slave_->is_unconfigured() || !slave_->node) return true;
+    const auto sent =
+        session::restart_node(*session_, *slave_->node, drive::NmtRules::Restart::reset_communication);
+    return sent || fail_with("set; holds from its next start", sent.error());
+  }
+
+  void find() {
+    if (change_->to == kUnconfigured) return find_without();
+    session::forget_node(*session_, change_->to);
+    const auto from = slave_->is_unconfigured() ? change_->to : slave_->node.value_or(change_->to);
+    const auto came =
+        session::wait_for_boot(*session_, from, change_->to, session_->now() + kLssBootPatience);
+    if (!came) return void(fail_with("set; not looked for", came.error()));
+    const auto identity = session::read_identity(*session_, change_->to);
+    if (!identity)
+      return void(
+          fail_with("set; not found", drive_error(identity.error().code, change_->to,
+                                                  "the slave has taken this node-ID, and does not answer "
+                                                  "by it: " +
+                                                      identity.error().message,
+                                                  "`scan` shows who answers; switch it off and on")));
+    const auto& a = slave_->address;
+    const auto other = [](const std::optional<std::uint32_t>& told, std::uint32_t wanted) {
+      return told && *told != wanted;
+    };
+    if (other(identity->vendor_id, a.vendor) || other(identity->product_code, a.product) ||
+        other(identity->revision, a.revision) || other(identity->serial, a.serial))
+      return void(
+          fail_with("set; another answers",
+                    drive_error(Errc::refused, change_->to,
+                                "the drive that answers by this node-ID has another identity (1018h) than "
+                                "the LSS slave that was given it",
+                                "`scan --long` shows who is there")));
+    out_.done = true;
+    out_.result = slave_->is_unconfigured() ? "node-ID given" : "moved";
+  }
+
+  /// It has no SDO then.
+  void find_without() {
+    (void)session_->wait([] { return false; }, session_->now() + std::chrono::seconds(1));
+    LssDialogue lss(*session_, session_->options().timeout);
+    const auto answers = lss.ask(canopen::lss_identify_unconfigured());
+    if (!answers) return void(fail_with("set; not looked for", answers.error()));
+    out_.done = !answers->empty();
+    out_.result = out_.done ? "without a node-ID now" : "set; holds from its next start";
+  }
+
+  session::Session* session_;
+  const LssSlave* slave_;
+  const LssNodeChange* change_;
+  LssNodeOutcome out_;
+};
+
+}  // namespace
+
+Result<LssSlave> look_at_lss_slave(session::Session& session, const LssNodeChange& change) {
+  LssDialogue lss(session, session.options().timeout);
+  auto slave = lss.select(change.address);
+  if (!slave) return slave;
+  if (const auto left = lss.leave(); !left) return fail(left.error());
+  const bool configured = slave->node && !slave->is_unconfigured();
+  if (configured)
+    if (const auto still = refuse_energised(session, *slave->node); !still) return fail(still.error());
+  if (change.to == kUnconfigured || slave->node == change.to) return slave;
+  const std::uint8_t target[] = {change.to};
+  if (const auto free = refuse_taken(session, target); !free) return fail(free.error());
+  return slave;
+}
+
+LssNodeOutcome give_lss_node(show::Desk& desk, const LssSlave& slave, const LssNodeChange& change) {
+  return LssNodeRun(desk, slave, change).run();
+}
+
+}  // namespace servoctl::settings

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "session/lss.hpp"
+#include "show/desk.hpp"
+
+namespace servoctl::settings {
+
+/// What is known of an LSS slave before it gets a node-ID.
+struct LssNodeChange {
+  std::optional<canopen::LssAddress> address;  ///< Empty: the only slave on the bus.
+  std::uint8_t to = 0;                         ///< 1 to 127, or canopen::kUnconfigured.
+  bool keep = false;                           ///< Stored, so that it outlives power-off.
+};
+
+/// How long a slave may take to store its configuration, at least.
+inline constexpr Duration kLssStorePatience = std::chrono::seconds(3);
+
+/// Selects the slave, asks what it is, and sends all back to waiting; refuses what must not be changed now:
+/// an energised drive, and a node-ID that somebody else uses. Changes nothing.
+Result<session::LssSlave> look_at_lss_slave(session::Session& session, const LssNodeChange& change);
+
+/// What came of it.
+struct LssNodeOutcome {
+  std::string result;          ///< In words: `moved`, `node-ID given`, …
+  bool done = false;           ///< The slave is found under its new node-ID.
+  std::optional<bool> kept;    ///< Whether it outlives power-off; empty where nobody knows.
+  std::optional<Error> error;  ///< What went wrong, and where the slave is as far as that is known.
+};
+
+/// Gives the slave its node-ID (CiA 305, configure node-ID), stores it where that is wanted, and lets it
+/// start with it: one without a node-ID does so by itself when all go back to waiting, another by an NMT
+/// reset of its communication. Then it is looked for: its boot-up, and 1018h. Where storing fails, the old
+/// node-ID is written back. From the first request to the reset Ctrl-C is not heard. Nobody is asked.
+LssNodeOutcome give_lss_node(show::Desk& desk, const session::LssSlave& slave, const LssNodeChange& change);
+
+}  // namespace servoctl::settings
