@@ -18,7 +18,7 @@ using namespace command;
 
 using canopen::LssAddress;
 using report::Value;
-using Found = canopen::LssFastscan::Found;
+using Found = session::LssFound;
 
 /// Slaves answer within some milliseconds; where nobody does, each bit costs this.
 constexpr Duration kDefaultPatience = std::chrono::milliseconds(50);
@@ -221,9 +221,9 @@ const Command kLssScan{
     .path = "lss scan",
     .summary = "Find LSS slaves without a node-ID; --assign gives them one",
     .details =
-        "Drives that know LSS (CiA 305) may come without a node-ID: they answer no `scan`. Fastscan finds them one "
-        "after the other, whatever their identity, in some seconds each: a bit that is 1 is one that nobody answers "
-        "to, and costs --patience. Nothing is changed; at the end all are back in the waiting state. With --vendor "
+        "Drives that know LSS (CiA 305) may come without a node-ID: they answer no `scan`. Fastscan finds them, "
+        "whatever their identity, in some seconds each: it asks for each bit, and that nobody answers costs "
+        "--patience. Nothing is changed; at the end all are back in the waiting state. With --vendor "
         "and --product it looks for slaves of that kind instead, with a node-ID or without (and --revision, --serial). "
         "--assign 5 gives those that were found the node-IDs 5, 6, 7 …, in the order of their identity, after a "
         "question that names each: none of these may be in use. --keep stores them. Two slaves of one identity are "

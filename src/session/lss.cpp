@@ -5,7 +5,8 @@
 #include <iterator>
 #include <utility>
 
-#include "session/lss_pump.hpp"
+#include "session/can_network.hpp"
+#include "session/hearing.hpp"
 #include "session/option_scope.hpp"
 
 namespace servoctl::session {
@@ -15,8 +16,6 @@ using canopen::LssAddress;
 using canopen::LssService;
 using canopen::LssState;
 
-/// From an answer to that of another slave: as long as a slow one takes.
-constexpr Duration kFurther = std::chrono::milliseconds(100);
 /// Slaves in the configuration state answer at once; that none is there any more is asked only for so long.
 constexpr Duration kLeaveCheck = std::chrono::milliseconds(50);
 constexpr int kLeaveTries = 3;
@@ -54,11 +53,26 @@ void LssDialogue::touch() {
   hold_ = session_->protect(Care::guarded);
 }
 
-Result<LssDialogue::Answers> LssDialogue::ask(const canopen::LssRequest& request, Duration patience) {
+Result<LssDialogue::Answers> LssDialogue::ask(const canopen::LssRequest& request, Pace pace) {
   touch();
-  canopen::LssMaster master({.patience = patience, .further = kFurther});
+  canopen::LssMaster master({.patience = pace.patience, .further = pace.further});
+  const Hearing hearing(*session_, [&](const can::Frame& frame, TimePoint time) {
+    foreign_ = foreign_ || (frame.id == canopen::kLssRequest && !frame.extended && !frame.error);
+    master.on_frame(frame, time);
+  });
   master.start(request, session_->now());
-  return pump_lss(*session_, master, foreign_);
+  for (;;) {
+    while (const auto frame = master.take_frame()) {
+      if (const auto sent = session_->can()->send(*frame); !sent) return fail(sent.error());
+      master.on_time(session_->now());
+    }
+    if (foreign_)
+      return fail(Errc::refused, "another LSS master is at work on this bus",
+                  "its requests and answers cannot be told from ours: end it, and begin again");
+    if (auto result = master.take_result()) return std::move(*result);
+    if (const auto stepped = session_->step(master.deadline()); !stepped) return fail(stepped.error());
+    master.on_time(session_->now());
+  }
 }
 
 Result<void> LssDialogue::send_to_waiting() {
@@ -123,7 +137,7 @@ Result<void> LssDialogue::order(const canopen::LssRequest& request, std::string_
   if (!answers) return fail(answers.error());
   if (answers->empty())
     return fail(Errc::timeout, fmt::format("the LSS slave did not say whether it has {}", what),
-                "`lss inquire` shows what it has now; --timeout waits longer");
+                "one that does not support a request may leave it unanswered; --timeout waits longer");
   const auto refusal =
       std::find_if(answers->begin(), answers->end(), [](const auto& answer) { return answer.error != 0; });
   if (refusal != answers->end())

@@ -6,7 +6,6 @@
 #include <string_view>
 #include <vector>
 
-#include "canopen/lss_fastscan.hpp"
 #include "canopen/lss_master.hpp"
 #include "session/session.hpp"
 
@@ -19,6 +18,12 @@ struct LssSlave {
       node;  ///< The active node-ID, or canopen::kUnconfigured; empty where it does not say.
 
   bool is_unconfigured() const { return node == canopen::kUnconfigured; }
+};
+
+/// A slave that a scan found.
+struct LssFound {
+  canopen::LssAddress address;
+  std::size_t slaves = 1;  ///< That say it is they: more than 1 have one identity.
 };
 
 /// servoctl as the LSS master (CiA 305) of the session's CAN bus, until it is destroyed: on every way out all
@@ -39,7 +44,15 @@ class LssDialogue {
 
   /// All who answer; none is no error. Errors of the bus, and Errc::interrupted.
   Result<Answers> ask(const canopen::LssRequest& request) { return ask(request, patience_); }
-  Result<Answers> ask(const canopen::LssRequest& request, Duration patience);
+  Result<Answers> ask(const canopen::LssRequest& request, Duration patience) {
+    return ask(request, Pace{patience, kFurther});
+  }
+  /// How long a first answer is waited for, and then another slave's.
+  struct Pace {
+    Duration patience;
+    Duration further;
+  };
+  Result<Answers> ask(const canopen::LssRequest& request, Pace pace);
 
   /// Takes the one slave of this identity, or without one the only slave on the bus, to the configuration
   /// state, and asks what it is. Errc::timeout when nobody answers, Errc::refused when more than one does,
@@ -56,9 +69,12 @@ class LssDialogue {
   }
   Result<void> order(const canopen::LssRequest& request, std::string_view what, Duration patience);
 
-  /// Every slave without a node-ID, one after the other (LSS fastscan). They stay in the configuration state,
-  /// and so out of the further scan. Begins anew with more patience, twice at most, when answers were lost.
-  Result<std::vector<canopen::LssFastscan::Found>> scan();
+  /// Every slave without a node-ID (LSS fastscan), in the order of their identities: bit by bit, both halves
+  /// of all in which somebody answers. The slaves stay in the waiting state meanwhile, for some of those in
+  /// the configuration state answer every step of a scan; at the end each is selected by what was found, and
+  /// has to say that it is there. Hasty at first; begins anew with more patience, twice at most, when answers
+  /// were lost or late.
+  Result<std::vector<LssFound>> scan();
   /// Every slave between the two, with a node-ID or without (LSS identify remote slave), by halves; vendor
   /// and product are those of `low`.
   Result<std::vector<canopen::LssAddress>> search(const canopen::LssAddress& low,
@@ -69,7 +85,10 @@ class LssDialogue {
   Result<void> leave();
 
  private:
-  Result<std::vector<canopen::LssFastscan::Found>> scan_once(Duration patience);
+  /// From an answer to that of another slave: as long as a slow one takes.
+  static constexpr Duration kFurther = std::chrono::milliseconds(100);
+
+  Result<void> confirm(std::vector<LssFound>& found);
   Result<bool> search_between(const canopen::LssAddress& low, const canopen::LssAddress& high,
                               std::vector<canopen::LssAddress>& found);
   Result<LssSlave> look(const std::optional<canopen::LssAddress>& address);

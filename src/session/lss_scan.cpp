@@ -1,20 +1,39 @@
-// How a session finds LSS slaves.
+// How a session finds LSS slaves: by walks through the tree of identities.
 #include <algorithm>
+#include <array>
+#include <iterator>
 #include <utility>
 
 #include "session/lss.hpp"
-#include "session/lss_pump.hpp"
 
 namespace servoctl::session {
 namespace {
 
 using canopen::LssAddress;
-using canopen::LssFastscan;
+using canopen::LssFastscanStep;
 
-constexpr int kScanRounds = 3;
+constexpr Duration kConfirmation = std::chrono::milliseconds(100);
+/// Slaves that are quick answer all within this time; where they are not, what comes later is taken for an
+/// answer to the next step, and the walk fails.
+constexpr Duration kHaste = std::chrono::milliseconds(10);
 constexpr std::size_t kMostSlaves = 127;
+constexpr std::uint8_t kTopBit = 31;
+constexpr std::uint8_t kLastPart = 3;
 
-/// The half of a range that begins with it, and the other: first by the revision, then by the serial number.
+tl::unexpected<Error> lost_answer() {
+  return fail(
+      Errc::protocol, "an LSS slave answered to a part of the identities, and to neither half of it",
+      "late or lost answers, or a slave that was switched off: `lss scan` again, with a longer --patience");
+}
+
+tl::unexpected<Error> too_many() {
+  return fail(Errc::protocol,
+              "more than 127 identities are answered to: an LSS slave answers to whatever is asked",
+              "switch one slave after the other off to find it");
+}
+
+/// The end of the lower half of a range, and the beginning of the upper: by the revision, then by the serial
+/// number.
 std::pair<LssAddress, LssAddress> inner_ends(const LssAddress& low, const LssAddress& high) {
   const auto part = low.revision != high.revision ? &LssAddress::revision : &LssAddress::serial;
   auto end = high;
@@ -24,77 +43,134 @@ std::pair<LssAddress, LssAddress> inner_ends(const LssAddress& low, const LssAdd
   return {end, begin};
 }
 
-/// LssFastscan, with its progress told.
-class ToldFastscan {
+/// One walk of LSS fastscan: every identity that somebody without a node-ID has, in ascending order. Nobody
+/// leaves the waiting state for it: the step that would select a slave is never sent.
+class FastscanWalk {
  public:
-  ToldFastscan(Session& session, LssFastscan::Options options) : session_(&session), machine_(options) {}
-  void start(TimePoint now) { machine_.start(now); }
-  void on_frame(const can::Frame& frame, TimePoint now) { machine_.on_frame(frame, now); }
-  void on_time(TimePoint now) {
-    const auto before = machine_.steps();
-    machine_.on_time(now);
-    const auto& tell = session_->options().list_progress;
-    if (tell && machine_.steps() != before && machine_.steps() > 1)
-      tell(std::min(machine_.steps(), LssFastscan::kSteps), LssFastscan::kSteps, now);
+  FastscanWalk(LssDialogue& lss, LssDialogue::Pace pace) : lss_(&lss), pace_(pace) {}
+
+  Result<std::vector<LssFound>> run() {
+    const auto any = probe({.number = 0, .bit = canopen::kFastscanBegin});
+    if (!any) return fail(any.error());
+    if (*any > 0)
+      if (const auto done = walk_part(0); !done) return fail(done.error());
+    return std::move(found_);
   }
-  auto take_frame() { return machine_.take_frame(); }
-  auto take_result() { return machine_.take_result(); }
-  TimePoint deadline() const { return machine_.deadline(); }
 
  private:
-  Session* session_;
-  LssFastscan machine_;
+  /// How many answered. A question that nobody answers is asked once more: the one answer may have been lost.
+  Result<std::size_t> probe(const LssFastscanStep& step) {
+    for (int i = 0;; ++i) {
+      const auto answers = lss_->ask(canopen::lss_fastscan(step), pace_);
+      if (!answers) return fail(answers.error());
+      if (!answers->empty() || i == 1) return answers->size();
+    }
+  }
+
+  /// Those that fit the numbers before are asked for this one; both halves at least one of which is
+  /// somebody's.
+  Result<void> walk_part(std::uint8_t part) { return walk_halves(part, 0, kTopBit); }
+
+  Result<void> walk_halves(std::uint8_t part, std::uint32_t number, std::uint8_t bit) {
+    const auto low = walk(part, number, bit);
+    if (!low) return fail(low.error());
+    const auto high = walk(part, number | 1U << bit, bit);
+    if (!high) return fail(high.error());
+    return *low || *high ? Result<void>() : lost_answer();
+  }
+
+  /// Whether somebody has these bits of the number, from `bit` on upwards.
+  Result<bool> walk(std::uint8_t part, std::uint32_t number, std::uint8_t bit) {
+    const auto answers = probe({number, bit, part, part});
+    if (!answers) return fail(answers.error());
+    if (*answers == 0) return false;
+    const auto below = bit > 0 ? walk_halves(part, number, static_cast<std::uint8_t>(bit - 1))
+                               : on_number(part, number, *answers);
+    return below ? Result<bool>(true) : fail(below.error());
+  }
+
+  Result<void> on_number(std::uint8_t part, std::uint32_t number, std::size_t answers) {
+    numbers_[part] = number;
+    if (part == kLastPart) {
+      found_.push_back({{numbers_[0], numbers_[1], numbers_[2], numbers_[3]}, answers});
+      return found_.size() <= kMostSlaves ? Result<void>() : too_many();
+    }
+    if (const auto moved = advance(part); !moved) return moved;
+    if (const auto done = walk_part(static_cast<std::uint8_t>(part + 1)); !done) return done;
+    return go_back_to(part);
+  }
+
+  /// Those that have the whole number are asked for the next one from now on.
+  Result<void> advance(std::uint8_t part) {
+    const auto moved = probe({numbers_[part], 0, part, static_cast<std::uint8_t>(part + 1)});
+    if (!moved) return fail(moved.error());
+    return *moved > 0 ? Result<void>() : lost_answer();
+  }
+
+  Result<void> go_back_to(std::uint8_t part) {
+    const auto all = probe({.number = 0, .bit = canopen::kFastscanBegin});
+    if (!all) return fail(all.error());
+    for (std::uint8_t i = 0; i < part; ++i)
+      if (const auto moved = advance(i); !moved) return moved;
+    return {};
+  }
+
+  LssDialogue* lss_;
+  LssDialogue::Pace pace_;
+  std::array<std::uint32_t, 4> numbers_{};
+  std::vector<LssFound> found_;
 };
 
 }  // namespace
 
-Result<std::vector<LssFastscan::Found>> LssDialogue::scan_once(Duration patience) {
-  std::vector<LssFastscan::Found> out;
-  if (const auto sent = send_to_waiting(); !sent) return fail(sent.error());
-  while (out.size() < kMostSlaves) {
-    ToldFastscan machine(*session_, {.patience = patience});
-    machine.start(session_->now());
-    const auto result = pump_lss(*session_, machine, foreign_);
-    if (!result) return fail(result.error());
-    if (!*result) return fail(result->error());
-    if (!**result) return out;
-    const auto& found = ***result;
-    const auto same = [&](const auto& before) { return before.address == found.address; };
-    if (std::any_of(out.begin(), out.end(), same))
-      return fail(Errc::protocol,
-                  "an LSS slave answers fastscan although it was found: " + to_string(found.address),
-                  "give it a node-ID by its identity: `lss set-node`, then scan again");
-    out.push_back(found);
+Result<std::vector<LssFound>> LssDialogue::scan() {
+  // Each silence is waited for twice.
+  const auto half = patience_ / 2;
+  const Pace paces[] = {{half, std::min(half, kHaste)}, {half, patience_}, {4 * patience_, 4 * patience_}};
+  for (std::size_t i = 0;; ++i) {
+    if (const auto sent = send_to_waiting(); !sent) return fail(sent.error());
+    auto found = FastscanWalk(*this, paces[i]).run();
+    const auto there = found ? confirm(*found) : fail(found.error());
+    if (there) return found;
+    if (there.error().code != Errc::protocol || i + 1 == std::size(paces)) return fail(there.error());
   }
-  return out;
 }
 
-Result<std::vector<LssFastscan::Found>> LssDialogue::scan() {
-  for (int round = 1;; ++round) {
-    auto found = scan_once(patience_ * (1 << (round - 1)));
-    if (found || found.error().code != Errc::protocol || round == kScanRounds) return found;
+/// An answer that came late may have stood for another's: each is selected once, and says that it is there.
+Result<void> LssDialogue::confirm(std::vector<LssFound>& found) {
+  for (auto& each : found) {
+    if (const auto sent = send_to_waiting(); !sent) return sent;
+    const auto answers =
+        ask(canopen::lss_select(each.address), {std::max(patience_, kConfirmation), kConfirmation});
+    if (!answers) return fail(answers.error());
+    if (answers->empty())
+      return fail(
+          Errc::protocol,
+          "an LSS slave was found by fastscan and does not answer to its identity: " +
+              to_string(each.address),
+          "late answers, or a slave that was switched off: `lss scan` again, with a longer --patience");
+    each.slaves = std::max<std::size_t>(1, answers->size());
   }
+  return found.empty() ? Result<void>() : send_to_waiting();
 }
 
 /// Whether somebody is there. A range in which somebody answers and in whose halves nobody does means that an
 /// answer was lost.
 Result<bool> LssDialogue::search_between(const LssAddress& low, const LssAddress& high,
                                          std::vector<LssAddress>& found) {
-  const auto answers = ask(canopen::lss_identify(low, high));
+  const auto answers = ask(canopen::lss_identify(low, high), {patience_, std::min(patience_, kHaste)});
   if (!answers) return fail(answers.error());
   if (answers->empty()) return false;
   if (low == high) {
     found.push_back(low);
-    if (found.size() > kMostSlaves) return fail(Errc::protocol, "a slave answers to every identity");
-    return true;
+    return found.size() <= kMostSlaves ? Result<bool>(true) : too_many();
   }
   const auto [end, begin] = inner_ends(low, high);
   const auto first = search_between(low, end, found);
   if (!first) return first;
   const auto second = search_between(begin, high, found);
   if (!second || *first || *second) return second ? Result<bool>(true) : second;
-  return fail(Errc::protocol, "an LSS slave answered to a range of identities, and to neither half of it",
-              "late or lost answers: `lss scan` again, with a longer --patience");
+  return lost_answer();
 }
 
 Result<std::vector<LssAddress>> LssDialogue::search(const LssAddress& low, const LssAddress& high) {

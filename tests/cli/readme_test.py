@@ -83,5 +83,5 @@ def check(name, fewest, change=lambda text: text):
     return False
 
 
-if not all([check("README.md", 8, table), check("docs/adding-a-drive.md", 12)]):
+if not all([check("README.md", 8, table), check("docs/adding-a-drive.md", 12), check("docs/lss.md", 4)]):
     sys.exit("`SERVOCTL_REWRITE_README=1` writes the documents anew; read the diff")
