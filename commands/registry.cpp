@@ -10,6 +10,11 @@ namespace commands {
 using command::Command;
 
 extern const Command kScan;
+extern const Command kBusStatus;
+extern const Command kBusUp;
+extern const Command kBusDown;
+extern const Command kBusDetect;
+extern const Command kDoctor;
 extern const Command kInfo;
 extern const Command kStatus;
 extern const Command kRead;
@@ -114,6 +119,11 @@ struct Named {
 };
 constexpr Named kNamed[] = {
     {"scan", &commands::kScan},
+    {"bus status", &commands::kBusStatus},
+    {"bus up", &commands::kBusUp},
+    {"bus down", &commands::kBusDown},
+    {"bus detect", &commands::kBusDetect},
+    {"doctor", &commands::kDoctor},
     {"info", &commands::kInfo},
     {"status", &commands::kStatus},
     {"read", &commands::kRead},

@@ -6,10 +6,13 @@
 
 #include "canopen/node_list.hpp"
 #include "command/command.hpp"
+#include "drive/bitrate.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/answer.hpp"
+#include "session/bitrate_search.hpp"
 #include "session/identify.hpp"
 #include "session/ring_scan.hpp"
+#include "show/bitrate_scan.hpp"
 #include "show/identity.hpp"
 #include "show/ring_table.hpp"
 
@@ -20,6 +23,9 @@ using namespace command;
 
 constexpr Parameter kParameters[] = {
     {.name = "--long", .help = "the identity in numbers, instead of the drives' state", .kind = Kind::flag},
+    {.name = "--all-bitrates",
+     .help = "ask at each bitrate in turn, where nobody talks; asks first",
+     .kind = Kind::flag},
 };
 
 /// All at the same time; what a node refuses, or no longer answers, it does not tell.
@@ -74,11 +80,22 @@ Result<report::Value> run_ring(Context& context, session::EtherCatNetwork& netwo
                                         drive::find_families(context.drive_folders), in_full || !any_told));
 }
 
+report::Value planned_bitrates() {
+  report::Table table;
+  table.columns = {{"bitrate"}};
+  for (const auto bitrate : session::usual_bitrates()) table.rows.push_back({drive::bitrate_text(bitrate)});
+  return {std::move(table)};
+}
+
 Result<report::Value> run(Context& context, const Arguments& arguments) {
-  if (auto* ring = context.session->ethercat()) return run_ring(context, *ring, arguments.has("--long"));
+  const bool all_bitrates = arguments.has("--all-bitrates");
+  if (auto* ring = context.session->ethercat(); ring != nullptr && !all_bitrates)
+    return run_ring(context, *ring, arguments.has("--long"));
   auto nodes = context.nodes_typed ? context.nodes : std::vector<std::uint8_t>();
   if (nodes.empty() || nodes.front() == 0) nodes = canopen::every_node_id();
-  auto found = session::scan(*context.session, nodes);
+  if (all_bitrates && context.dry_run) return planned_bitrates();
+  auto found =
+      all_bitrates ? show::scan_all_bitrates(context, nodes) : session::scan(*context.session, nodes);
   if (!found) return fail(found.error());
   if (found->empty()) {
     context.errors.push_back(make_error(
@@ -107,14 +124,18 @@ const Command kScan{
         "unproven guess. cia402 fits every drive of that profile: it is listed where nothing else fits, and "
         "always by `info` and in JSON. The state is that of the drive by its statusword, the NMT state that of the "
         "heartbeat where one came meanwhile; --long shows the numbers of the identity instead, JSON has "
-        "both. On EtherCAT, shows the ring: for each position (its node number) the "
+        "both. --all-bitrates asks at each bitrate until nodes answer, for a bus on which nobody talks: it listens at the "
+        "present bitrate first and refuses when it hears anything (`bus detect` finds that bitrate without sending). "
+        "It asks before, and needs --yes in a script; the interface stays at the bitrate where nodes answered, and is "
+        "put back to the one it had where none did. On EtherCAT, shows the ring: for each position (its node number) the "
         "address, name by the SII, AL state, ports with a link and, as notices, every error counter that is not "
         "0; of slaves in PRE-OP and above that servoctl has numbered also the drive's state and fault (`status -n "
         "all` takes the others there). Nothing is changed: no state is entered, no address given, and a ring that "
         "another master works with is only looked at.",
     .parameters = kParameters,
     .needs = Needs::bus,
-    .effect = Effect::reads,
+    .effect = Effect::links,
+    .reads_without = "--all-bitrates",
     .run = run,
 };
 

@@ -46,6 +46,13 @@ Result<Descriptor> socketcan_socket(const std::string& name, std::span<const Fil
 /// dropped without an error. Empty where it is not known, as for an interface that is down.
 std::optional<bool> socketcan_carrier(const std::string& name);
 
+/// The same for one who only listens: frames with 11-bit and 29-bit identifiers, what this machine sends as
+/// well, and every report of the controller, the errors on the wire among them where its driver tells them.
+Result<std::unique_ptr<Bus>> open_socketcan_listener(const std::string& name);
+
+/// Whether this is the name of a CAN interface of this machine, up or down.
+bool is_can_interface(const std::string& name);
+
 /// The CAN interfaces of this machine, up or down, in alphabetical order.
 std::vector<std::string> can_interfaces();
 

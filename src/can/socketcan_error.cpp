@@ -32,6 +32,11 @@ std::string up_command(const std::string& name) {
                      name);
 }
 
+tl::unexpected<Error> interface_no_name(const std::string& name) {
+  return fail(Errc::usage, fmt::format("'{}' is not an interface name", name),
+              "an interface has 1 to 15 characters, such as can0; `ip link` lists them");
+}
+
 tl::unexpected<Error> interface_missing(const std::string& name) {
   return fail(Errc::bus, fmt::format("there is no interface {}", name), missing_hint());
 }

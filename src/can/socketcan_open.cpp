@@ -84,8 +84,7 @@ std::optional<bool> socketcan_carrier(const std::string& name) {
 
 Result<Descriptor> socketcan_socket(const std::string& name, std::span<const Filter> filters) {
   if (name.empty() || name.size() >= IFNAMSIZ || name.find('/') != std::string::npos)
-    return fail(Errc::usage, fmt::format("'{}' is not an interface name", name),
-                "an interface has 1 to 15 characters, such as can0; `ip link` lists them");
+    return interface_no_name(name);
   Descriptor socket(::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW));
   if (!socket && (errno == EAFNOSUPPORT || errno == EPROTONOSUPPORT))
     return fail(
@@ -113,6 +112,21 @@ Result<std::unique_ptr<Bus>> open_socketcan(std::string_view interface_name,
   auto bus = std::make_unique<SocketCanBus>(std::move(*socket), name);
   bus->keep_filters(filters);
   return bus;
+}
+
+Result<std::unique_ptr<Bus>> open_socketcan_listener(const std::string& name) {
+  auto socket = socketcan_socket(name, {});
+  if (!socket) return fail(socket.error());
+  constexpr can_err_mask_t kAll = CAN_ERR_MASK;
+  const can_filter both{0, 0};
+  if (!set_option(socket->get(), SOL_CAN_RAW, CAN_RAW_ERR_FILTER, kAll) ||
+      !set_option(socket->get(), SOL_CAN_RAW, CAN_RAW_FILTER, both))
+    return interface_cannot_open(name, errno);
+  return std::make_unique<SocketCanBus>(std::move(*socket), name);
+}
+
+bool is_can_interface(const std::string& name) {
+  return number_in(std::filesystem::path(kNetwork) / name / "type") == unsigned{ARPHRD_CAN};
 }
 
 std::vector<std::string> can_interfaces() {

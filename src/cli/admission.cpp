@@ -13,8 +13,11 @@ Result<void> check_allowed(const command::Command& command, const command::Argum
     return fail(Errc::usage, fmt::format("'{}' is not allowed in a batch file", command.path),
                 "`for` repeats lines; a script runs several files");
   // A command that asks for more than reading is refused as a whole, before anything is opened.
-  if (settings.read_only && command.effect_with(arguments) >= Effect::writes && !settings.dry_run)
-    return fail(Errc::refused, fmt::format("'{}' changes a drive, and --read-only forbids it", command.path),
+  const auto effect = command.effect_with(arguments);
+  if (settings.read_only && effect >= Effect::links && !settings.dry_run)
+    return fail(Errc::refused,
+                fmt::format("'{}' changes {}, and --read-only forbids it", command.path,
+                            effect == Effect::links ? "an interface" : "a drive"),
                 "leave --read-only out to allow it");
   return {};
 }

@@ -86,8 +86,8 @@ Result<void> check_plain(const Cabinet& cabinet, const cabinet::Bus& bus, const 
   if (!changes) return {};
   return fail(
       Errc::usage,
-      fmt::format("which bus? '{}' changes a drive, and the line names neither an axis nor a bus",
-                  command.path),
+      fmt::format("which bus? '{}' changes {}, and the line names neither an axis nor a bus", command.path,
+                  command.effect_with(arguments) == command::Effect::links ? "an interface" : "a drive"),
       fmt::format("add --bus {} ({}, by {}), or name the axes", bus.name, bus.url, cabinet.file.string()));
 }
 

@@ -69,6 +69,16 @@ Result<session::Session*> BusHolder::open(const Settings& settings) {
   return session_;
 }
 
+std::vector<std::uint8_t> BusHolder::energised_on(std::string_view url) const {
+  const auto key = session::canonical_url(url);
+  std::vector<std::uint8_t> out;
+  if (const auto found = open_.find(key); found != open_.end())
+    out.assign(found->second->energised().nodes().begin(), found->second->energised().nodes().end());
+  if (const auto left = left_energised_.find(key); left != left_energised_.end())
+    out.insert(out.end(), left->second.nodes().begin(), left->second.nodes().end());
+  return out;
+}
+
 std::vector<session::Session*> BusHolder::sessions() const {
   std::vector<session::Session*> out;
   for (const auto& [url, session] : open_) out.push_back(session.get());

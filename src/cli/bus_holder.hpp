@@ -42,6 +42,9 @@ class BusHolder {
   BusHolder& operator=(const BusHolder&) = delete;
   ~BusHolder() { console_->set_service({}); }
 
+  /// The nodes that were left energised over this bus, which is open now or was lost.
+  std::vector<std::uint8_t> energised_on(std::string_view url) const;
+
   /// The session on the bus of the settings. Another bus that is open is let go first, unless the settings
   /// are those of a cabinet's axes. Errors as open_bus(), Errc::usage when the settings name no bus.
   Result<session::Session*> open(const Settings& settings);

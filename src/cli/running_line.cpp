@@ -111,6 +111,11 @@ Result<const drive::Profile*> RunningLine::family(const std::string& name) {
   return shell_->profile(name);
 }
 
+std::vector<std::uint8_t> RunningLine::energised_on(std::string_view url) const {
+  const auto turn = shell_->take_turn();
+  return shell_->energised_on(url);
+}
+
 std::unique_ptr<command::Keys> RunningLine::open_keys() { return shell_->console().open_keys(); }
 
 Result<std::vector<settings::SettingLine>> RunningLine::setting_lines(std::string_view text,

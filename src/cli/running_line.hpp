@@ -32,6 +32,7 @@ class RunningLine final : public show::Audience, public command::FrontEnd {
   Result<const cabinet::Cabinet*> cabinet() override;
   Result<session::Session*> open_bus(const cabinet::Cabinet& cabinet, const cabinet::Bus& bus) override;
   std::string_view bus_url() const override { return settings_->bus; }
+  std::vector<std::uint8_t> energised_on(std::string_view url) const override;
   Result<std::unique_ptr<session::RingEnd>> open_ring_end() override;
   Result<void> hold_family(std::span<const std::uint8_t> nodes, const drive::Profile* profile,
                            bool changes) override;

@@ -56,9 +56,9 @@ constexpr bool includes(Needs all, Needs part) {
 }
 
 /// What the command may do to a drive. From `stores` on it asks on a terminal and needs --yes elsewhere; from
-/// `writes` on
-/// --read-only refuses it.
-enum class Effect : std::uint8_t { none, reads, writes, stores, resets, moves };
+/// `links` on --read-only refuses it. `links`: changes no drive but an interface of this machine, which others
+/// may use, so that a whole bus may stand still; it asks where it stops one.
+enum class Effect : std::uint8_t { none, reads, links, writes, stores, resets, moves };
 
 /// When the family that was named is held against what the drives say they are, before anything is sent.
 /// `by_effect`: before what changes something; `always`: before an answer, too, that makes sense for the

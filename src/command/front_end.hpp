@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "cabinet/cabinet.hpp"
 #include "command/keys.hpp"
@@ -30,6 +31,8 @@ class FrontEnd : public settings::LineReader {
   virtual Result<session::Session*> open_bus(const cabinet::Cabinet& cabinet, const cabinet::Bus& bus) = 0;
   /// The URL of the bus of the line; empty when it names none.
   virtual std::string_view bus_url() const = 0;
+  /// The nodes that were left energised over this bus, which is open now or was lost.
+  virtual std::vector<std::uint8_t> energised_on(std::string_view url) const = 0;
   /// Opens the slaves' end of the bus of the line, which is one with EtherCAT; errors as
   /// session::open_ring_end().
   virtual Result<std::unique_ptr<session::RingEnd>> open_ring_end() = 0;

@@ -25,6 +25,11 @@ constexpr std::uint8_t kDrives = 3;  ///< Nodes 1 and 2, and 3 for `sim`.
 /// One line of every command; PARAM, FAULTS … stand for what differs from family to family.
 const std::map<std::string, std::string> kSamples{
     {"scan", "scan"},
+    {"bus status", "bus status"},
+    {"bus up", "bus up no-such-can --bitrate 500k -y"},
+    {"bus down", "bus down no-such-can -y"},
+    {"bus detect", "bus detect no-such-can -y"},
+    {"doctor", "doctor no-such-can --active"},
     {"info", "info -n 1"},
     {"status", "status -n 1,2"},
     {"read", "read 0x6041 0x1018:1 -n 1"},

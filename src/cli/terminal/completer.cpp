@@ -155,7 +155,7 @@ bool add_prompt_words(Candidates& out, const std::vector<std::string>& words) {
   if (words.front() == "drive") out.add_families();
   if (words.front() == "bus") out.add_buses();
   if (words.front() == "use") out.add_axes();
-  return words.front() == "drive" || words.front() == "bus" || words.front() == "use";
+  return words.front() == "drive" || words.front() == "use";
 }
 
 }  // namespace

@@ -5,11 +5,15 @@
 #include <set>
 #include <span>
 
+#include "command/registry.hpp"
+
 namespace servoctl::cli {
 namespace {
 
+/// `bus up can0` is a command, `bus can0` a choice.
 const PromptWord* find_word(std::span<const PromptWord> all, const std::vector<std::string>& words) {
   if (words.empty()) return nullptr;
+  if (words.size() > 1 && command::find_command(words[0] + " " + words[1]) != nullptr) return nullptr;
   const auto found = std::find_if(all.begin(), all.end(), [&](const PromptWord& w) {
     return w.name == words.front() && !w.argument.empty();
   });

@@ -1,0 +1,70 @@
+#include <fmt/format.h>
+
+#include "can/link_change.hpp"
+#include "command/command.hpp"
+#include "command/interface_option.hpp"
+#include "show/link_table.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using namespace command;
+using report::Value;
+
+constexpr Parameter kParameters[] = {kInterface};
+
+Result<Value> run(Context& context, const Arguments& arguments) {
+  const auto name = interface_argument(arguments);
+  if (!name) return fail(name.error());
+  const auto link = can::open_link(*name);
+  if (!link) return fail(link.error());
+  const auto before = (*link)->state();
+  if (!before) return fail(before.error());
+  const can::LinkChange down{.up = false};
+  if (context.dry_run) {
+    report::Table table;
+    table.columns = {{"command"}};
+    if (before->up) table.rows.push_back({can::ip_command(*name, down)});
+    return Value(std::move(table));
+  }
+  if (!before->up) {
+    context.notices.push_back(fmt::format("{} is down already; nothing was changed", *name));
+    return Value(show::link_record(*name, *before));
+  }
+  if (const auto held = hold_energised(context, *name); !held) return fail(held.error());
+  if (const auto who = who_receives(*name); !who.empty())
+    if (const auto agreed = context.confirm(fmt::format(
+            "Take {} down? {}, and what drives do without their master is their own affair.", *name, who));
+        !agreed)
+      return fail(agreed.error());
+  if (const auto done = (*link)->change(down); !done) return fail(done.error());
+  const auto after = (*link)->state();
+  if (!after) return fail(after.error());
+  return Value(show::link_record(*name, *after));
+}
+
+Result<void> check(Context&, const Arguments& arguments) {
+  const auto name = interface_argument(arguments);
+  return name ? Result<void>() : fail(name.error());
+}
+
+}  // namespace
+
+extern const Command kBusDown;
+const Command kBusDown{
+    .path = "bus down",
+    .summary = "Take a CAN interface down",
+    .details =
+        "Its settings stay with it for the next `bus up`. When a program of this machine receives from the interface "
+        "(by the kernel's lists; one that only sends is not in them), it says so and asks first, and needs --yes in a "
+        "script. Refused while a drive is energised that this prompt or batch file enabled over it. It needs the right "
+        "CAP_NET_ADMIN; `bus status` says whether you have it.",
+    .parameters = kParameters,
+    .needs = Needs::nothing,
+    .effect = Effect::links,
+    .family = FamilyCheck::never,
+    .run = run,
+    .check = check,
+};
+
+}  // namespace servoctl::commands

@@ -1,0 +1,49 @@
+#include "traffic/finding.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+namespace servoctl::traffic {
+
+using report::Show;
+using report::Value;
+
+std::string_view name(Finding::Level level) {
+  switch (level) {
+    case Finding::Level::ok: return "ok";
+    case Finding::Level::note: return "note";
+    case Finding::Level::fault: return "fault";
+  }
+  return {};
+}
+
+std::size_t faults_in(const std::vector<Findings>& all) {
+  std::size_t out = 0;
+  for (const auto& findings : all)
+    out +=
+        static_cast<std::size_t>(std::count_if(findings.list.begin(), findings.list.end(), [](const auto& f) {
+          return f.level == Finding::Level::fault;
+        }));
+  return out;
+}
+
+report::Value findings_value(const std::vector<Findings>& all) {
+  report::Table table;
+  table.columns = {{"bus"}, {"level"}, {"finding"}};
+  for (const auto& findings : all) {
+    for (const auto& f : findings.list) {
+      table.rows.push_back({findings.bus, name(f.level), f.text});
+      if (!f.means.empty()) table.rows.push_back({"", "", "  " + f.means});
+      if (!f.mend.empty()) table.rows.push_back({"", "", "  mend: " + f.mend});
+      table.documents.emplace_back(report::Record{{"bus", report::text_or_null(findings.bus)},
+                                                  {"level", name(f.level)},
+                                                  {"code", f.code},
+                                                  {"text", f.text},
+                                                  {"means", report::text_or_null(f.means)},
+                                                  {"mend", report::text_or_null(f.mend)}});
+    }
+  }
+  return Value(std::move(table));
+}
+
+}  // namespace servoctl::traffic

@@ -1,0 +1,112 @@
+#include "traffic/ring_findings.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "base/text.hpp"
+
+namespace servoctl::traffic {
+namespace {
+
+using Level = Finding::Level;
+using Seen = session::EtherCatNetwork::Seen;
+
+/// Counters stop at 255.
+constexpr unsigned kEnd = 255;
+
+void add_count(std::string& out, unsigned number, std::string_view what) {
+  if (number > 0) append(out, fmt::format("{}{} {}", number, number == kEnd ? " or more" : "", what));
+}
+
+template <class Port>
+std::string errors_of(const Port& port) {
+  std::string out;
+  add_count(out, port.bad_frames, "bad frames (CRC)");
+  add_count(out, port.bad_symbols, "bad symbols");
+  add_count(out, port.lost_links, "lost links");
+  return out;
+}
+
+template <class Port>
+bool counts_on(const Port& before, const Port& after) {
+  return after.bad_frames != before.bad_frames || after.bad_symbols != before.bad_symbols ||
+         after.lost_links != before.lost_links;
+}
+
+/// Where a counter goes on while it is looked at, something is wrong now; else it was.
+void add_ports(std::vector<Finding>& out, std::size_t node, const Seen& first, const Seen& last) {
+  for (std::size_t port = 0; port < last.look.ports.size(); ++port) {
+    const auto& after = last.look.ports[port];
+    const auto& before = first.look.ports[port];
+    const auto text = errors_of(after);
+    const bool now = counts_on(before, after);
+    if (!text.empty())
+      out.push_back({now ? Level::fault : Level::note, now ? "port-errors" : "port-had-errors",
+                     fmt::format("node {}, port {}: {}{}", node, port, text, now ? ", and counting" : ""),
+                     now ? "frames are damaged on the cable at this port"
+                         : "counted since the drive was switched on; none came meanwhile",
+                     fmt::format("check plug and cable at this port of node {} and at its neighbour", node)});
+    if (after.link && !after.open)
+      out.push_back(
+          {Level::fault, "port-closed",
+           fmt::format("node {}, port {}: a cable is plugged in, but frames do not go out there", node, port),
+           "what stands behind it is not reached", "check the slave at the other end of that cable"});
+  }
+}
+
+void add_count_of_slaves(std::vector<Finding>& out, const RingFacts& facts) {
+  if (facts.least == facts.most) {
+    out.push_back(
+        {Level::ok,
+         "slaves",
+         fmt::format("{} slave{} on the ring all the time ({:.3g} s)", facts.most, facts.most == 1 ? "" : "s",
+                     std::chrono::duration<double>(facts.length).count()),
+         {},
+         {}});
+    return;
+  }
+  out.push_back(
+      {Level::fault, "slaves-come-and-go",
+       fmt::format("between {} and {} slaves answered", facts.least, facts.most),
+       fmt::format("node {} and those behind it come and go: a loose plug, or a drive that restarts",
+                   facts.least + 1),
+       fmt::format("check power of node {} and the cable between node {} and node {}", facts.least + 1,
+                   facts.least, facts.least + 1)});
+}
+
+void add_frames(std::vector<Finding>& out, const RingFacts& facts) {
+  if (facts.lost == 0 && facts.damaged == 0) return;
+  out.push_back({Level::fault, "lost-frames",
+                 fmt::format("{} of {} frames did not come back, {} came back damaged", facts.lost,
+                             facts.sent, facts.damaged),
+                 "a cable or plug of the ring, or a network card that is used by something else too",
+                 "the port whose counters go on tells where; `scan` lists them"});
+}
+
+}  // namespace
+
+std::vector<Finding> ring_findings(const RingFacts& facts) {
+  std::vector<Finding> out;
+  add_count_of_slaves(out, facts);
+  add_frames(out, facts);
+  for (std::size_t i = 0; i < std::min(facts.first.size(), facts.last.size()); ++i) {
+    add_ports(out, i + 1, facts.first[i], facts.last[i]);
+    if (facts.last[i].look.al.error)
+      out.push_back({Level::fault, "al-error", fmt::format("node {} reports an error of its AL state", i + 1),
+                     "it has left the state it was to be in", fmt::format("`status -n {}` names it", i + 1)});
+  }
+  return out;
+}
+
+Finding no_ring(const std::string& url, std::optional<bool> link, const Error& error) {
+  if (link == false)
+    return {Level::fault, "no-link", fmt::format("{} has no link", url),
+            "no cable, or nobody at its other end",
+            "check the cable to the first slave (its IN), and that the slave has power"};
+  return {
+      Level::fault, "no-answer", error.message,
+      "the port works, and no slave answers: the wrong port, no power, or the cable is in the OUT of the first slave",
+      error.hint};
+}
+
+}  // namespace servoctl::traffic

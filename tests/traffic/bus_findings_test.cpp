@@ -1,0 +1,248 @@
+// A picture of the wire for each finding: error frames as Linux drivers write them (linux/can/error.h), and
+// what the doctor makes of them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "can/candump.hpp"
+#include "traffic/link_findings.hpp"
+
+namespace servoctl::traffic {
+namespace {
+
+using std::chrono::milliseconds;
+using Codes = std::vector<std::string>;
+
+/// An error frame: class in the identifier, data[1] controller, [2] kind, [3] place, [4] transceiver.
+can::Frame error_frame(std::uint32_t id, std::array<std::uint8_t, 8> data = {}) {
+  can::Frame out;
+  out.error = true;
+  out.id = id;
+  out.size = 8;
+  out.data = data;
+  return out;
+}
+
+can::Frame heartbeat(std::uint8_t node) {
+  can::Frame out;
+  out.id = 0x700U + node;
+  out.size = 1;
+  out.data[0] = 5;
+  return out;
+}
+
+// sja1000_err() of Linux 6.1: CAN_ERR_PROT | CAN_ERR_BUSERROR, the kind in data[2], the segment in data[3].
+const auto kStuff = error_frame(0x088, {0, 0, 0x04, 0x0A});
+const auto kForm = error_frame(0x088, {0, 0, 0x02, 0x1B});
+const auto kBit = error_frame(0x088, {0, 0, 0x81, 0x0B});
+/// While it sends, of no kind, in the acknowledge slot.
+const auto kAckBySja1000 = error_frame(0x088, {0, 0, 0x80, 0x19});
+/// Drivers that say it by its class.
+const auto kAck = error_frame(0x020);
+const auto kPassive = error_frame(0x004, {0, 0x20});
+const auto kOverflow = error_frame(0x004, {0, 0x01});
+/// slc_bump_err() of Linux 6.1 for an overrun: its class and that of an error of the bus.
+const auto kOverflowBySlcan = error_frame(0x08C, {0, 0x01});
+const auto kBusOff = error_frame(0x040);
+
+LinkFacts facts(std::uint16_t tx = 0, std::uint16_t rx = 0,
+                can::LinkHealth health = can::LinkHealth::error_active) {
+  LinkFacts out;
+  out.name = "can0";
+  out.state.kind = "can";
+  out.state.up = true;
+  out.state.bitrate = 500'000;
+  out.state.sample_point = 875;
+  out.state.restart_ms = 100;
+  out.state.queue_length = 1000;
+  out.state.tx_errors = tx;
+  out.state.rx_errors = rx;
+  out.state.health = health;
+  out.before = out.state;
+  out.may_change = true;
+  return out;
+}
+
+BusPicture picture(const std::vector<can::Frame>& frames, Duration period = milliseconds(10)) {
+  BusPicture out(500'000, TimePoint{});
+  TimePoint time{};
+  for (const auto& frame : frames) out.add(frame, time += period);
+  out.end(std::max(time, TimePoint{} + std::chrono::seconds(2)));
+  return out;
+}
+
+std::vector<can::Frame> times(std::size_t count, const can::Frame& frame) { return {count, frame}; }
+
+std::vector<can::Frame> operator+(std::vector<can::Frame> a, const std::vector<can::Frame>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+/// The notes and faults.
+Codes codes(const std::vector<Finding>& findings) {
+  Codes out;
+  for (const auto& f : findings)
+    if (f.level != Finding::Level::ok) out.push_back(f.code);
+  return out;
+}
+
+const Finding* finding(const std::vector<Finding>& all, std::string_view code) {
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Finding& f) { return f.code == code; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+TEST(BusFindings, OfAHealthyBusAreNoFaults) {
+  const auto known = facts();
+  const auto heard = bus_findings(picture(times(20, heartbeat(3))), &known);
+  EXPECT_EQ(codes(heard), Codes{});
+  ASSERT_NE(finding(heard, "traffic"), nullptr);
+  EXPECT_NE(finding(heard, "traffic")->text.find("20 frames in 2 s"), std::string::npos);
+  EXPECT_NE(finding(heard, "traffic")->text.find("alive: node 3"), std::string::npos);
+  EXPECT_EQ(codes(link_findings(known)), Codes{});
+}
+
+TEST(BusFindings, OfSilenceAreANote) {
+  const auto known = facts();
+  EXPECT_EQ(codes(bus_findings(picture({}), &known)), Codes{"silence"});
+  EXPECT_EQ(codes(bus_findings(picture({}), nullptr)), Codes{"silence"});
+}
+
+TEST(BusFindings, KnowOneThatIsAloneByTheMissingAcknowledge) {
+  const auto known = facts(128, 0, can::LinkHealth::error_passive);
+  EXPECT_EQ(codes(bus_findings(picture(times(9, kAck)), &known)),
+            (Codes{"nobody-acknowledges", "error-passive"}));
+  EXPECT_EQ(codes(bus_findings(picture(times(9, kAckBySja1000)), &known)),
+            (Codes{"nobody-acknowledges", "error-passive"}));
+}
+
+TEST(BusFindings, KnowOneThatIsAloneByItsCountersWhereTheDriverTellsNoErrors) {
+  const auto known = facts(128, 0, can::LinkHealth::error_passive);
+  const auto found = bus_findings(picture({}), &known);
+  EXPECT_EQ(codes(found), (Codes{"nobody-acknowledges", "error-passive"}));
+  EXPECT_NE(found.front().text.find("error counter tx 128"), std::string::npos);
+  // The same counter among frames is no proof.
+  EXPECT_EQ(codes(bus_findings(picture(times(9, heartbeat(1))), &known)), Codes{"error-passive"});
+}
+
+TEST(BusFindings, TakeErrorsWithoutAFrameForAnotherBitrate) {
+  const auto known = facts(0, 128);
+  const auto found = bus_findings(picture(times(30, kStuff) + times(4, kForm)), &known);
+  EXPECT_EQ(codes(found), Codes{"wrong-bitrate"});
+  EXPECT_NE(found.front().text.find("30 × stuff error, 4 × form error"), std::string::npos)
+      << found.front().text;
+  EXPECT_NE(found.front().mend.find("bus detect can0"), std::string::npos);
+}
+
+TEST(BusFindings, TakeCountedErrorsWithoutAFrameForAnotherBitrate) {
+  EXPECT_EQ(codes(bus_findings(picture({}),
+                               [] {
+                                 static auto known = facts(0, 130, can::LinkHealth::error_passive);
+                                 return &known;
+                               }())),
+            (Codes{"wrong-bitrate", "error-passive"}));
+  auto counted = facts();
+  counted.before->history = can::LinkHistory{.bus_errors = 5};
+  counted.state.history = can::LinkHistory{.bus_errors = 50};
+  const auto found = bus_findings(picture({}), &counted);
+  EXPECT_EQ(codes(found), Codes{"wrong-bitrate"});
+  EXPECT_NE(found.front().text.find("45 errors"), std::string::npos);
+}
+
+TEST(BusFindings, TakeErrorsAmongFramesForTheTerminators) {
+  const auto known = facts();
+  const auto found = bus_findings(picture(times(40, heartbeat(1)) + times(10, kForm)), &known);
+  EXPECT_EQ(codes(found), Codes{"damaged-frames"});
+  EXPECT_NE(found.front().text.find("(20.0 %)"), std::string::npos) << found.front().text;
+  EXPECT_NE(found.front().mend.find("60 ohm"), std::string::npos);
+}
+
+TEST(BusFindings, NameTheStateOfTheController) {
+  const auto known = facts();
+  EXPECT_EQ(codes(bus_findings(picture({heartbeat(1), kPassive}), &known)), Codes{"error-passive"});
+  EXPECT_EQ(codes(bus_findings(picture({heartbeat(1), kBusOff}), &known)), Codes{"bus-off"});
+  const auto warned = facts(100, 0, can::LinkHealth::error_warning);
+  EXPECT_EQ(codes(bus_findings(picture({heartbeat(1)}), &warned)), Codes{"error-warning"});
+}
+
+TEST(BusFindings, NameWhatTheTransceiverSaysOfItsWires) {
+  const auto known = facts();
+  // CAN_ERR_TRX, CAN_ERR_TRX_CANL_SHORT_TO_CANH
+  const auto found = bus_findings(picture({error_frame(0x010, {0, 0, 0, 0, 0x80})}), &known);
+  ASSERT_NE(finding(found, "wires"), nullptr);
+  EXPECT_NE(finding(found, "wires")->text.find("CAN_L is shorted to CAN_H"), std::string::npos);
+}
+
+TEST(BusFindings, TellOfOverload) {
+  const auto known = facts();
+  EXPECT_EQ(codes(bus_findings(picture({heartbeat(1), kOverflow}), &known)), Codes{"overrun"});
+  EXPECT_EQ(codes(bus_findings(picture({heartbeat(1), kOverflowBySlcan}), &known)), Codes{"overrun"});
+  auto lost = facts();
+  lost.state.traffic.overrun = 7;
+  EXPECT_EQ(codes(bus_findings(picture({heartbeat(1)}), &lost)), Codes{"overrun"});
+  can::Frame full;
+  full.id = 0x181;
+  full.size = 8;
+  full.data = {1, 2, 3, 4, 5, 6, 7, 8};
+  // Some 0.23 ms each at 500 kbit/s.
+  EXPECT_EQ(codes(bus_findings(picture(times(9000, full), std::chrono::microseconds(235)), &known)),
+            Codes{"load"});
+  EXPECT_EQ(
+      faults_in({{"can0", bus_findings(picture(times(9000, full), std::chrono::microseconds(235)), &known)}}),
+      1U);
+  EXPECT_EQ(
+      faults_in({{"can0", bus_findings(picture(times(7000, full), std::chrono::microseconds(300)), &known)}}),
+      0U);
+}
+
+TEST(BusFindings, TellOfTwoNodesWithOneNumber) {
+  const auto known = facts();
+  can::Frame boot = heartbeat(5);
+  boot.data[0] = 0;
+  EXPECT_EQ(codes(bus_findings(picture({boot, boot}), &known)), Codes{"duplicate-node"});
+}
+
+TEST(BusFindings, TellOfFramesThatAreNotOfCanOpen) {
+  const auto known = facts();
+  can::Frame other = heartbeat(1);
+  other.extended = true;
+  other.id = 0x18FEF100;
+  EXPECT_EQ(codes(bus_findings(picture({other}), &known)), Codes{"foreign-frames"});
+}
+
+TEST(LinkFindings, SayWhatIsSetOtherwiseThanUsual) {
+  auto down = facts();
+  down.state.up = false;
+  down.state.bitrate.reset();
+  const auto found = link_findings(down);
+  EXPECT_EQ(codes(found), Codes{"down"});
+  EXPECT_NE(found.front().mend.find("bus up can0 --bitrate 500k"), std::string::npos);
+
+  auto odd = facts();
+  odd.state.listen_only = true;
+  odd.state.sample_point = 750;
+  odd.state.restart_ms = 0;
+  odd.state.queue_length = 10;
+  odd.may_change = false;
+  EXPECT_EQ(codes(link_findings(odd)),
+            (Codes{"listen-only", "sample-point", "no-restart", "short-queue", "no-right"}));
+  EXPECT_EQ(faults_in({{"can0", link_findings(odd)}}), 1U);
+  odd.state.bitrate = 1'000'000;  // 75 % is within what CiA 301 has there.
+  EXPECT_EQ(finding(link_findings(odd), "sample-point"), nullptr);
+
+  auto off = facts(0, 0, can::LinkHealth::bus_off);
+  off.state.history = can::LinkHistory{.bus_off = 2};
+  EXPECT_EQ(codes(link_findings(off)), (Codes{"bus-off", "was-bus-off"}));
+
+  can::LinkState plain;
+  plain.kind = "vcan";
+  plain.up = true;
+  EXPECT_EQ(codes(link_findings({.name = "vcan0", .state = plain})), Codes{});
+}
+
+TEST(LinkFindings, TellAMissingAdapterFromAMissingKernel) {
+  EXPECT_EQ(codes(no_interface_findings(true)), Codes{"no-adapter"});
+  EXPECT_EQ(codes(no_interface_findings(false)), Codes{"no-kernel-can"});
+}
+
+}  // namespace
+}  // namespace servoctl::traffic
