@@ -45,7 +45,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   const auto length = duration_option(arguments, "--for");
   if (!length) return fail(length.error());
   if (*length) options.listen = **length;
-  options.active = arguments.has("--active") && !context.dry_run;
+  options.active = arguments.has("--active");
   options.cancelled = [before = signals_noted()] { return signals_noted() != before; };
   std::vector<Findings> all;
   const auto urls = urls_of(context, arguments);

@@ -80,11 +80,13 @@ Result<report::Value> run_ring(Context& context, session::EtherCatNetwork& netwo
                                         drive::find_families(context.drive_folders), in_full || !any_told));
 }
 
-report::Value planned_bitrates() {
+Result<report::Value> planned_bitrates(const Context& context) {
+  if (const auto possible = show::check_all_bitrates(context); !possible) return fail(possible.error());
   report::Table table;
-  table.columns = {{"bitrate"}};
-  for (const auto bitrate : session::usual_bitrates()) table.rows.push_back({drive::bitrate_text(bitrate)});
-  return {std::move(table)};
+  table.columns = {{"bitrate", "", report::Show::json}, {"bitrate_text", "bitrate", report::Show::text}};
+  for (const auto bitrate : session::usual_bitrates())
+    table.rows.push_back({bitrate, drive::bitrate_text(bitrate)});
+  return report::Value(std::move(table));
 }
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
@@ -93,7 +95,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
     return run_ring(context, *ring, arguments.has("--long"));
   auto nodes = context.nodes_typed ? context.nodes : std::vector<std::uint8_t>();
   if (nodes.empty() || nodes.front() == 0) nodes = canopen::every_node_id();
-  if (all_bitrates && context.dry_run) return planned_bitrates();
+  if (all_bitrates && context.dry_run) return planned_bitrates(context);
   auto found =
       all_bitrates ? show::scan_all_bitrates(context, nodes) : session::scan(*context.session, nodes);
   if (!found) return fail(found.error());

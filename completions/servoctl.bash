@@ -9,12 +9,12 @@ _servoctl_scan() {
       continue
     fi
     case $word in
-      --bus|-b|--node|-n|--drive|-d|--cabinet|--timeout|--retries|--output|-o|--lang|--trace|--type|--to|--transfer|--from|--format|--only|--family|--name|--for|--axis|--backup|--wait|--bitrate|--plan|--turn|--turns|--accel|--csv|--limit|--max-torque|--max-following-error|--window|--master-node|--speed|--search|--offset|--within|--nameplate|--guard|--life|--inhibit|--event|--cob-id|--sync-start|--count|--longest|--junit|--expect|--tolerance|--stop-within|--repeat|--spread|--encoder|--title|--tests|--period|--counter|--every|--svg|--service|--object|--var) skip=$word ;;
+      --bus|-b|--node|-n|--drive|-d|--cabinet|--timeout|--retries|--output|-o|--lang|--trace|--bitrate|--sample-point|--restart-ms|--txqueuelen|--for|--type|--to|--transfer|--from|--format|--only|--family|--name|--axis|--backup|--wait|--plan|--turn|--turns|--accel|--csv|--limit|--max-torque|--max-following-error|--window|--master-node|--speed|--search|--offset|--within|--nameplate|--guard|--life|--inhibit|--event|--cob-id|--sync-start|--count|--longest|--junit|--expect|--tolerance|--stop-within|--repeat|--spread|--encoder|--title|--tests|--period|--counter|--every|--svg|--service|--object|--var) skip=$word ;;
       -*) ;;
       *)
         case $command in
           '') command=$word ;;
-          param|cabinet|fault|units|heartbeat|nmt|state|pdo|test|sync|eds) command="$command $word" ;;
+          bus|param|cabinet|fault|units|heartbeat|nmt|state|pdo|test|sync|eds) command="$command $word" ;;
         esac ;;
     esac
   done
@@ -29,6 +29,11 @@ _servoctl_scan() {
       -o|--output) source='=text json jsonl' ;;
       --lang) source='=en zh' ;;
       --trace) source='files' ;;
+      --bitrate) source='none' ;;
+      --sample-point) source='none' ;;
+      --restart-ms) source='none' ;;
+      --txqueuelen) source='none' ;;
+      --for) source='none' ;;
       --type) source='=bool i8 i16 i24 i32 i64 u8 u16 u24 u32 u64 f32 f64 string bytes domain' ;;
       --to) source='files' ;;
       --transfer) source='=auto expedited segmented block' ;;
@@ -37,11 +42,9 @@ _servoctl_scan() {
       --only) source='none' ;;
       --family) source='none' ;;
       --name) source='none' ;;
-      --for) source='none' ;;
       --axis) source='none' ;;
       --backup) source='files' ;;
       --wait) source='none' ;;
-      --bitrate) source='none' ;;
       --plan) source='files' ;;
       --turn) source='none' ;;
       --turns) source='none' ;;
@@ -85,7 +88,8 @@ _servoctl_scan() {
     return
   fi
   case $command in
-    '') source='=scan info status read write objects param backup cabinet diff verify restore clone address store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion' ;;
+    '') source='=scan bus doctor info status read write objects param backup cabinet diff verify restore clone address store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion' ;;
+    bus) source='=status up down detect' ;;
     param) source='=list get set search explain' ;;
     cabinet) source='=init check show plan apply backup swap diff' ;;
     fault) source='=show list reset clear-history' ;;
@@ -97,6 +101,11 @@ _servoctl_scan() {
     test) source='=comm io jog home all' ;;
     sync) source='=once start stop' ;;
     eds) source='=check' ;;
+    'bus status') source='buses' ;;
+    'bus up') source='buses' ;;
+    'bus down') source='buses' ;;
+    'bus detect') source='buses' ;;
+    'doctor') source='buses' ;;
     'read') source='objects' ;;
     'write') source='objects' ;;
     'objects') source='none' ;;
@@ -146,11 +155,14 @@ _servoctl_scan() {
     'eds check') source='files' ;;
     'run') source='files' ;;
     'sim') source='none' ;;
-    'help') source='=scan info status read write objects param backup cabinet diff verify restore clone address store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion' ;;
+    'help') source='=scan bus doctor info status read write objects param backup cabinet diff verify restore clone address store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion' ;;
     'completion') source='=bash zsh fish objects parameters families' ;;
   esac
   case $command in
-    'scan') options+=' --long' ;;
+    'scan') options+=' --long --all-bitrates' ;;
+    'bus up') options+=' --bitrate --sample-point --restart-ms --txqueuelen' ;;
+    'bus detect') options+=' --for --bitrate' ;;
+    'doctor') options+=' --active --for' ;;
     'status') options+=' --long' ;;
     'read') options+=' --type --to --transfer' ;;
     'write') options+=' --type --from --transfer --keep --unlock' ;;

@@ -16,7 +16,7 @@ function __servoctl_path # the words that are neither options nor their values
     for word in (commandline -opc)[2..]
         if test $skip = 1
             set skip 0
-        else if contains -- $word --bus -b --node -n --drive -d --cabinet --timeout --retries --output -o --lang --trace --type --to --transfer --from --format --only --family --name --for --axis --backup --wait --bitrate --plan --turn --turns --accel --csv --limit --max-torque --max-following-error --window --master-node --speed --search --offset --within --nameplate --guard --life --inhibit --event --cob-id --sync-start --count --longest --junit --expect --tolerance --stop-within --repeat --spread --encoder --title --tests --period --counter --every --svg --service --object --var
+        else if contains -- $word --bus -b --node -n --drive -d --cabinet --timeout --retries --output -o --lang --trace --bitrate --sample-point --restart-ms --txqueuelen --for --type --to --transfer --from --format --only --family --name --axis --backup --wait --plan --turn --turns --accel --csv --limit --max-torque --max-following-error --window --master-node --speed --search --offset --within --nameplate --guard --life --inhibit --event --cob-id --sync-start --count --longest --junit --expect --tolerance --stop-within --repeat --spread --encoder --title --tests --period --counter --every --svg --service --object --var
             set skip 1
         else if not string match -q -- '-*' $word
             set path $path $word
@@ -79,6 +79,25 @@ complete -c servoctl -l trace -r -F -d 'write every frame to a file (candump -L 
 complete -c servoctl -l help -s h -d 'show the help of the command'
 complete -c servoctl -n __servoctl_at -a scan -d 'Find the nodes on the bus: what they are, and how'
 complete -c servoctl -n '__servoctl_in scan' -l long -d 'the identity in numbers, instead of the drives'\'' state'
+complete -c servoctl -n '__servoctl_in scan' -l all-bitrates -d 'ask at each bitrate in turn, where nobody talks; asks first'
+complete -c servoctl -n '__servoctl_at bus' -a status -d 'Show the CAN interfaces: bitrate, state, error counters'
+complete -c servoctl -n '__servoctl_in bus status' -x -a '(__servoctl_buses)'
+complete -c servoctl -n '__servoctl_at bus' -a up -d 'Bring a CAN interface up with a bitrate'
+complete -c servoctl -n '__servoctl_in bus up' -x -a '(__servoctl_buses)'
+complete -c servoctl -n '__servoctl_in bus up' -l bitrate -x -d 'bitrate of the drives: 125k, 250k, 500k, 1M'
+complete -c servoctl -n '__servoctl_in bus up' -l sample-point -x -d 'where in a bit it is sampled: 0.8 or 80%'
+complete -c servoctl -n '__servoctl_in bus up' -l restart-ms -x -d 'come back so long after a bus-off, 0: not by itself'
+complete -c servoctl -n '__servoctl_in bus up' -l txqueuelen -x -d 'frames that may wait to be sent: 1000'
+complete -c servoctl -n '__servoctl_at bus' -a down -d 'Take a CAN interface down'
+complete -c servoctl -n '__servoctl_in bus down' -x -a '(__servoctl_buses)'
+complete -c servoctl -n '__servoctl_at bus' -a detect -d 'Find the bitrate of a bus by listening'
+complete -c servoctl -n '__servoctl_in bus detect' -x -a '(__servoctl_buses)'
+complete -c servoctl -n '__servoctl_in bus detect' -l for -x -d 'how long to listen at each bitrate (default 2s)'
+complete -c servoctl -n '__servoctl_in bus detect' -l bitrate -x -d 'listen at this bitrate only; may be given several times (default: those of CiA 301, and 100k)'
+complete -c servoctl -n __servoctl_at -a doctor -d 'Say what is wrong with a bus, and what mends it'
+complete -c servoctl -n '__servoctl_in doctor' -x -a '(__servoctl_buses)'
+complete -c servoctl -n '__servoctl_in doctor' -l active -d 'also ask all nodes for 1000h'
+complete -c servoctl -n '__servoctl_in doctor' -l for -x -d 'how long to listen to each (default 2s)'
 complete -c servoctl -n __servoctl_at -a info -d 'Show the identity of a node'
 complete -c servoctl -n __servoctl_at -a status -d 'Show the state of drives, one line each: NMT or AL, CiA 402, mode, fault'
 complete -c servoctl -n '__servoctl_in status' -l long -d 'every bit of the statusword, and more, in several lines a node'
@@ -414,9 +433,10 @@ complete -c servoctl -n '__servoctl_in run' -l frames -d 'with --dry-run: the fr
 complete -c servoctl -n '__servoctl_in run' -l check -d 'check all lines without a bus, run none'
 complete -c servoctl -n __servoctl_at -a sim -d 'Put simulated drives on a bus until Ctrl-C'
 complete -c servoctl -n __servoctl_at -a help -d 'Show the commands, or how one is used'
-complete -c servoctl -n '__servoctl_in help' -x -a 'scan info status read write objects param backup cabinet diff verify restore clone address store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion'
+complete -c servoctl -n '__servoctl_in help' -x -a 'scan bus doctor info status read write objects param backup cabinet diff verify restore clone address store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion'
 complete -c servoctl -n __servoctl_at -a completion -d 'Print the completion script of a shell'
 complete -c servoctl -n '__servoctl_in completion' -x -a 'bash zsh fish objects parameters families'
+complete -c servoctl -n __servoctl_at -a bus
 complete -c servoctl -n __servoctl_at -a param
 complete -c servoctl -n __servoctl_at -a cabinet
 complete -c servoctl -n __servoctl_at -a fault

@@ -32,13 +32,17 @@ std::string text_of(const session::Asked& asked) {
 
 }  // namespace
 
+Result<void> check_all_bitrates(const Desk& desk) {
+  const auto& url = desk.session->url();
+  if (desk.session->can() != nullptr && session::canonical_url(url).find(':') == std::string::npos) return {};
+  return fail(Errc::usage, fmt::format("--all-bitrates needs a CAN interface, and {} is none", url),
+              "only an interface of the kernel has a bitrate that can be set: can0");
+}
+
 Result<std::vector<session::Identity>> scan_all_bitrates(Desk& desk, std::span<const std::uint8_t> nodes) {
+  if (const auto possible = check_all_bitrates(desk); !possible) return fail(possible.error());
   auto& session = *desk.session;
   const auto name = session::canonical_url(session.url());
-  if (session.can() == nullptr || name.find(':') != std::string::npos)
-    return fail(Errc::usage,
-                fmt::format("--all-bitrates needs a CAN interface, and {} is none", session.url()),
-                "only an interface of the kernel has a bitrate that can be set: can0");
   const auto link = can::open_link(name);
   if (!link) return fail(link.error());
   const auto now = (*link)->state();

@@ -86,6 +86,12 @@ Result<std::vector<Finding>> ask_all(session::Session& session) {
   return out;
 }
 
+/// Silence is no more to be mended where they were asked.
+void drop_advice(std::vector<Finding>& findings) {
+  for (auto& finding : findings)
+    if (finding.code == "silence") finding.mend.clear();
+}
+
 Result<std::vector<Finding>> ask_over(const std::string& name, const DoctorOptions& options) {
   auto network = session::open_network(name, {});
   if (!network) return fail(network.error());
@@ -123,6 +129,7 @@ Result<std::vector<Finding>> hear_link(can::LinkControl& link, LinkFacts& facts,
   if (!after) return fail(after.error());
   facts.state = *after;
   auto out = bus_findings(picture, &facts);
+  if (!asked.empty()) drop_advice(out);
   add(out, std::move(asked));
   return out;
 }
@@ -200,6 +207,7 @@ Result<Findings> examine(session::Session& session, const DoctorOptions& options
   if (!options.active) return out;
   auto asked = ask_all(session);
   if (!asked) return fail(asked.error());
+  drop_advice(out.list);
   add(out.list, std::move(*asked));
   return out;
 }

@@ -43,7 +43,7 @@ void add_ports(std::vector<Finding>& out, std::size_t node, const Seen& first, c
     if (!text.empty())
       out.push_back({now ? Level::fault : Level::note, now ? "port-errors" : "port-had-errors",
                      fmt::format("node {}, port {}: {}{}", node, port, text, now ? ", and counting" : ""),
-                     now ? "frames are damaged on the cable at this port"
+                     now ? "the link at this port fails, or frames are damaged on its cable"
                          : "counted since the drive was switched on; none came meanwhile",
                      fmt::format("check plug and cable at this port of node {} and at its neighbour", node)});
     if (after.link && !after.open)
