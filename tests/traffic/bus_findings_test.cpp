@@ -115,6 +115,11 @@ TEST(BusFindings, KnowOneThatIsAloneByTheMissingAcknowledge) {
             (Codes{"nobody-acknowledges", "error-passive"}));
 }
 
+TEST(BusFindings, KnowOneThatIsAloneBeforeItsCountersTellIt) {
+  const auto known = facts(8, 0);
+  EXPECT_EQ(codes(bus_findings(picture(times(2, kAck)), &known)), Codes{"nobody-acknowledges"});
+}
+
 TEST(BusFindings, KnowOneThatIsAloneByItsCountersWhereTheDriverTellsNoErrors) {
   const auto known = facts(128, 0, can::LinkHealth::error_passive);
   const auto found = bus_findings(picture({}), &known);
