@@ -89,7 +89,7 @@ Result<std::vector<Found>> find(Context& context, const ScanWish& wish) {
   if (wish.low) {
     const auto found = lss.search(*wish.low, *wish.high);
     if (!found) return fail(found.error());
-    for (const auto& address : *found) out.push_back({address, 1});
+    for (const auto& address : *found) out.push_back({address, 1, {}});
   } else {
     auto found = lss.scan();
     if (!found) return fail(found.error());
@@ -128,7 +128,8 @@ report::Table table_of(const Context& context, std::span<const Found> found, std
                    {"serial"},
                    {"slaves", "", report::Show::json},
                    {"family"},
-                   {"new_node", "node"},
+                   {"node"},
+                   {"new_node", "new"},
                    {"result"},
                    {"kept"}};
   const auto families = drive::find_families(context.drive_folders);
@@ -142,6 +143,7 @@ report::Table table_of(const Context& context, std::span<const Found> found, std
     const auto end = i < given.size() ? given[i] : Given{};
     table.rows.push_back({report::Hex{a.vendor, 8}, report::Hex{a.product, 8}, report::Hex{a.revision, 8},
                           a.serial, found[i].slaves, report::text_or_null(guess),
+                          found[i].node ? Value(*found[i].node) : Value(),
                           end.node ? Value(*end.node) : Value(), report::text_or_null(end.outcome.result),
                           end.outcome.kept ? Value(*end.outcome.kept) : Value()});
   }
@@ -159,7 +161,7 @@ std::string question(std::span<const Found> found, std::span<const std::uint8_t>
 
 Value planned(std::span<const Found> found, std::span<const std::uint8_t> nodes, bool keep) {
   report::Table table;
-  table.columns = {{"new_node", "node"}, {"frame"}};
+  table.columns = {{"new_node", "new"}, {"frame"}};
   for (std::size_t i = 0; i < found.size(); ++i) {
     std::vector<canopen::LssRequest> requests{canopen::lss_set_node(nodes[i])};
     if (keep) requests.push_back(canopen::lss_store());
@@ -170,33 +172,52 @@ Value planned(std::span<const Found> found, std::span<const std::uint8_t> nodes,
   return Value(std::move(table));
 }
 
-/// In the order they were found; ends with the first that fails, for what went wrong with one may concern
-/// all.
-Result<Value> assign(Context& context, const ScanWish& wish, std::span<const Found> found, bool keep) {
-  std::vector<std::uint8_t> nodes;
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    if (*wish.first + i > canopen::kLastNode)
-      return fail(Errc::usage,
-                  fmt::format("{} slaves from node-ID {} on go beyond 127", found.size(), *wish.first),
+Result<std::vector<std::uint8_t>> nodes_from(std::uint8_t first, std::size_t count) {
+  std::vector<std::uint8_t> out;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (first + i > canopen::kLastNode)
+      return fail(Errc::usage, fmt::format("{} slaves from node-ID {} on go beyond 127", count, first),
                   "begin lower");
-    nodes.push_back(static_cast<std::uint8_t>(*wish.first + i));
+    out.push_back(static_cast<std::uint8_t>(first + i));
   }
-  if (!context.errors.empty() || found.empty()) return Value(table_of(context, found, {}));
-  if (const auto free = settings::refuse_taken(*context.session, nodes); !free) return fail(free.error());
-  if (context.dry_run) return planned(found, nodes, keep);
-  if (const auto sure = context.confirm(question(found, nodes)); !sure) return fail(sure.error());
-  std::vector<Given> given;
+  return out;
+}
+
+/// One after the other; ends with the first that does not take its node-ID, for what went wrong may concern
+/// all. One that has taken it and does not start with it keeps nobody from going on.
+std::vector<Given> give(Context& context, std::span<const Found> found, std::span<const std::uint8_t> nodes,
+                        bool keep) {
+  std::vector<Given> out;
   for (std::size_t i = 0; i < found.size(); ++i) {
     const session::LssSlave slave{found[i].address, canopen::kUnconfigured};
-    given.push_back({nodes[i], settings::give_lss_node(context, slave, {slave.address, nodes[i], keep})});
-    if (!given.back().outcome.error) continue;
-    context.errors.push_back(*given.back().outcome.error);
-    break;
+    out.push_back({nodes[i], settings::give_lss_node(context, slave, {slave.address, nodes[i], keep})});
+    const auto& outcome = out.back().outcome;
+    if (outcome.error) context.errors.push_back(*outcome.error);
+    if (!outcome.taken) break;
   }
+  return out;
+}
+
+/// Those that have a node-ID stand last, and keep it.
+Result<Value> assign(Context& context, const ScanWish& wish, std::vector<Found> found, bool keep) {
+  const auto configured =
+      std::stable_partition(found.begin(), found.end(), [](const Found& each) { return !each.node; });
+  const std::span<const Found> all = found;
+  const auto todo = all.first(static_cast<std::size_t>(configured - found.begin()));
+  for (const auto& each : all.subspan(todo.size()))
+    context.notices.push_back(
+        fmt::format("node {} answers fastscan, but has a node-ID: it was left alone", *each.node));
+  const auto nodes = nodes_from(*wish.first, todo.size());
+  if (!nodes) return fail(nodes.error());
+  if (!context.errors.empty() || todo.empty()) return Value(table_of(context, all, {}));
+  if (const auto free = settings::refuse_taken(*context.session, *nodes); !free) return fail(free.error());
+  if (context.dry_run) return planned(todo, *nodes, keep);
+  if (const auto sure = context.confirm(question(todo, *nodes)); !sure) return fail(sure.error());
+  const auto given = give(context, todo, *nodes, keep);
   if (!keep)
     context.notices.push_back(
         "not stored: after power-off they have no node-ID again; `lss store` or --keep keeps it");
-  return Value(table_of(context, found, given));
+  return Value(table_of(context, all, given));
 }
 
 Result<Value> run(Context& context, const Arguments& arguments) {

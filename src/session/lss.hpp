@@ -24,6 +24,8 @@ struct LssSlave {
 struct LssFound {
   canopen::LssAddress address;
   std::size_t slaves = 1;  ///< That say it is they: more than 1 have one identity.
+  /// The node-ID that it has or is to have, 1..127: some slaves answer fastscan with one, too.
+  std::optional<std::uint8_t> node = {};
 };
 
 /// servoctl as the LSS master (CiA 305) of the session's CAN bus, until it is destroyed: on every way out all

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <utility>
 
+#include "canopen/node_id.hpp"
 #include "session/lss.hpp"
 
 namespace servoctl::session {
@@ -92,7 +93,7 @@ class FastscanWalk {
   Result<void> on_number(std::uint8_t part, std::uint32_t number, std::size_t answers) {
     numbers_[part] = number;
     if (part == kLastPart) {
-      found_.push_back({{numbers_[0], numbers_[1], numbers_[2], numbers_[3]}, answers});
+      found_.push_back({{numbers_[0], numbers_[1], numbers_[2], numbers_[3]}, answers, {}});
       return found_.size() <= kMostSlaves ? Result<void>() : too_many();
     }
     if (const auto moved = advance(part); !moved) return moved;
@@ -149,7 +150,13 @@ Result<void> LssDialogue::confirm(std::vector<LssFound>& found) {
           "an LSS slave was found by fastscan and does not answer to its identity: " +
               to_string(each.address),
           "late answers, or a slave that was switched off: `lss scan` again, with a longer --patience");
-    each.slaves = std::max<std::size_t>(1, answers->size());
+    each.slaves = answers->size();
+    if (each.slaves > 1) continue;
+    const auto node = ask(canopen::lss_inquire(canopen::LssService::inquire_node), {patience_, kHaste});
+    if (!node) return fail(node.error());
+    const auto number = node->empty() ? canopen::kUnconfigured : node->front().number & 0xFFU;
+    if (number >= canopen::kFirstNode && number <= canopen::kLastNode)
+      each.node = static_cast<std::uint8_t>(number);
   }
   return found.empty() ? Result<void>() : send_to_waiting();
 }

@@ -17,7 +17,7 @@ using session::LssDialogue;
 using session::LssSlave;
 
 /// From a reset to the boot-up message.
-constexpr Duration kLssBootPatience = std::chrono::seconds(10);
+constexpr Duration kLssBootPatience = std::chrono::seconds(5);
 
 /// One slave on its way to its node-ID.
 class LssNodeRun {
@@ -48,6 +48,7 @@ class LssNodeRun {
     if (const auto set = lss.order(canopen::lss_set_node(change_->to), "set its node-ID"); !set)
       return fail_with(set.error().code == Errc::negative ? "not changed" : "not known", set.error());
     if (change_->keep && !store(lss)) return false;
+    out_.taken = true;
     if (const auto left = lss.leave(); !left) return fail_with("set; see the error", left.error());
     return true;
   }
@@ -83,12 +84,16 @@ class LssNodeRun {
     if (!came) return void(fail_with("set; not looked for", came.error()));
     const auto identity = session::read_identity(*session_, change_->to);
     if (!identity)
-      return void(
-          fail_with("set; not found", drive_error(identity.error().code, change_->to,
-                                                  "the slave has taken this node-ID, and does not answer "
-                                                  "by it: " +
-                                                      identity.error().message,
-                                                  "`scan` shows who answers; switch it off and on")));
+      return void(fail_with(
+          "set; not found",
+          drive_error(
+              identity.error().code, change_->to,
+              "the slave has taken this node-ID, and does not answer "
+              "by it: " +
+                  identity.error().message,
+              change_->keep
+                  ? "some start with it only when they are switched off and on, or by `nmt reset-comm -n all`, which resets all nodes"
+                  : "some start with it only by `nmt reset-comm -n all`, which resets all nodes; what is not stored is lost with the power")));
     const auto& a = slave_->address;
     const auto other = [](const std::optional<std::uint32_t>& told, std::uint32_t wanted) {
       return told && *told != wanted;

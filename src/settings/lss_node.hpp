@@ -26,6 +26,7 @@ Result<session::LssSlave> look_at_lss_slave(session::Session& session, const Lss
 /// What came of it.
 struct LssNodeOutcome {
   std::string result;          ///< In words: `moved`, `node-ID given`, …
+  bool taken = false;          ///< The slave said that it has taken it.
   bool done = false;           ///< The slave is found under its new node-ID.
   std::optional<bool> kept;    ///< Whether it outlives power-off; empty where nobody knows.
   std::optional<Error> error;  ///< What went wrong, and where the slave is as far as that is known.
