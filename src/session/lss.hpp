@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -56,6 +58,9 @@ class LssDialogue {
   };
   Result<Answers> ask(const canopen::LssRequest& request, Pace pace);
 
+  /// How many answered. A question that nobody answers is asked once more: the one answer may have been lost.
+  Result<std::size_t> probe(const canopen::LssRequest& request, Pace pace);
+
   /// Takes the one slave of this identity, or without one the only slave on the bus, to the configuration
   /// state, and asks what it is. Errc::timeout when nobody answers, Errc::refused when more than one does,
   /// Errc::protocol when it contradicts itself.
@@ -91,8 +96,10 @@ class LssDialogue {
   static constexpr Duration kFurther = std::chrono::milliseconds(100);
 
   Result<void> confirm(std::vector<LssFound>& found);
-  Result<bool> search_between(const canopen::LssAddress& low, const canopen::LssAddress& high,
+  Result<bool> search_between(const canopen::LssAddress& low, const canopen::LssAddress& high, Pace pace,
                               std::vector<canopen::LssAddress>& found);
+  /// Hasty first, then with more patience.
+  std::array<Pace, 3> paces() const;
   Result<LssSlave> look(const std::optional<canopen::LssAddress>& address);
   Result<void> send_to_waiting();
   void touch();

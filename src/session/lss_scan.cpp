@@ -59,13 +59,8 @@ class FastscanWalk {
   }
 
  private:
-  /// How many answered. A question that nobody answers is asked once more: the one answer may have been lost.
   Result<std::size_t> probe(const LssFastscanStep& step) {
-    for (int i = 0;; ++i) {
-      const auto answers = lss_->ask(canopen::lss_fastscan(step), pace_);
-      if (!answers) return fail(answers.error());
-      if (!answers->empty() || i == 1) return answers->size();
-    }
+    return lss_->probe(canopen::lss_fastscan(step), pace_);
   }
 
   /// Those that fit the numbers before are asked for this one; both halves at least one of which is
@@ -124,17 +119,31 @@ class FastscanWalk {
 
 }  // namespace
 
-Result<std::vector<LssFound>> LssDialogue::scan() {
+std::array<LssDialogue::Pace, 3> LssDialogue::paces() const {
   // Each silence is waited for twice.
   const auto half = patience_ / 2;
-  const Pace paces[] = {{half, std::min(half, kHaste)}, {half, patience_}, {4 * patience_, 4 * patience_}};
-  for (std::size_t i = 0;; ++i) {
+  return {{{half, std::min(half, kHaste)}, {half, patience_}, {4 * patience_, 4 * patience_}}};
+}
+
+Result<std::size_t> LssDialogue::probe(const canopen::LssRequest& request, Pace pace) {
+  for (int i = 0;; ++i) {
+    const auto answers = ask(request, pace);
+    if (!answers) return fail(answers.error());
+    if (!answers->empty() || i == 1) return answers->size();
+  }
+}
+
+Result<std::vector<LssFound>> LssDialogue::scan() {
+  Error last;
+  for (const auto pace : paces()) {
     if (const auto sent = send_to_waiting(); !sent) return fail(sent.error());
-    auto found = FastscanWalk(*this, paces[i]).run();
+    auto found = FastscanWalk(*this, pace).run();
     const auto there = found ? confirm(*found) : fail(found.error());
     if (there) return found;
-    if (there.error().code != Errc::protocol || i + 1 == std::size(paces)) return fail(there.error());
+    last = there.error();
+    if (last.code != Errc::protocol) break;
   }
+  return fail(std::move(last));
 }
 
 /// An answer that came late may have stood for another's: each is selected once, and says that it is there.
@@ -163,29 +172,34 @@ Result<void> LssDialogue::confirm(std::vector<LssFound>& found) {
 
 /// Whether somebody is there. A range in which somebody answers and in whose halves nobody does means that an
 /// answer was lost.
-Result<bool> LssDialogue::search_between(const LssAddress& low, const LssAddress& high,
+Result<bool> LssDialogue::search_between(const LssAddress& low, const LssAddress& high, Pace pace,
                                          std::vector<LssAddress>& found) {
-  const auto answers = ask(canopen::lss_identify(low, high), {patience_, std::min(patience_, kHaste)});
+  const auto answers = probe(canopen::lss_identify(low, high), pace);
   if (!answers) return fail(answers.error());
-  if (answers->empty()) return false;
+  if (*answers == 0) return false;
   if (low == high) {
     found.push_back(low);
     return found.size() <= kMostSlaves ? Result<bool>(true) : too_many();
   }
   const auto [end, begin] = inner_ends(low, high);
-  const auto first = search_between(low, end, found);
+  const auto first = search_between(low, end, pace, found);
   if (!first) return first;
-  const auto second = search_between(begin, high, found);
+  const auto second = search_between(begin, high, pace, found);
   if (!second || *first || *second) return second ? Result<bool>(true) : second;
   return lost_answer();
 }
 
 Result<std::vector<LssAddress>> LssDialogue::search(const LssAddress& low, const LssAddress& high) {
-  if (const auto sent = send_to_waiting(); !sent) return fail(sent.error());
-  std::vector<LssAddress> out;
-  const auto any = search_between(low, high, out);
-  if (!any) return fail(any.error());
-  return out;
+  Error last;
+  for (const auto pace : paces()) {
+    if (const auto sent = send_to_waiting(); !sent) return fail(sent.error());
+    std::vector<LssAddress> out;
+    const auto any = search_between(low, high, pace, out);
+    if (any) return out;
+    last = any.error();
+    if (last.code != Errc::protocol) break;
+  }
+  return fail(std::move(last));
 }
 
 }  // namespace servoctl::session

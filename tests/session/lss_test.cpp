@@ -96,6 +96,24 @@ TEST_F(Lss, LeavesAllWaitingWhereverItIsInterrupted) {
   }
 }
 
+TEST_F(Lss, LeavesASelectedSlaveWaitingWhereverItIsInterrupted) {
+  build("sv2@3,sv2@4?lss");
+  bool stop = false;
+  session->options().cancelled = [&] { return stop; };
+  for (int at = 0; at < 12; ++at) {
+    hooks = {};
+    hooks.before_request = [&](int request) { stop = stop || request == at; };
+    {
+      LssDialogue lss(*session, 20ms);
+      auto done = lss.select(LssAddress{0x00445653, 1, 1, 2});
+      const auto set = done ? lss.order(canopen::lss_set_node(9), "set its node-ID") : fail(done.error());
+      EXPECT_EQ(set.has_value(), at > 10) << at;
+    }
+    stop = false;
+    EXPECT_TRUE(all_wait()) << at;
+  }
+}
+
 TEST_F(Lss, ASecondCtrlCWaitsUntilAllAreBack) {
   build("sv2@3?lss");
   std::vector<Care> seen;

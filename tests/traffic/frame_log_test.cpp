@@ -148,7 +148,7 @@ TEST(FrameLog, WritesNamesThatNeedCareAsTheyAre) {
       "actual\\tvalue -10000\"}");
   EXPECT_EQ(
       logged.lines.back(),
-      R"({"time":1700000005.105151,"service":"alarm","node":2,"event":"heartbeat-lost","text":"ALARM \"quoted\""})");
+      R"({"time":1700000005.205252,"service":"alarm","node":2,"event":"heartbeat-lost","text":"ALARM \"quoted\""})");
 }
 
 /// What is said of the last of these frames.
