@@ -83,7 +83,9 @@ Result<BitrateWish> wish_of(const Context& context, const Arguments& arguments) 
 }
 
 std::vector<canopen::LssRequest> requests_of(const BitrateWish& wish) {
-  std::vector<canopen::LssRequest> out{canopen::lss_set_bit_timing(wish.index)};
+  std::vector<canopen::LssRequest> out;
+  if (wish.all) out.push_back(canopen::lss_inquire(canopen::LssService::inquire_node));
+  out.push_back(canopen::lss_set_bit_timing(wish.index));
   if (wish.keep) out.push_back(canopen::lss_store());
   if (wish.delay_ms) out.push_back(canopen::lss_activate_bit_timing(*wish.delay_ms));
   return out;
@@ -100,37 +102,43 @@ std::string question(const BitrateWish& wish) {
   return out;
 }
 
-/// All who confirm; one that refuses is an error. Nobody knows how many there should be.
+/// All who confirm; one that refuses is an error, and so is one of the `expected` that is silent.
 Result<std::size_t> order_all(session::LssDialogue& lss, const canopen::LssRequest& request,
-                              std::string_view what, Duration patience) {
+                              std::size_t expected, Duration patience) {
   const auto answers = lss.ask(request, patience);
   if (!answers) return fail(answers.error());
-  if (answers->empty())
+  if (answers->empty() && expected == 0)
     return fail(Errc::timeout, "no LSS slave answers on this bus", "many drives have no LSS");
-  const auto refused =
-      std::find_if(answers->begin(), answers->end(), [](const auto& answer) { return answer.error != 0; });
+  const bool asks = request.answer == canopen::LssService::inquire_node;
+  const auto refused = std::find_if(answers->begin(), answers->end(),
+                                    [&](const auto& answer) { return !asks && answer.error != 0; });
   if (refused != answers->end())
+    return fail(
+        Errc::negative,
+        fmt::format("an LSS slave of {} refuses: {}", answers->size(), canopen::lss_error_text(*refused)),
+        "nothing was activated; `lss inquire` shows what each slave is");
+  if (answers->size() < expected)
     return fail(Errc::negative,
-                fmt::format("an LSS slave of {} has not {}: {}", answers->size(), what,
-                            canopen::lss_error_text(*refused)),
-                "nothing was activated; `lss inquire` shows who is there");
+                fmt::format("of {} LSS slaves {} confirmed what was set", expected, answers->size()),
+                "nothing was activated; one that does not support a request may leave it unanswered");
   return answers->size();
 }
 
 Result<std::size_t> carry_out(session::LssDialogue& lss, const BitrateWish& wish, Duration patience) {
   const auto slow = std::max(patience, settings::kLssStorePatience);
-  std::size_t slaves = 1;
+  std::size_t slaves = wish.all ? 0 : 1;
   for (const auto& request : requests_of(wish)) {
     const bool stores = request.answer == canopen::LssService::store;
-    const std::string_view what = stores ? "stored its configuration" : "set its bitrate";
     if (!request.answer) {
       const auto sent = lss.ask(request);
       if (!sent) return fail(sent.error());
     } else if (wish.all) {
-      const auto done = order_all(lss, request, what, stores ? slow : patience);
+      const auto done = order_all(lss, request, slaves, stores ? slow : patience);
       if (!done) return fail(done.error());
       slaves = *done;
-    } else if (const auto done = lss.order(request, what, stores ? slow : patience); !done) {
+    } else if (const auto done = lss.order(request, stores ? "stored its configuration" : "set its bitrate",
+                                           stores ? slow : patience);
+               !done) {
       return fail(done.error());
     }
   }
