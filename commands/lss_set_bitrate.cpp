@@ -178,6 +178,8 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   session::LssDialogue lss(*context.session, patience);
   report::Record out;
   if (wish->all) {
+    const auto reset = lss.ask(canopen::lss_switch_all(canopen::LssState::waiting));
+    if (!reset) return fail(reset.error());
     if (const auto sent = lss.select_all(); !sent) return fail(sent.error());
   } else {
     const auto slave = lss.select(choice->address);
