@@ -161,10 +161,9 @@ void tell(Context& context, const BitrateWish& wish) {
   }
   if (!wish.bitrate) return;
   const auto name = url.substr(url.find(':') == std::string::npos ? 0 : url.find(':') + 1);
-  context.notices.push_back(
-      fmt::format("{} the interface has to change as well: `sudo ip link set {} down`, `sudo ip "
-                  "link set {} up type can bitrate {}`; then `lss inquire` or `scan`",
-                  wish.delay_ms ? "now" : "then", name, name, *wish.bitrate));
+  context.notices.push_back(fmt::format(
+      "{} the interface has to change as well: `bus up {} --bitrate {}`; then `lss inquire` or `scan`",
+      wish.delay_ms ? "now" : "then", name, *wish.bitrate));
 }
 
 Result<Value> run(Context& context, const Arguments& arguments) {

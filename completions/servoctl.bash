@@ -9,12 +9,12 @@ _servoctl_scan() {
       continue
     fi
     case $word in
-      --bus|-b|--node|-n|--drive|-d|--cabinet|--timeout|--retries|--output|-o|--lang|--trace|--bitrate|--sample-point|--restart-ms|--txqueuelen|--for|--type|--to|--transfer|--from|--format|--only|--family|--name|--axis|--backup|--wait|--plan|--turn|--turns|--accel|--csv|--limit|--max-torque|--max-following-error|--window|--master-node|--speed|--search|--offset|--within|--nameplate|--guard|--life|--inhibit|--event|--cob-id|--sync-start|--count|--longest|--junit|--expect|--tolerance|--stop-within|--repeat|--spread|--encoder|--title|--tests|--period|--counter|--every|--svg|--service|--object|--var) skip=$word ;;
+      --bus|-b|--node|-n|--drive|-d|--cabinet|--timeout|--retries|--output|-o|--lang|--trace|--bitrate|--sample-point|--restart-ms|--txqueuelen|--for|--type|--to|--transfer|--from|--format|--only|--family|--name|--axis|--backup|--wait|--plan|--assign|--patience|--vendor|--product|--revision|--serial|--activate|--turn|--turns|--accel|--csv|--limit|--max-torque|--max-following-error|--window|--master-node|--speed|--search|--offset|--within|--nameplate|--guard|--life|--inhibit|--event|--cob-id|--sync-start|--count|--longest|--junit|--expect|--tolerance|--stop-within|--repeat|--spread|--encoder|--title|--tests|--period|--counter|--every|--svg|--service|--object|--var) skip=$word ;;
       -*) ;;
       *)
         case $command in
           '') command=$word ;;
-          bus|param|cabinet|fault|units|heartbeat|nmt|state|pdo|test|sync|eds) command="$command $word" ;;
+          bus|param|cabinet|lss|fault|units|heartbeat|nmt|state|pdo|test|sync|eds) command="$command $word" ;;
         esac ;;
     esac
   done
@@ -46,6 +46,13 @@ _servoctl_scan() {
       --backup) source='files' ;;
       --wait) source='none' ;;
       --plan) source='files' ;;
+      --assign) source='none' ;;
+      --patience) source='none' ;;
+      --vendor) source='none' ;;
+      --product) source='none' ;;
+      --revision) source='none' ;;
+      --serial) source='none' ;;
+      --activate) source='none' ;;
       --turn) source='none' ;;
       --turns) source='none' ;;
       --accel) source='none' ;;
@@ -81,17 +88,18 @@ _servoctl_scan() {
       --counter) source='none' ;;
       --every) source='none' ;;
       --svg) source='files' ;;
-      --service) source='=nmt sync time emcy pdo sdo boot-up heartbeat guarding controller other' ;;
+      --service) source='=nmt sync time emcy pdo sdo boot-up heartbeat guarding lss controller other' ;;
       --object) source='objects' ;;
       --var) source='none' ;;
     esac
     return
   fi
   case $command in
-    '') source='=scan bus doctor info status read write objects param backup cabinet diff verify restore clone address store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion' ;;
+    '') source='=scan bus doctor info status read write objects param backup cabinet diff verify restore clone address lss store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion' ;;
     bus) source='=status up down detect' ;;
     param) source='=list get set search explain' ;;
     cabinet) source='=init check show plan apply backup swap diff' ;;
+    lss) source='=scan inquire set-node set-bitrate store' ;;
     fault) source='=show list reset clear-history' ;;
     units) source='=show learn forget' ;;
     heartbeat) source='=set consume show' ;;
@@ -124,6 +132,8 @@ _servoctl_scan() {
     'verify') source='files' ;;
     'restore') source='files' ;;
     'address') source='none' ;;
+    'lss set-node') source='none' ;;
+    'lss set-bitrate') source='none' ;;
     'store') source='=all communication application vendor' ;;
     'defaults') source='=all communication application vendor' ;;
     'fault list') source='none' ;;
@@ -155,7 +165,7 @@ _servoctl_scan() {
     'eds check') source='files' ;;
     'run') source='files' ;;
     'sim') source='none' ;;
-    'help') source='=scan bus doctor info status read write objects param backup cabinet diff verify restore clone address store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion' ;;
+    'help') source='=scan bus doctor info status read write objects param backup cabinet diff verify restore clone address lss store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion' ;;
     'completion') source='=bash zsh fish objects parameters families' ;;
   esac
   case $command in
@@ -179,6 +189,11 @@ _servoctl_scan() {
     'restore') options+=' --only --with-address --no-rollback --force --skip-invalid --keep --unlock --resume' ;;
     'clone') options+=' --from --to --force --keep --unlock --resume' ;;
     'address') options+=' --bitrate --plan --wait --unlock --resume' ;;
+    'lss scan') options+=' --assign --keep --patience --vendor --product --revision --serial' ;;
+    'lss inquire') options+=' --vendor --product --revision --serial --only' ;;
+    'lss set-node') options+=' --vendor --product --revision --serial --only --keep' ;;
+    'lss set-bitrate') options+=' --activate --all --vendor --product --revision --serial --only --keep' ;;
+    'lss store') options+=' --vendor --product --revision --serial --only' ;;
     'enable') options+=' --turn' ;;
     'jog') options+=' --for --turns --until-key --accel --csv --limit --max-torque --max-following-error --window --turn --master-node --plot' ;;
     'move') options+=' --relative --speed --accel --csv --limit --max-torque --max-following-error --window --turn --master-node --plot' ;;

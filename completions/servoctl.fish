@@ -16,7 +16,7 @@ function __servoctl_path # the words that are neither options nor their values
     for word in (commandline -opc)[2..]
         if test $skip = 1
             set skip 0
-        else if contains -- $word --bus -b --node -n --drive -d --cabinet --timeout --retries --output -o --lang --trace --bitrate --sample-point --restart-ms --txqueuelen --for --type --to --transfer --from --format --only --family --name --axis --backup --wait --plan --turn --turns --accel --csv --limit --max-torque --max-following-error --window --master-node --speed --search --offset --within --nameplate --guard --life --inhibit --event --cob-id --sync-start --count --longest --junit --expect --tolerance --stop-within --repeat --spread --encoder --title --tests --period --counter --every --svg --service --object --var
+        else if contains -- $word --bus -b --node -n --drive -d --cabinet --timeout --retries --output -o --lang --trace --bitrate --sample-point --restart-ms --txqueuelen --for --type --to --transfer --from --format --only --family --name --axis --backup --wait --plan --assign --patience --vendor --product --revision --serial --activate --turn --turns --accel --csv --limit --max-torque --max-following-error --window --master-node --speed --search --offset --within --nameplate --guard --life --inhibit --event --cob-id --sync-start --count --longest --junit --expect --tolerance --stop-within --repeat --spread --encoder --title --tests --period --counter --every --svg --service --object --var
             set skip 1
         else if not string match -q -- '-*' $word
             set path $path $word
@@ -191,6 +191,42 @@ complete -c servoctl -n '__servoctl_in address' -l plan -r -F -d 'renumber sever
 complete -c servoctl -n '__servoctl_in address' -l wait -x -d 'how long to wait for a drive that is to be switched off and on'
 complete -c servoctl -n '__servoctl_in address' -l unlock -d 'unlock by the family'\''s password, lock again after'
 complete -c servoctl -n '__servoctl_in address' -l resume -d 'resume an interrupted plan'
+complete -c servoctl -n '__servoctl_at lss' -a scan -d 'Find LSS slaves without a node-ID; --assign gives them one'
+complete -c servoctl -n '__servoctl_in lss scan' -l assign -x -d 'give them node-IDs in turn, from this one on; asks first'
+complete -c servoctl -n '__servoctl_in lss scan' -l keep -d 'make the values survive power-off'
+complete -c servoctl -n '__servoctl_in lss scan' -l patience -x -d 'longest wait for one answer (default 50ms)'
+complete -c servoctl -n '__servoctl_in lss scan' -l vendor -x -d 'vendor-ID of the slave (1018h:01), such as 0x319'
+complete -c servoctl -n '__servoctl_in lss scan' -l product -x -d 'its product code (1018h:02)'
+complete -c servoctl -n '__servoctl_in lss scan' -l revision -x -d 'its revision number (1018h:03)'
+complete -c servoctl -n '__servoctl_in lss scan' -l serial -x -d 'its serial number (1018h:04)'
+complete -c servoctl -n '__servoctl_at lss' -a inquire -d 'Ask one LSS slave what it is, and for its node-ID'
+complete -c servoctl -n '__servoctl_in lss inquire' -l vendor -x -d 'vendor-ID of the slave (1018h:01), such as 0x319'
+complete -c servoctl -n '__servoctl_in lss inquire' -l product -x -d 'its product code (1018h:02)'
+complete -c servoctl -n '__servoctl_in lss inquire' -l revision -x -d 'its revision number (1018h:03)'
+complete -c servoctl -n '__servoctl_in lss inquire' -l serial -x -d 'its serial number (1018h:04)'
+complete -c servoctl -n '__servoctl_in lss inquire' -l only -d 'the only LSS slave on the bus, whoever it is'
+complete -c servoctl -n '__servoctl_at lss' -a set-node -d 'Give an LSS slave a node-ID; asks first'
+complete -c servoctl -n '__servoctl_in lss set-node' -l vendor -x -d 'vendor-ID of the slave (1018h:01), such as 0x319'
+complete -c servoctl -n '__servoctl_in lss set-node' -l product -x -d 'its product code (1018h:02)'
+complete -c servoctl -n '__servoctl_in lss set-node' -l revision -x -d 'its revision number (1018h:03)'
+complete -c servoctl -n '__servoctl_in lss set-node' -l serial -x -d 'its serial number (1018h:04)'
+complete -c servoctl -n '__servoctl_in lss set-node' -l only -d 'the only LSS slave on the bus, whoever it is'
+complete -c servoctl -n '__servoctl_in lss set-node' -l keep -d 'make the values survive power-off'
+complete -c servoctl -n '__servoctl_at lss' -a set-bitrate -d 'Set the bitrate of LSS slaves; asks first'
+complete -c servoctl -n '__servoctl_in lss set-bitrate' -l activate -x -d 'all change after this time, such as 2s'
+complete -c servoctl -n '__servoctl_in lss set-bitrate' -l all -d 'every LSS slave on the bus'
+complete -c servoctl -n '__servoctl_in lss set-bitrate' -l vendor -x -d 'vendor-ID of the slave (1018h:01), such as 0x319'
+complete -c servoctl -n '__servoctl_in lss set-bitrate' -l product -x -d 'its product code (1018h:02)'
+complete -c servoctl -n '__servoctl_in lss set-bitrate' -l revision -x -d 'its revision number (1018h:03)'
+complete -c servoctl -n '__servoctl_in lss set-bitrate' -l serial -x -d 'its serial number (1018h:04)'
+complete -c servoctl -n '__servoctl_in lss set-bitrate' -l only -d 'the only LSS slave on the bus, whoever it is'
+complete -c servoctl -n '__servoctl_in lss set-bitrate' -l keep -d 'make the values survive power-off'
+complete -c servoctl -n '__servoctl_at lss' -a store -d 'Let an LSS slave keep its node-ID and bitrate; asks first'
+complete -c servoctl -n '__servoctl_in lss store' -l vendor -x -d 'vendor-ID of the slave (1018h:01), such as 0x319'
+complete -c servoctl -n '__servoctl_in lss store' -l product -x -d 'its product code (1018h:02)'
+complete -c servoctl -n '__servoctl_in lss store' -l revision -x -d 'its revision number (1018h:03)'
+complete -c servoctl -n '__servoctl_in lss store' -l serial -x -d 'its serial number (1018h:04)'
+complete -c servoctl -n '__servoctl_in lss store' -l only -d 'the only LSS slave on the bus, whoever it is'
 complete -c servoctl -n __servoctl_at -a store -d 'Store the present values in the drive'
 complete -c servoctl -n '__servoctl_in store' -x -a 'all communication application vendor'
 complete -c servoctl -n __servoctl_at -a defaults -d 'Restore the factory values of a drive'
@@ -406,7 +442,7 @@ complete -c servoctl -n '__servoctl_in scope' -l svg -r -F -d 'plot them to this
 complete -c servoctl -n '__servoctl_in scope' -l plot -d 'plot them here'
 complete -c servoctl -n __servoctl_at -a monitor -d 'Show everything on the bus as it happens, with names and values'
 complete -c servoctl -n '__servoctl_in monitor' -l for -x -d 'how long (default: until Ctrl-C)'
-complete -c servoctl -n '__servoctl_in monitor' -l service -x -a 'nmt sync time emcy pdo sdo boot-up heartbeat guarding controller other' -d 'only this service, such as sdo (may be given several times)'
+complete -c servoctl -n '__servoctl_in monitor' -l service -x -a 'nmt sync time emcy pdo sdo boot-up heartbeat guarding lss controller other' -d 'only this service, such as sdo (may be given several times)'
 complete -c servoctl -n '__servoctl_in monitor' -l object -x -a '(__servoctl_names objects)' -d 'only frames that carry or address this object'
 complete -c servoctl -n '__servoctl_in monitor' -l ask -d 'first read the PDO mapping of the nodes given by -n'
 complete -c servoctl -n '__servoctl_in monitor' -l bitrate -x -d 'bitrate for the bus load, if the interface does not give it: 500k'
@@ -415,12 +451,12 @@ complete -c servoctl -n '__servoctl_in monitor' -l raw -d 'show the frames as we
 complete -c servoctl -n __servoctl_at -a decode -d 'Decode a recording: PDO and SDO with names and values, NMT, EMCY'
 complete -c servoctl -n '__servoctl_in decode' -r -F
 complete -c servoctl -n '__servoctl_in decode' -l raw -d 'show the frames as well'
-complete -c servoctl -n '__servoctl_in decode' -l service -x -a 'nmt sync time emcy pdo sdo boot-up heartbeat guarding controller other' -d 'only this service, such as sdo (may be given several times)'
+complete -c servoctl -n '__servoctl_in decode' -l service -x -a 'nmt sync time emcy pdo sdo boot-up heartbeat guarding lss controller other' -d 'only this service, such as sdo (may be given several times)'
 complete -c servoctl -n '__servoctl_in decode' -l object -x -a '(__servoctl_names objects)' -d 'only frames that carry or address this object'
 complete -c servoctl -n __servoctl_at -a replay -d 'Send the frames of a recording again; asks first'
 complete -c servoctl -n '__servoctl_in replay' -r -F
 complete -c servoctl -n '__servoctl_in replay' -l speed -x -d '2 is twice as fast as recorded (default 1)'
-complete -c servoctl -n '__servoctl_in replay' -l only -x -a 'nmt sync time emcy pdo sdo boot-up heartbeat guarding controller other' -d 'only this service, such as sdo (may be given several times)'
+complete -c servoctl -n '__servoctl_in replay' -l only -x -a 'nmt sync time emcy pdo sdo boot-up heartbeat guarding lss controller other' -d 'only this service, such as sdo (may be given several times)'
 complete -c servoctl -n '__servoctl_in replay' -l master -d 'only what a master sends: NMT, SYNC, TIME, SDO requests, RPDOs'
 complete -c servoctl -n __servoctl_at -a drives -d 'List the drive families servoctl knows, or the rules of one'
 complete -c servoctl -n '__servoctl_in drives' -x -a '(servoctl completion families 2>/dev/null; __servoctl_sheets)'
@@ -433,12 +469,13 @@ complete -c servoctl -n '__servoctl_in run' -l frames -d 'with --dry-run: the fr
 complete -c servoctl -n '__servoctl_in run' -l check -d 'check all lines without a bus, run none'
 complete -c servoctl -n __servoctl_at -a sim -d 'Put simulated drives on a bus until Ctrl-C'
 complete -c servoctl -n __servoctl_at -a help -d 'Show the commands, or how one is used'
-complete -c servoctl -n '__servoctl_in help' -x -a 'scan bus doctor info status read write objects param backup cabinet diff verify restore clone address store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion'
+complete -c servoctl -n '__servoctl_in help' -x -a 'scan bus doctor info status read write objects param backup cabinet diff verify restore clone address lss store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion'
 complete -c servoctl -n __servoctl_at -a completion -d 'Print the completion script of a shell'
 complete -c servoctl -n '__servoctl_in completion' -x -a 'bash zsh fish objects parameters families'
 complete -c servoctl -n __servoctl_at -a bus
 complete -c servoctl -n __servoctl_at -a param
 complete -c servoctl -n __servoctl_at -a cabinet
+complete -c servoctl -n __servoctl_at -a lss
 complete -c servoctl -n __servoctl_at -a fault
 complete -c servoctl -n __servoctl_at -a units
 complete -c servoctl -n __servoctl_at -a heartbeat

@@ -19,17 +19,15 @@ std::string missing_hint() {
   const auto here = present.empty() ? std::string("this machine has no CAN interface")
                                     : fmt::format("CAN interfaces: {}", fmt::join(present, ", "));
   return here +
-         "; for a USB adapter: plug it in, then `sudo ip link set can0 up type can bitrate 500000`, with the "
-         "bitrate of the drives; for a virtual bus: `sudo ip link add dev vcan0 type vcan && sudo ip link "
+         "; for a USB adapter: plug it in, then `bus up can0 --bitrate 500k`, with the bitrate of the drives; for a virtual bus: `sudo ip link add dev vcan0 type vcan && sudo ip link "
          "set vcan0 up`";
 }
 
 }  // namespace
 
 std::string up_command(const std::string& name) {
-  if (needs_no_bitrate(name)) return fmt::format("`sudo ip link set {} up`", name);
-  return fmt::format("`sudo ip link set {} up type can bitrate 500000`, with the bitrate of the drives",
-                     name);
+  if (needs_no_bitrate(name)) return fmt::format("`bus up {}`", name);
+  return fmt::format("`bus up {} --bitrate 500k`, with the bitrate of the drives", name);
 }
 
 tl::unexpected<Error> interface_no_name(const std::string& name) {
@@ -53,8 +51,8 @@ tl::unexpected<Error> interface_bus_off(const std::string& name) {
   return fail(
       Errc::bus, fmt::format("{} is off the bus after too many errors (bus-off)", name),
       fmt::format(
-          "check the bitrate, the cable and the two 120 ohm resistors; then `sudo ip link set {0} type can "
-          "restart`, or take it down and up again: `sudo ip link set {0} down && sudo ip link set {0} up`",
+          "check the bitrate, the cable and the two 120 ohm resistors; then `bus up {}`, which takes it down and up "
+          "again",
           name));
 }
 
@@ -66,21 +64,20 @@ tl::unexpected<Error> interface_lost(const std::string& name, int error) {
     return fail(Errc::bus, fmt::format("{} went down: the interface is gone", name),
                 fmt::format("was the adapter unplugged? plug it in, then {}", up));
   return fail(Errc::bus, fmt::format("{} failed: {}", name, system_text(error)),
-              fmt::format("`ip -details -statistics link show {}` shows its state", name));
+              fmt::format("`bus status {}` shows its state", name));
 }
 
 tl::unexpected<Error> interface_queue_full(const std::string& name) {
   return fail(
       Errc::bus, fmt::format("the transmit queue of {} remains full", name),
       fmt::format(
-          "is another node on the bus and the bitrate right? `ip -details -statistics link show {0}`, `sudo "
-          "ip link set {0} txqueuelen 1000`",
+          "is another node on the bus and the bitrate right? `doctor {0}` looks; `bus up {0} --txqueuelen 1000`",
           name));
 }
 
 tl::unexpected<Error> interface_cannot_open(const std::string& name, int error) {
   return fail(Errc::bus, fmt::format("cannot open {}: {}", name, system_text(error)),
-              fmt::format("`ip -details link show {}` shows its state", name));
+              fmt::format("`bus status {}` shows its state", name));
 }
 
 }  // namespace servoctl::can

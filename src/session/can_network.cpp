@@ -143,8 +143,10 @@ Result<void> CanNetwork::on_report(can::ControllerReport report) {
     last_report_.reset();
     return fail(
         Errc::bus, url_ + ": " + std::string(can::text(report)),
-        "check bitrate, wiring and termination; then take the interface down and up again (`ip link set … "
-        "restart-ms 100` lets it come back by itself)");
+        fmt::format(
+            "check bitrate, wiring and termination; then `bus up {}` takes it down and up again (with "
+            "`--restart-ms 100` it comes back by itself)",
+            url_));
   }
   if (report != last_report_) reports_.push_back(report);
   last_report_ = report;

@@ -158,9 +158,7 @@ std::vector<std::string> bitrate_steps(const std::string& bus_url, std::uint32_t
   if (name.find(':') != std::string::npos) name = "can0";
   return {
       "change all nodes of the bus before any of them restarts: one with another bitrate disturbs the rest",
-      "then switch all of them off",
-      fmt::format("`sudo ip link set {} down`, `sudo ip link set {} up type can bitrate {}`", name, name,
-                  bitrate),
+      "then switch all of them off", fmt::format("`bus up {} --bitrate {}`", name, bitrate),
       "switch them on; `scan` shows who answers"};
 }
 

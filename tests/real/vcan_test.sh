@@ -89,7 +89,7 @@ contains "missing interface names the mending command" "ip link add dev vcan" "$
 ip link set vcan1 down
 message=$("$servoctl" read 0x6041 -n 1 --bus vcan1 2>&1)
 check "exit code of an interface that is down" 3 $?
-contains "down interface names the mending command" "ip link set vcan1 up" "$message"
+contains "down interface names the mending command" "bus up vcan1" "$message"
 ip link set vcan1 up
 "$servoctl" read 0x6041 -n 9 --bus vcan1 --timeout 20s >"$work/down" 2>&1 &
 client=$!
