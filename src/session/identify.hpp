@@ -36,8 +36,8 @@ inline constexpr Duration kBeforeWrites = std::chrono::milliseconds(20);
 inline constexpr Duration kThoroughly = std::chrono::milliseconds(20);
 
 /// Takes in what a second node of the same number may still answer to what was asked: for twice the time that
-/// the slowest answer took, between `least` and 20 ms, from the last answer on. Where one has come twice, asks
-/// for what never changes to know better. Errors of the bus.
+/// the slowest answer took, between `least` and 20 ms, from the last answer on. Where one has come twice,
+/// asks for what never changes to know better. Errors of the bus.
 Result<void> settle_duplicates(Session& session, std::span<const std::uint8_t> nodes, Duration least);
 
 /// Errc::refused when two nodes were noticed under this number.
