@@ -121,7 +121,7 @@ TEST(Lss, HasTheBitratesOfTable0) {
     EXPECT_EQ(lss_bitrate(index), bitrate);
   }
   for (const std::uint32_t none : {0U, 100'000U, 33'333U}) EXPECT_FALSE(lss_bit_timing(none));
-  for (const std::uint8_t none : {5, 9, 10, 255}) EXPECT_FALSE(lss_bitrate(none));
+  for (const int none : {5, 9, 10, 255}) EXPECT_FALSE(lss_bitrate(static_cast<std::uint8_t>(none)));
 }
 
 TEST(Lss, SaysWhyASlaveRefuses) {
