@@ -12,11 +12,11 @@ namespace {
 constexpr std::size_t kMostEmergencies = 8;
 constexpr ObjectAddress kHeartbeatTime{0x1017, 0};
 /// Command specifier of an initiate download request, in the upper three bits of byte 0 (CiA 301, 7.2.4.3.3).
-constexpr std::uint8_t kDownload = 1;
+constexpr std::uint8_t kInitiateDownload = 1;
 
 bool writes_heartbeat_time(const can::Frame& frame) {
   return !frame.extended && !frame.remote && !frame.error && frame.size == 8 && frame.id > kSdoRequest &&
-         frame.id <= kSdoRequest + kLastNode && frame.data[0] >> 5U == kDownload &&
+         frame.id <= kSdoRequest + kLastNode && frame.data[0] >> 5U == kInitiateDownload &&
          sdo_object(frame) == kHeartbeatTime;
 }
 

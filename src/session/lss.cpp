@@ -21,8 +21,8 @@ constexpr Duration kLeaveCheck = std::chrono::milliseconds(50);
 constexpr int kLeaveTries = 3;
 constexpr Duration kLinkPatience = std::chrono::seconds(1);
 
-constexpr LssService kNumbers[] = {LssService::inquire_vendor, LssService::inquire_product,
-                                   LssService::inquire_revision, LssService::inquire_serial};
+constexpr LssService kLssNumbers[] = {LssService::inquire_vendor, LssService::inquire_product,
+                                      LssService::inquire_revision, LssService::inquire_serial};
 
 std::string who(const std::optional<LssAddress>& address) {
   return address ? fmt::format("the LSS slave with {}", to_string(*address)) : "an LSS slave";
@@ -110,8 +110,8 @@ Result<LssSlave> LssDialogue::look(const std::optional<LssAddress>& address) {
   if (node->size() > 1) return several(address, node->size());
   if (!node->empty()) out.node = static_cast<std::uint8_t>(node->front().number);
   bool silent = node->empty();
-  for (std::size_t i = 0; i < std::size(kNumbers); ++i) {
-    const auto number = ask(canopen::lss_inquire(kNumbers[i]));
+  for (std::size_t i = 0; i < std::size(kLssNumbers); ++i) {
+    const auto number = ask(canopen::lss_inquire(kLssNumbers[i]));
     if (!number) return fail(number.error());
     if (number->size() > 1) return several(address, number->size());
     if (number->empty()) {

@@ -72,7 +72,7 @@ report::List texts(const std::vector<std::string>& lines) {
   return out;
 }
 
-report::List guess_records(std::span<const session::Guess> guesses) {
+report::List guesses_of_slave(std::span<const session::Guess> guesses) {
   report::List out;
   for (const auto& guess : guesses)
     out.emplace_back(Record{{"family", guess.family}, {"certain", guess.certain}});
@@ -181,11 +181,11 @@ report::Table ring_table(const Desk& desk, const session::RingScan& ring, std::s
                      report::text_or_null(linked_ports(look)),
                      report::text_or_null(short_guess(guesses))};
     for (auto& field : al_fields(look.al)) row.push_back(std::move(field.value));
-    for (auto& value : report::List{slave.seen.foreign, port_records(look), look.bad_commands,
-                                    look.pdi_errors, coe_of(slave), texts(slave.doubts),
-                                    hex(identity.device_type), report::text_or_null(identity.device_name),
-                                    report::text_or_null(identity.hardware_version),
-                                    report::text_or_null(identity.software_version), guess_records(guesses)})
+    for (auto& value : report::List{
+             slave.seen.foreign, port_records(look), look.bad_commands, look.pdi_errors, coe_of(slave),
+             texts(slave.doubts), hex(identity.device_type), report::text_or_null(identity.device_name),
+             report::text_or_null(identity.hardware_version), report::text_or_null(identity.software_version),
+             guesses_of_slave(guesses)})
       row.push_back(std::move(value));
     add_condition(desk, conditions[i], in_full, row);
     table.rows.push_back(std::move(row));

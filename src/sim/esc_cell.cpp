@@ -9,7 +9,7 @@
 namespace servoctl::sim {
 namespace {
 
-constexpr std::string_view kExample =
+constexpr std::string_view kRingExample =
     "simulated EtherCAT drives are written FAMILY@POSITION in the order of the ring, for example "
     "sv2@1,sv2@2?state=FILE";
 
@@ -28,7 +28,7 @@ Result<const drive::Profile*> coe_profile_of(EscCell& cell, const CellSpec::Plac
 
 Result<EscCell> build_esc_cell(std::string_view text, std::span<const std::filesystem::path> folders,
                                TimePoint now) {
-  const auto spec = parse_cell_spec(text, kExample);
+  const auto spec = parse_cell_spec(text, kRingExample);
   if (!spec) return fail(spec.error());
   const auto sii = sii_fault_of(*spec);
   if (!sii) return fail(sii.error());

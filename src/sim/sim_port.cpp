@@ -9,7 +9,7 @@ namespace servoctl::sim {
 namespace {
 
 /// So long is a frame of common size on its way through a few slaves and back.
-constexpr Duration kFrameTime{40};
+constexpr Duration kRingFrameTime{40};
 
 }  // namespace
 
@@ -31,7 +31,7 @@ TimePoint SimPort::next_event() const { return received_ ? now() : cell_.ring.de
 Result<std::optional<ByteSpan>> SimPort::receive(TimePoint deadline) {
   for (;;) {
     if (take()) {
-      clock_.move_on(kFrameTime);
+      clock_.move_on(kRingFrameTime);
       given_ = std::move(*received_);
       received_.reset();
       return std::optional<ByteSpan>(given_);

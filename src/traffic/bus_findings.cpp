@@ -18,7 +18,7 @@ constexpr double kOverload = 90;
 constexpr std::uint16_t kPassive = 128;
 constexpr std::uint16_t kWarning = 96;
 
-double seconds(Duration time) { return std::chrono::duration<double>(time).count(); }
+double in_seconds(Duration time) { return std::chrono::duration<double>(time).count(); }
 
 std::string here(const LinkFacts* facts) { return facts == nullptr ? "IFACE" : facts->name; }
 
@@ -143,7 +143,7 @@ void add_duplicates(std::vector<Finding>& out, const BusPicture& picture) {
 }
 
 void add_heard(std::vector<Finding>& out, const BusPicture& picture, const LinkFacts* facts) {
-  const auto time = seconds(picture.length());
+  const auto time = in_seconds(picture.length());
   if (picture.frames() == 0) {
     out.push_back({Level::note, "silence", fmt::format("nothing was heard in {:.3g} s", time),
                    "drives without heartbeat and PDOs are silent until they are asked",

@@ -7,7 +7,7 @@ namespace {
 
 using Codes = std::vector<std::string>;
 
-Codes codes(const std::vector<Finding>& findings) {
+Codes codes_of_ring(const std::vector<Finding>& findings) {
   Codes out;
   for (const auto& f : findings) out.push_back(std::string(name(f.level)) + " " + f.code);
   return out;
@@ -26,17 +26,19 @@ RingFacts two_slaves() {
   return out;
 }
 
-TEST(RingFindings, OfAHealthyRingAreOk) { EXPECT_EQ(codes(ring_findings(two_slaves())), Codes{"ok slaves"}); }
+TEST(RingFindings, OfAHealthyRingAreOk) {
+  EXPECT_EQ(codes_of_ring(ring_findings(two_slaves())), Codes{"ok slaves"});
+}
 
 TEST(RingFindings, TellCountersThatGoOnFromThoseThatStand) {
   auto facts = two_slaves();
   facts.first[1].look.ports[0].bad_frames = facts.last[1].look.ports[0].bad_frames = 7;
   auto found = ring_findings(facts);
-  EXPECT_EQ(codes(found), (Codes{"ok slaves", "note port-had-errors"}));
+  EXPECT_EQ(codes_of_ring(found), (Codes{"ok slaves", "note port-had-errors"}));
   EXPECT_EQ(found[1].text, "node 2, port 0: 7 bad frames (CRC)");
   facts.last[1].look.ports[0].bad_frames = 9;
   found = ring_findings(facts);
-  EXPECT_EQ(codes(found), (Codes{"ok slaves", "fault port-errors"}));
+  EXPECT_EQ(codes_of_ring(found), (Codes{"ok slaves", "fault port-errors"}));
   EXPECT_EQ(found[1].text, "node 2, port 0: 9 bad frames (CRC), and counting");
 }
 
@@ -45,7 +47,7 @@ TEST(RingFindings, TellOfSlavesThatComeAndGoAndOfLostFrames) {
   facts.least = 1;
   facts.lost = 3;
   const auto found = ring_findings(facts);
-  EXPECT_EQ(codes(found), (Codes{"fault slaves-come-and-go", "fault lost-frames"}));
+  EXPECT_EQ(codes_of_ring(found), (Codes{"fault slaves-come-and-go", "fault lost-frames"}));
   EXPECT_NE(found[0].mend.find("the cable between node 1 and node 2"), std::string::npos);
   EXPECT_EQ(found[1].text, "3 of 100 frames did not come back, 0 came back damaged");
 }
@@ -53,7 +55,7 @@ TEST(RingFindings, TellOfSlavesThatComeAndGoAndOfLostFrames) {
 TEST(RingFindings, TellOfAPortThatIsClosed) {
   auto facts = two_slaves();
   facts.last[1].look.ports[1] = {.link = true};
-  EXPECT_EQ(codes(ring_findings(facts)), (Codes{"ok slaves", "fault port-closed"}));
+  EXPECT_EQ(codes_of_ring(ring_findings(facts)), (Codes{"ok slaves", "fault port-closed"}));
 }
 
 TEST(RingFindings, TellNoLinkFromNoAnswer) {
