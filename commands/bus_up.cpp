@@ -20,9 +20,7 @@ constexpr Parameter kParameters[] = {
     kInterface,
     {.name = "--bitrate", .help = "bitrate of the drives: 125k, 250k, 500k, 1M", .kind = Kind::text},
     {.name = "--sample-point", .help = "where in a bit it is sampled: 0.8 or 80%", .kind = Kind::text},
-    {.name = "--restart-ms",
-     .help = "come back so long after a bus-off, 0: not by itself",
-     .kind = Kind::number},
+    {.name = "--restart-ms", .help = "come back so long after a bus-off; 0: never", .kind = Kind::number},
     {.name = "--txqueuelen", .help = "frames that may wait to be sent: 1000", .kind = Kind::number},
 };
 

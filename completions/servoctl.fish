@@ -86,7 +86,7 @@ complete -c servoctl -n '__servoctl_at bus' -a up -d 'Bring a CAN interface up w
 complete -c servoctl -n '__servoctl_in bus up' -x -a '(__servoctl_buses)'
 complete -c servoctl -n '__servoctl_in bus up' -l bitrate -x -d 'bitrate of the drives: 125k, 250k, 500k, 1M'
 complete -c servoctl -n '__servoctl_in bus up' -l sample-point -x -d 'where in a bit it is sampled: 0.8 or 80%'
-complete -c servoctl -n '__servoctl_in bus up' -l restart-ms -x -d 'come back so long after a bus-off, 0: not by itself'
+complete -c servoctl -n '__servoctl_in bus up' -l restart-ms -x -d 'come back so long after a bus-off; 0: never'
 complete -c servoctl -n '__servoctl_in bus up' -l txqueuelen -x -d 'frames that may wait to be sent: 1000'
 complete -c servoctl -n '__servoctl_at bus' -a down -d 'Take a CAN interface down'
 complete -c servoctl -n '__servoctl_in bus down' -x -a '(__servoctl_buses)'
