@@ -33,8 +33,8 @@ tl::unexpected<Error> nobody(const std::optional<LssAddress>& address) {
       Errc::timeout,
       address ? fmt::format("no LSS slave answers to {}", to_string(*address))
               : std::string("no LSS slave answers on this bus"),
-      "`lss scan` finds those without a node-ID; many drives have no LSS, or have it switched off; then "
-      "`address` writes their own parameter");
+      "`lss scan` finds those without a node-ID; many drives have no LSS, or have it switched off: "
+      "`help address` tells how their own parameter is written");
 }
 
 tl::unexpected<Error> several(const std::optional<LssAddress>& address, std::size_t count) {
