@@ -29,12 +29,11 @@ std::string who(const std::optional<LssAddress>& address) {
 }
 
 tl::unexpected<Error> nobody(const std::optional<LssAddress>& address) {
-  return fail(
-      Errc::timeout,
-      address ? fmt::format("no LSS slave answers to {}", to_string(*address))
-              : std::string("no LSS slave answers on this bus"),
-      "`lss scan` finds those without a node-ID; many drives have no LSS, or have it switched off: "
-      "`help address` tells how their own parameter is written");
+  return fail(Errc::timeout,
+              address ? fmt::format("no LSS slave answers to {}", to_string(*address))
+                      : std::string("no LSS slave answers on this bus"),
+              "`lss scan` finds those without a node-ID; many drives have no LSS, or have it switched off: "
+              "`help address` tells how their own parameter is written");
 }
 
 tl::unexpected<Error> several(const std::optional<LssAddress>& address, std::size_t count) {
