@@ -50,7 +50,9 @@ struct BitrateWish {
 };
 
 Result<BitrateWish> wish_of(const Context& context, const Arguments& arguments) {
-  BitrateWish out{.all = arguments.has("--all"), .keep = arguments.has("--keep")};
+  BitrateWish out;
+  out.all = arguments.has("--all");
+  out.keep = arguments.has("--keep");
   if (lower(arguments.text("rate")) == "auto") {
     out.index = canopen::kLssAutomaticBitrate;
   } else {

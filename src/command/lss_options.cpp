@@ -17,7 +17,7 @@ constexpr std::string_view kIdentity[] = {"--vendor", "--product", "--revision",
 
 std::size_t numbers_given(const Arguments& arguments) {
   std::size_t out = 0;
-  for (const auto name : kIdentity) out += arguments.has(name) ? 1 : 0;
+  for (const auto name : kIdentity) out += arguments.has(name) ? 1U : 0U;
   return out;
 }
 
