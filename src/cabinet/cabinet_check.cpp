@@ -179,10 +179,6 @@ class AxisCheck {
   std::vector<std::string> notices_;
 };
 
-}  // namespace
-
-namespace {
-
 /// Forty axes that share a line share what there is to say of it.
 class ToldOnce {
  public:

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <set>
@@ -16,6 +15,7 @@
 #include "drive/naming.hpp"
 #include "drive/toml_depth.hpp"
 #include "drive/toml_reader.hpp"
+#include "session/bitrate_search.hpp"
 #include "session/open_bus.hpp"
 
 namespace servoctl::cabinet {
@@ -26,9 +26,6 @@ using drive::get_int;
 using drive::TableReader;
 
 constexpr std::uintmax_t kMostBytes = 4U << 20U;
-/// In bit/s: those of CiA 301, 5.2, and 100 kbit/s, which is in use as well.
-constexpr std::array<std::uint32_t, 9> kBitrates{10'000,  20'000,  50'000,  100'000,  125'000,
-                                                 250'000, 500'000, 800'000, 1'000'000};
 constexpr std::string_view kBitrateForm =
     "bitrate = \"500k\" (10k, 20k, 50k, 100k, 125k, 250k, 500k, 800k or 1M)";
 
@@ -102,7 +99,8 @@ class CabinetReader {
 
   static bool read_bitrate(const toml::node& node, std::string& out) {
     const auto bitrate = get(node, out) ? drive::parse_bitrate(out) : Result<std::uint32_t>();
-    return bitrate && std::count(kBitrates.begin(), kBitrates.end(), *bitrate) > 0;
+    const auto usual = session::usual_bitrates();
+    return bitrate && std::count(usual.begin(), usual.end(), *bitrate) > 0;
   }
 
   Result<void> defaults(const TableReader& root, const toml::table& table) {

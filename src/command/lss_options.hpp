@@ -34,9 +34,6 @@ Result<void> check_lss_choice(const Context& context, const Arguments& arguments
 /// The number of an option, 0 to 2^32-1; empty when it was not given.
 Result<std::optional<std::uint32_t>> lss_number(const Arguments& arguments, std::string_view name);
 
-/// How long an answer is waited for in the whole line.
-inline Duration lss_patience(const Context& context) { return context.session->options().timeout; }
-
 /// `vendor_id product_code revision serial` as in every other record of an identity.
 report::Record lss_identity_record(const canopen::LssAddress& address);
 

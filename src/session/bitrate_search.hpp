@@ -30,7 +30,7 @@ struct Heard {
 /// `silent`, `frames`, `errors only`, `not possible`
 std::string_view name(Heard::Verdict verdict);
 
-/// All bitrates of CiA 301, the likely ones first.
+/// In bit/s: those of CiA 301, 5.2, and 100 kbit/s, which is in use as well; the likely ones first.
 std::span<const std::uint32_t> usual_bitrates();
 
 struct SearchOptions {

@@ -154,7 +154,8 @@ Result<void> refuse_duplicate(Session& session, std::uint8_t node) {
       Errc::refused, node,
       fmt::format("two nodes answer with this node-ID ({}): writes and motion are refused", by),
       fmt::format(
-          "disconnect one and give it another node-ID, then `scan`; `disable -n {}` and `nmt stop` reach both",
+          "disconnect one and give it another node-ID, then `scan` (drives with LSS take one by their serial numbers: "
+          "`help lss set-node`); `disable -n {}` and `nmt stop` reach both",
           node)));
 }
 

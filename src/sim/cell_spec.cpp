@@ -8,12 +8,11 @@
 #include "base/duration.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
+#include "canopen/lss.hpp"
 #include "canopen/node_id.hpp"
 
 namespace servoctl::sim {
 namespace {
-
-constexpr std::uint64_t kNoNode = 255;  ///< CiA 305, 3.2.
 
 Result<CellSpec::Place> parse_place(const CellSpec& spec, std::string_view text) {
   const auto at = text.find('@');
@@ -24,9 +23,10 @@ Result<CellSpec::Place> parse_place(const CellSpec& spec, std::string_view text)
   if (place.family.empty()) return spec.wrong("a simulated drive has no family name");
   if (at == std::string_view::npos) return place;
   const auto node = parse_digits(text.substr(at + 1), 10);
-  if (node == kNoNode && !spec.has("lss"))
+  if (node == canopen::kUnconfigured && !spec.has("lss"))
     return spec.wrong("a drive without a node-ID (255) can only be reached by LSS: add ?lss");
-  if (!node || ((*node < canopen::kFirstNode || *node > canopen::kLastNode) && *node != kNoNode))
+  if (!node ||
+      ((*node < canopen::kFirstNode || *node > canopen::kLastNode) && *node != canopen::kUnconfigured))
     return spec.wrong(fmt::format("'{}' is not a node-ID (1..127)", text.substr(at + 1)));
   place.node = static_cast<std::uint8_t>(*node);
   return place;

@@ -1,6 +1,7 @@
 // What a drive model keeps when its power goes, and what it makes of that when it starts.
 #include <algorithm>
 
+#include "canopen/lss.hpp"
 #include "canopen/node_id.hpp"
 #include "canopen/sdo_abort.hpp"
 #include "drive/naming.hpp"
@@ -26,7 +27,6 @@ bool is_in(std::uint8_t group, std::uint16_t index) {
 /// Where what LSS stores is kept, beside the drive's own objects.
 constexpr const char* kLssMemory = ".lss";
 constexpr ObjectAddress kLssNode{0, 1};
-constexpr std::uint8_t kNoNodeId = 255;  ///< CiA 305, 3.2.
 
 }  // namespace
 
@@ -49,7 +49,7 @@ void DriveModel::begin_memory(std::uint8_t node) {
   const auto node_id = drive::place_of(*profile_, profile_->rules.nmt.node_id);
   const auto* entry = node_id ? profile_->dictionary.find(*node_id) : nullptr;
   if (entry != nullptr && cells.find(*node_id) != cells.end()) return;
-  if (node == kNoNodeId)
+  if (node == canopen::kUnconfigured)
     memory_->cells(key_ + kLssMemory).try_emplace(kLssNode, Bytes{node});
   else if (entry != nullptr && (!entry->default_value || od::to_double(entry->default_value->value) != node))
     cells[*node_id] = store_le(node, od::size_of(entry->type).value_or(1));
@@ -71,7 +71,7 @@ bool DriveModel::store_node(std::uint8_t node) {
   auto& own = memory_->cells(key_ + kLssMemory);
   const auto node_id = drive::place_of(*profile_, profile_->rules.nmt.node_id);
   const auto* entry = node_id ? profile_->dictionary.find(*node_id) : nullptr;
-  if (entry == nullptr || node == kNoNodeId) {
+  if (entry == nullptr || node == canopen::kUnconfigured) {
     own[kLssNode] = {node};
   } else {
     own.erase(kLssNode);

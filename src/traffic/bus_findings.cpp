@@ -135,11 +135,7 @@ void add_load(std::vector<Finding>& out, const BusPicture& picture, const LinkFa
 void add_duplicates(std::vector<Finding>& out, const BusPicture& picture) {
   for (std::uint8_t node = 1; node <= 127; ++node)
     if (const auto& noticed = picture.duplicates().noticed(node); !noticed.empty())
-      out.push_back(
-          {Level::fault, "duplicate-node", fmt::format("two nodes have the number {}: {}", node, noticed),
-           "both obey what is meant for one",
-           fmt::format("switch all but one of them off and give it another number: `address NEW -n {}`",
-                       node)});
+      out.push_back(two_nodes(node, noticed));
 }
 
 void add_heard(std::vector<Finding>& out, const BusPicture& picture, const LinkFacts* facts) {

@@ -74,15 +74,11 @@ Result<std::vector<Finding>> ask_all(session::Session& session) {
   std::string list;
   for (const auto& identity : *found) append(list, fmt::format("{}", identity.node));
   std::vector<Finding> out{{Level::ok, "nodes", fmt::format("answered: node {}", list), {}, {}}};
+  auto* can = session.can();
+  if (can == nullptr) return out;
   for (const auto& identity : *found)
-    if (const auto* can = session.can(); can != nullptr)
-      if (const auto& noticed = session.can()->duplicates().noticed(identity.node); !noticed.empty())
-        out.push_back(
-            {Level::fault, "duplicate-node",
-             fmt::format("two nodes have the number {}: {}", identity.node, noticed),
-             "both obey what is meant for one",
-             fmt::format("switch all but one of them off and give it another number: `address NEW -n {}`",
-                         identity.node)});
+    if (const auto& noticed = can->duplicates().noticed(identity.node); !noticed.empty())
+      out.push_back(two_nodes(identity.node, noticed));
   return out;
 }
 

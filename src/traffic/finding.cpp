@@ -8,6 +8,16 @@ namespace servoctl::traffic {
 using report::Show;
 using report::Value;
 
+Finding two_nodes(std::uint8_t node, std::string_view noticed) {
+  return {
+      Finding::Level::fault, "duplicate-node", fmt::format("two nodes have the number {}: {}", node, noticed),
+      "both obey what is meant for one",
+      fmt::format(
+          "switch all but one of them off and give it another number: `address NEW -n {}`; drives with LSS "
+          "take one by their serial numbers while both are on: `help lss set-node`",
+          node)};
+}
+
 std::string_view name(Finding::Level level) {
   switch (level) {
     case Finding::Level::ok: return "ok";

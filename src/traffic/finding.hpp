@@ -20,6 +20,9 @@ struct Finding {
   std::string mend;   ///< What to do about it, with the command; may be empty.
 };
 
+/// `duplicate-node`, a fault. `noticed`: what showed it, as session::Duplicates words it.
+Finding two_nodes(std::uint8_t node, std::string_view noticed);
+
 std::string_view name(Finding::Level level);  ///< `ok note fault`
 
 /// The findings of one bus or interface.
