@@ -10,6 +10,7 @@
 #include "drive/bitrate.hpp"
 #include "session/lss.hpp"
 #include "session/open_bus.hpp"
+#include "settings/address_change.hpp"
 #include "settings/lss_node.hpp"
 
 namespace servoctl::commands {
@@ -174,6 +175,10 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   const auto choice = wish->all ? Result<LssChoice>(LssChoice{}) : lss_choice(context, arguments);
   if (!choice) return fail(choice.error());
   if (context.dry_run) return lss_planned_frames(*choice, requests_of(*wish));
+  if (wish->delay_ms)
+    if (const auto still = settings::refuse_energised_nodes(*context.session, "the bitrate of its bus");
+        !still)
+      return fail(still.error());
   if (const auto sure = context.confirm(question(*wish)); !sure) return fail(sure.error());
   const auto patience = context.session->options().timeout;
   session::LssDialogue lss(*context.session, patience);
@@ -214,9 +219,9 @@ const Command kLssSetBitrate{
         "The bitrates are those of CiA 305, table 0. The slave is named as for `lss inquire`; --all sets it in every "
         "slave that answers, and tells how many did: count them. It is in force when the slave starts again, if --keep "
         "stored it, or with --activate: then the slaves say nothing for the delay, change, say nothing for as long "
-        "again, and go on. The interface is not changed by this; how is told. A node that keeps its bitrate on a bus "
-        "with another one disturbs everybody, so change all of them or none. For example: lss set-bitrate 500k --all "
-        "--keep --activate 5s.",
+        "again, and go on: refused while a drive that answers on the bus is energised. The interface is not changed "
+        "by this; how is told. A node that keeps its bitrate on a bus with another one disturbs everybody, so change "
+        "all of them or none. For example: lss set-bitrate 500k --all --keep --activate 5s.",
     .parameters = kParameters,
     .needs = Needs::can,
     .effect = Effect::resets,

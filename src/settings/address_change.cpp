@@ -4,12 +4,14 @@
 #include <utility>
 
 #include "canopen/node_id.hpp"
+#include "canopen/node_list.hpp"
 #include "drive/bitrate.hpp"
 #include "drive/cia402.hpp"
 #include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/identify.hpp"
 #include "session/open_bus.hpp"
+#include "session/scan.hpp"
 #include "session/write.hpp"
 #include "settings/own_cob_ids.hpp"
 #include "show/planned_messages.hpp"
@@ -98,7 +100,8 @@ Result<AddressChange> plan_address(show::Desk& desk, std::uint8_t node, const Ad
   if (const auto held = hold_serial(out.identity, wish); !held) return fail(held.error());
   if (const auto single = session::refuse_duplicate(*desk.session, node); !single)
     return fail(single.error());
-  if (const auto still = refuse_energised(*desk.session, node); !still) return fail(still.error());
+  if (const auto still = refuse_energised(*desk.session, node, "its address"); !still)
+    return fail(still.error());
   if (wish.node)
     if (const auto done = add_write(desk, out, rules.node_id, out.to, out.moves()); !done)
       return fail(done.error());
@@ -113,13 +116,21 @@ Result<AddressChange> plan_address(show::Desk& desk, std::uint8_t node, const Ad
   return out;
 }
 
-Result<void> refuse_energised(session::Session& session, std::uint8_t node) {
+Result<void> refuse_energised(session::Session& session, std::uint8_t node, std::string_view what) {
   const auto word = session.upload(node, objects::kStatusword);
   if (!word && word.error().code != Errc::sdo_abort) return fail(word.error());
   if (!word || !drive::is_energised(drive::decode_state(static_cast<std::uint16_t>(load_le(*word)))))
     return {};
-  return fail(drive_error(Errc::refused, node, "it is energised: its address cannot be changed now",
+  return fail(drive_error(Errc::refused, node, fmt::format("it is energised: {} cannot be changed now", what),
                           "`disable` de-energises it; make sure that the load is held"));
+}
+
+Result<void> refuse_energised_nodes(session::Session& session, std::string_view what) {
+  const auto found = session::scan(session, canopen::every_node_id());
+  if (!found) return fail(found.error());
+  for (const auto& identity : *found)
+    if (const auto still = refuse_energised(session, identity.node, what); !still) return fail(still.error());
+  return {};
 }
 
 Result<void> refuse_taken(session::Session& session, std::span<const std::uint8_t> nodes,

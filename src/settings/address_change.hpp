@@ -44,8 +44,10 @@ struct AddressChange {
 Result<AddressChange> plan_address(show::Desk& desk, std::uint8_t node, const AddressWish& wish);
 
 /// Errc::refused when the drive has power on its motor; else as Session::upload(). One that has no statusword
-/// has none.
-Result<void> refuse_energised(session::Session& session, std::uint8_t node);
+/// has none. `what` would change under it: "its address".
+Result<void> refuse_energised(session::Session& session, std::uint8_t node, std::string_view what);
+/// The same of every node that answers a scan(), for what changes the bus under all of them.
+Result<void> refuse_energised_nodes(session::Session& session, std::string_view what);
 
 /// Errc::refused, with what shows it, when somebody uses one of these node-IDs; as nodes_in_use().
 Result<void> refuse_taken(session::Session& session, std::span<const std::uint8_t> nodes,

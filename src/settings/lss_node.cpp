@@ -135,7 +135,8 @@ Result<LssSlave> look_at_lss_slave(session::Session& session, const LssNodeChang
   if (const auto left = lss.leave(); !left) return fail(left.error());
   const bool configured = slave->node && !slave->is_unconfigured();
   if (configured)
-    if (const auto still = refuse_energised(session, *slave->node); !still) return fail(still.error());
+    if (const auto still = refuse_energised(session, *slave->node, "its address"); !still)
+      return fail(still.error());
   if (change.to == kUnconfigured || slave->node == change.to) return slave;
   const std::uint8_t target[] = {change.to};
   if (const auto free = refuse_taken(session, target); !free) return fail(free.error());
