@@ -1,9 +1,9 @@
 #include "cli/parse.hpp"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <limits>
+#include "cli/cli11.hpp"
 
 #include "base/text.hpp"
 #include "command/help_text.hpp"
