@@ -24,9 +24,9 @@ TransferRun::TransferRun(Session& session, std::span<const SdoRequest> requests)
     const auto node = requests[i].node & 0x7FU;
     if (channel_of_node_[node] == kNone) {
       channel_of_node_[node] = static_cast<int>(channels_.size());
-      channels_.push_back({requests[i].node, session.lend_channel(requests[i].node), {}, 0, 0, false, 0});
+      channels_.push_back({requests[i].node, session.lend_channel(requests[i].node)});
     }
-    channels_[static_cast<std::size_t>(channel_of_node_[node])].waiting.push_back(i);
+    channels_[static_cast<std::size_t>(channel_of_node_[node])].requests.push_back(i);
   }
 }
 
@@ -90,9 +90,8 @@ bool TransferRun::advance(Lane& channel) {
 }
 
 void TransferRun::start(Lane& channel) {
-  if (channel.waiting.empty()) return;
-  channel.current = channel.waiting.front();
-  channel.waiting.pop_front();
+  if (channel.started == channel.requests.size()) return;
+  channel.current = channel.requests[channel.started++];
   channel.tries = 0;
   ask(channel, requests_[channel.current].transfer);
 }
@@ -131,20 +130,18 @@ void TransferRun::finish(Lane& channel, Result<Bytes> result) {
 }
 
 void TransferRun::skip_rest(Lane& channel, const Error& reason, bool reads_too) {
-  std::deque<std::size_t> kept;
-  for (const auto index : channel.waiting) {
-    if (!requests_[index].data && !reads_too) {
-      kept.push_back(index);
-      continue;
-    }
+  const auto skipped = [&](std::size_t index) {
+    if (!requests_[index].data && !reads_too) return false;
     Error error = reason;  // Keeps the object that failed: that is the cause.
     error.message = fmt::format("node {}, object {}: skipped because {} failed", requests_[index].node,
                                 to_string(requests_[index].object),
                                 reason.object ? to_string(*reason.object) : "an object");
     results_[index] = fail(std::move(error));
     --open_;
-  }
-  channel.waiting = std::move(kept);
+    return true;
+  };
+  const auto rest = channel.requests.begin() + static_cast<std::ptrdiff_t>(channel.started);
+  channel.requests.erase(std::remove_if(rest, channel.requests.end(), skipped), channel.requests.end());
 }
 
 /// What was asked and what came of it is not known any more, though the transfer itself may have ended: its
@@ -152,9 +149,9 @@ void TransferRun::skip_rest(Lane& channel, const Error& reason, bool reads_too) 
 void TransferRun::fail_all(const Error& error) {
   for (auto& channel : channels_) {
     if (channel.asked) results_[channel.current] = fail(error);
-    for (const auto index : channel.waiting) results_[index] = fail(error);
+    for (; channel.started < channel.requests.size(); ++channel.started)
+      results_[channel.requests[channel.started]] = fail(error);
     channel.asked = false;
-    channel.waiting.clear();
     channel.objects = session_->network().object_channel(channel.node, session_->options().timeout);
   }
   open_ = 0;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <memory>
 #include <span>
 #include <vector>
@@ -20,7 +19,8 @@ class TransferRun {
   struct Lane {
     std::uint8_t node = 0;
     std::unique_ptr<ObjectChannel> objects;
-    std::deque<std::size_t> waiting;  ///< Requests not started yet.
+    std::vector<std::size_t> requests;  ///< In their order, of all nodes' requests.
+    std::size_t started = 0;            ///< How many of them.
     std::size_t current = 0;
     std::uint32_t tries = 0;
     bool asked = false;                     ///< The present request has no result yet.
