@@ -18,8 +18,8 @@ std::string shown(ByteSpan data) {
 
 /// Whether it is unknown what became of the write: no answer, or one that is none. A request that was not
 /// tried carries the object that failed before it.
-bool answer_lost(const Error& error, const SdoRequest& request) {
-  return (error.code == Errc::timeout || error.code == Errc::protocol) && error.object == request.object;
+bool answer_lost(const Error& error, ObjectAddress object) {
+  return (error.code == Errc::timeout || error.code == Errc::protocol) && error.object == object;
 }
 
 Result<Written> after_lost_answer(const SdoRequest& request, const Error& lost, const Result<Bytes>& found) {
@@ -29,7 +29,7 @@ Result<Written> after_lost_answer(const SdoRequest& request, const Error& lost, 
     return fail(about(request, lost.code, fmt::format("{}, and the value cannot be read back", what),
                       "whether the value was written is unknown: read it when the node answers again"));
   if (*found != *request.data)
-    return fail(about(request, lost.code,
+    return fail(about(request, Errc::negative,
                       fmt::format("{}, and it had no effect: the object holds {}", what, shown(*found)),
                       "write it again"));
   Written done;
@@ -56,6 +56,23 @@ Result<Written> after_answer(const SdoRequest& request, const Result<Bytes>& fou
 
 }  // namespace
 
+WriteEnd write_end(const Result<Written>& written, ObjectAddress object) {
+  if (written) return WriteEnd::written;
+  if (answer_lost(written.error(), object)) return WriteEnd::unknown;
+  return written.error().code == Errc::negative ? WriteEnd::other_value : WriteEnd::not_written;
+}
+
+std::string_view state_text(const Result<Written>& written, ObjectAddress object) {
+  switch (write_end(written, object)) {
+    case WriteEnd::not_written: return "not written";
+    case WriteEnd::other_value: return "holds another value";
+    case WriteEnd::unknown: return "not known";
+    case WriteEnd::written: break;
+  }
+  if (written->answer_lost) return "written (the answer was lost, the value was read back)";
+  return written->read_back ? "written, read back" : "written";
+}
+
 std::vector<Result<Written>> write_all(Session& session, std::span<const SdoRequest> requests,
                                        bool read_back) {
   const auto answers = session.transfer(requests);
@@ -67,7 +84,7 @@ std::vector<Result<Written>> write_all(Session& session, std::span<const SdoRequ
       out.emplace_back(Written{});
     else
       out.emplace_back(fail(answers[i].error()));
-    const bool lost = !answers[i] && answer_lost(answers[i].error(), requests[i]);
+    const bool lost = !answers[i] && answer_lost(answers[i].error(), requests[i].object);
     if (!lost && !(answers[i] && read_back)) continue;
     questions.push_back(
         {requests[i].node, requests[i].object, {}, requests[i].transfer, requests[i].data->size()});

@@ -164,13 +164,7 @@ report::List change_row(const Change& change, const Result<session::Written>& wr
   const auto decoded = show::decode_value(reading, change.data);
   const auto effect = drive::meaning(change.target, change.node).effect;
   const auto name = desk.chinese ? change.target.label_zh() : change.target.label();
-  std::string state = "not written";
-  if (written && written->answer_lost)
-    state = "written (the answer was lost, the value was read back)";
-  else if (written && written->read_back)
-    state = "written, read back";
-  else if (written)
-    state = "written";
+  const bool known = session::write_end(written, change.target.address) != session::WriteEnd::unknown;
   return {change.node,
           to_string(change.target.address),
           change.target.address.index,
@@ -183,8 +177,8 @@ report::List change_row(const Change& change, const Result<session::Written>& wr
           report::text_or_null(decoded.unit),
           decoded.familiar,
           decoded.label,
-          state,
-          written.has_value(),
+          session::state_text(written, change.target.address),
+          known ? Value(written.has_value()) : Value(),
           written ? Value(written->read_back.has_value()) : Value(false),
           written ? kept : Value(),
           written ? kept_text(kept) : Value(),

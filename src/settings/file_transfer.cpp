@@ -94,11 +94,7 @@ Result<Value> write_from_file(show::Desk& desk, std::span<const Change> changes,
   auto table = new_table(true);
   table.json_only = std::none_of(written.begin(), written.end(), [](const auto& w) { return w.has_value(); });
   for (std::size_t i = 0; i < changes.size(); ++i) {
-    const bool lost = written[i] && written[i]->answer_lost;
-    const auto* state = !written[i]             ? "not written"
-                        : lost                  ? "written (the answer was lost, the content was read back)"
-                        : written[i]->read_back ? "written, read back"
-                                                : "written";
+    const std::string state(session::state_text(written[i], changes[i].target.address));
     table.rows.push_back(row(changes[i].node, changes[i].target, changes[i].data.size(), file, state,
                              written[i] ? Value() : show::error_record(written[i].error())));
     const auto kept = written[i] ? keeping.kept(changes[i]) : Value();

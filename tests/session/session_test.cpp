@@ -139,6 +139,7 @@ TEST_F(SessionTest, SaysThatItIsUnknownWhetherAWriteArrivedAtANodeThatFellSilent
   ASSERT_FALSE(gone.front());
   EXPECT_EQ(gone.front().error().code, Errc::timeout);
   EXPECT_NE(gone.front().error().message.find("cannot be read back"), std::string::npos);
+  EXPECT_EQ(state_text(gone.front(), request.object), "not known");
   EXPECT_EQ(std::count(bench->sent.begin(), bench->sent.end(), "601#2F60600003000000"), 2);
 }
 
@@ -165,7 +166,8 @@ TEST_F(SessionTest, SaysSoWhenAWriteWithoutAnswerHadNoEffect) {
   const SdoRequest request{1, {0x6060, 0}, Bytes{3}};
   const auto written = write_all(lossy_session, std::span(&request, 1), false);
   ASSERT_FALSE(written.front());
-  EXPECT_EQ(written.front().error().code, Errc::timeout);
+  EXPECT_EQ(written.front().error().code, Errc::negative);
+  EXPECT_EQ(state_text(written.front(), request.object), "holds another value");
   EXPECT_EQ(
       written.front().error().message,
       "node 1, object 0x6060:0: the write was sent, but no answer came, and it had no effect: the object "
