@@ -141,6 +141,7 @@ class Init {
     if (!settings) return context_->errors.push_back(settings.error());
     axis.parameters = std::move(settings->parameters);
     axis.heartbeat_ms = settings->heartbeat_ms;
+    axis.increments = settings->increments;
     if (settings->unstated > 0)
       context_->notices.push_back(fmt::format(
           "node {}: {} settings are not held against the factory's, which the data of {} do not state: "

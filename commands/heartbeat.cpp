@@ -2,7 +2,9 @@
 #include <algorithm>
 
 #include "base/duration.hpp"
+#include "base/number.hpp"
 #include "base/text.hpp"
+#include "cabinet/cabinet.hpp"
 #include "command/command.hpp"
 #include "command/setting_options.hpp"
 #include "settings/heartbeats.hpp"
@@ -26,7 +28,7 @@ constexpr Parameter kSetParameters[] = {
 };
 constexpr Parameter kConsumeParameters[] = {
     {.name = "watch",
-     .help = "NODE=TIME, such as 3=300ms; NODE=off",
+     .help = "NODE=TIME, such as 3=300ms; NODE=off; an axis too",
      .kind = Kind::text,
      .required = true,
      .many = true},
@@ -61,23 +63,42 @@ Result<Value> run_set(Context& context, const Arguments& arguments) {
   return write(context, arguments, changes);
 }
 
-Result<std::vector<settings::HeartbeatWatch>> watches_of(const Arguments& arguments) {
+/// A word that names an axis as the one that names its node. Those who watch it are on its bus.
+Result<std::string> by_node(const Context& context, const std::string& word) {
+  const auto equals = std::min(word.find('='), word.size());
+  const auto name = word.substr(0, equals);
+  const bool of_cabinet = context.session == nullptr || !context.axes.empty();
+  if (!of_cabinet || context.front_end == nullptr || parse_integer(name)) return word;
+  const auto cabinet = context.front_end->cabinet();
+  const auto* axis = cabinet ? (*cabinet)->axis(name) : nullptr;
+  if (axis == nullptr) return word;
+  for (const auto* watching : context.axes)
+    if (watching->bus != axis->bus)
+      return fail(Errc::usage,
+                  fmt::format("axis {} is on bus {}, {} on bus {}: no heartbeat gets from one to the other",
+                              name, axis->bus, watching->name, watching->bus));
+  return fmt::format("{}{}", axis->node, word.substr(equals));
+}
+
+Result<std::vector<settings::HeartbeatWatch>> watches_of(const Context& context, const Arguments& arguments) {
   std::vector<settings::HeartbeatWatch> out;
   for (const auto& word : arguments.all("watch")) {
-    const auto watch = settings::parse_heartbeat_watch(word);
+    const auto of_node = by_node(context, word);
+    if (!of_node) return fail(of_node.error());
+    const auto watch = settings::parse_heartbeat_watch(*of_node);
     if (!watch) return fail(watch.error());
     out.push_back(*watch);
   }
   return out;
 }
 
-Result<void> check_consume(Context&, const Arguments& arguments) {
-  const auto watches = watches_of(arguments);
+Result<void> check_consume(Context& context, const Arguments& arguments) {
+  const auto watches = watches_of(context, arguments);
   return watches ? Result<void>() : fail(watches.error());
 }
 
 Result<Value> run_consume(Context& context, const Arguments& arguments) {
-  const auto watches = watches_of(arguments);
+  const auto watches = watches_of(context, arguments);
   if (!watches) return fail(watches.error());
   std::vector<settings::Change> changes;
   for (const auto node : context.nodes) {

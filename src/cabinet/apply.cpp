@@ -102,7 +102,7 @@ class Applying {
   }
 
   Result<void> ask() const {
-    desk_->tell(report::to_text(plan_record(*cabinet_, looks_)));
+    desk_->tell_value(Value(plan_record(*cabinet_, looks_)));
     std::size_t values = 0;
     std::size_t axes = 0;
     for (const auto& run : runs_) {

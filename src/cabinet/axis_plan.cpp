@@ -7,6 +7,7 @@
 #include "base/pdo_index.hpp"
 #include "cabinet/axis_identity.hpp"
 #include "cabinet/axis_values.hpp"
+#include "drive/bitrate.hpp"
 #include "session/pdo_setup.hpp"
 #include "session/snapshot.hpp"
 #include "session/state_pause.hpp"
@@ -81,7 +82,8 @@ class AxisPlanner {
     if (const auto chosen = choose(std::move(wanted)); !chosen) return fail(chosen.error());
     if (const auto compared = compare_wanted(); !compared) return fail(compared.error());
     if (choice_->unlisted)
-      if (const auto read = read_unlisted(); !read) return fail(read.error());
+      for (const auto look : {&AxisPlanner::read_unlisted, &AxisPlanner::note_bitrate})
+        if (const auto read = (this->*look)(); !read) return fail(read.error());
     return std::move(out_);
   }
 
@@ -190,6 +192,34 @@ class AxisPlanner {
     out_.unlisted_count = comparison.different;
     if (comparison.different > 0) out_.unlisted = table_of(comparison, "present", "factory");
     return {};
+  }
+
+  /// A bitrate that is stored and not that of the file takes the drive off the bus when it starts next. No
+  /// apply writes it: the nodes of a bus change theirs together.
+  Result<void> note_bitrate() {
+    const auto& profile = *desk_->profile;
+    const auto* bus = cabinet_->bus(axis_->bus);
+    const auto object = drive::place_of(profile, profile.rules.nmt.bitrate);
+    if (bus == nullptr || bus->bitrate.empty() || !object || desk_->session->network().is_ring()) return {};
+    const auto rate = drive::parse_bitrate(bus->bitrate);
+    const auto code = rate ? drive::bitrate_code(profile, *rate) : Result<std::int64_t>(fail(rate.error()));
+    if (!code) return {};
+    const auto held = desk_->session->upload(axis_->node, *object);
+    if (!held) return fail(held.error());
+    if (static_cast<std::int64_t>(load_le(*held)) == *code) return {};
+    desk_->notices.push_back(fmt::format(
+        "axis {}: {} is {}, and bus {} runs at {}: when the drive starts next it is not on this bus any more; "
+        "`address --bitrate {} -n {}` sets it",
+        axis_->name, profile.rules.nmt.bitrate, stored_bitrate(profile, load_le(*held)), bus->name,
+        drive::bitrate_text(*rate), bus->bitrate, axis_->name));
+    return {};
+  }
+
+  static std::string stored_bitrate(const drive::Profile& profile, std::uint64_t code) {
+    for (const auto rate : drive::bitrates_of(profile))
+      if (drive::bitrate_code(profile, rate).value_or(-1) == static_cast<std::int64_t>(code))
+        return drive::bitrate_text(rate);
+    return fmt::format("{}, which is no bitrate", code);
   }
 
   show::Desk* desk_;

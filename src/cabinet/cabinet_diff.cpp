@@ -36,23 +36,29 @@ class CabinetDifference {
     for (const auto& axis : axes)
       if (const auto done = compare_axis(axis); !done) return fail(done.error());
     if (different_ > 0)
-      desk_->errors.push_back(
-          make_error(Errc::negative, fmt::format("{} of {} values differ between {} and {}", different_,
-                                                 compared_, a_->title, b_->title)));
+      tell(fmt::format("{} of {} values differ between {} and {}", different_, compared_, a_->title,
+                       b_->title));
+    if (in_one_ > 0)
+      tell(fmt::format("{} in one of {} and {} only",
+                       in_one_ == 1 ? "1 axis stands" : fmt::format("{} axes stand", in_one_), a_->title,
+                       b_->title));
     return Value(Record{{"compared", compared_},
                         {"different", different_},
+                        {"axes_in_one", in_one_, Show::json},
                         {"differences", table_, Show::json},
                         {"table", table_.rows.empty() ? Value() : Value(table_), Show::text, "differences"}});
   }
 
  private:
+  void tell(std::string what) { desk_->errors.push_back(make_error(Errc::negative, std::move(what))); }
+
   Result<void> compare_axis(const std::string& name) {
     const auto has = [&](const CabinetSide& side) {
       return side.backups.count(name) > 0 || (side.file && side.file->axis(name) != nullptr);
     };
     if (!has(*a_) || !has(*b_)) {
-      ++compared_;
-      add(name, "axis", has(*a_) ? "there" : "-", has(*b_) ? "there" : "-");
+      ++in_one_;
+      table_.rows.push_back({name, Value(), "axis", has(*a_) ? "there" : "-", has(*b_) ? "there" : "-"});
       return {};
     }
     if (a_->file && b_->file) return compare_files(name);
@@ -170,6 +176,7 @@ class CabinetDifference {
   Table table_;
   std::size_t compared_ = 0;
   std::size_t different_ = 0;
+  std::size_t in_one_ = 0;  ///< Axes that the other side does not have.
 };
 
 }  // namespace

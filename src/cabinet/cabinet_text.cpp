@@ -8,6 +8,7 @@
 #include "drive/standard_objects.hpp"
 #include "pdo/pdo_changing.hpp"
 #include "pdo/pdo_recipes.hpp"
+#include "session/measure.hpp"
 #include "session/pdo_setup.hpp"
 #include "session/snapshot.hpp"
 #include "settings/backup_formats.hpp"
@@ -84,7 +85,12 @@ std::string axis_text(const std::string& bus, const FoundAxis& axis) {
   if (axis.identity.serial.value_or(0) != 0)
     out += fmt::format("serial = \"0x{:08X}\"\n", *axis.identity.serial);
   out +=
-      "# turn = 131072            # increments of 6064h per motor revolution, if the drive does not tell them\n"
+      axis.increments
+          ? fmt::format(
+                "# The drive tells its {} increments of 6064h per motor revolution: `turn` is not needed.\n",
+                *axis.increments)
+          : "# turn = 131072            # increments of 6064h per motor revolution: the drive does not tell them\n";
+  out +=
       "# gear = \"10:1\"            # motor to output\n"
       "# per_turn = \"20 mm\"       # what the load moves in one turn of the output\n"
       "# limits = { speed = \"300rpm\", torque = \"80%\" }\n";
@@ -117,6 +123,9 @@ Result<FoundSettings> find_settings(show::Desk& desk, std::uint8_t node) {
     else
       out.parameters.push_back(line_of(desk, node, entry.object, *entry.bytes));
   }
+  const session::MeasureQuestion question[] = {{node, drive::Measure::increments_per_turn}};
+  if (const auto turn = session::read_measures(*desk.session, *desk.profile, question).front())
+    out.increments = turn->value;
   if (!other_pdos) return out;
   const auto values = std::move(session::read_pdo_values(*desk.session, desk.profile, nodes).front());
   if (!values) return fail(values.error());

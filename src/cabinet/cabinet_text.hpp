@@ -24,6 +24,7 @@ struct FoundAxis {
   session::Identity identity;
   std::string pdo_file;  ///< With its PDOs, where they are not as from the factory.
   std::optional<std::uint16_t> heartbeat_ms;
+  std::optional<double> increments;  ///< In one turn of the motor, where the drive tells them.
   /// `Pn0202 = 400  # Position loop gain 1`: what is not as from the factory.
   std::vector<std::string> parameters;
 };
@@ -35,6 +36,7 @@ struct FoundSettings {
   std::size_t unstated = 0;  ///< Settings without a factory value to hold them against.
   std::vector<std::string> parameters;
   std::optional<std::uint16_t> heartbeat_ms;
+  std::optional<double> increments;  ///< In one turn of the motor, where the drive tells them.
   std::string pdos;
 };
 Result<FoundSettings> find_settings(show::Desk& desk, std::uint8_t node);

@@ -52,6 +52,8 @@ void RunningLine::tell(std::string_view text) {
   if (!settings_->quiet || !settings_->yes) shell_->console().err(settings_->names.in(text));
 }
 
+std::size_t RunningLine::width() const { return shell_->console().width(); }
+
 std::unique_ptr<show::LiveView> RunningLine::open_view(const show::LiveView::Layout& layout) {
   const auto turn = shell_->take_turn();
   if (settings_->json || settings_->samples) return nullptr;

@@ -25,6 +25,7 @@ class RunningLine final : public show::Audience, public command::FrontEnd {
   void emit(const report::Record& sample, std::string_view line) override;
   void write(std::string_view lines) override;
   void tell(std::string_view text) override;
+  std::size_t width() const override;
   std::unique_ptr<show::LiveView> open_view(const show::LiveView::Layout& layout) override;
   bool is_gone() const override;
 

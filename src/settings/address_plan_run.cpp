@@ -167,12 +167,12 @@ class PlanRun {
         desk_->notices.push_back(
             fmt::format("node {}: it steps aside to a free node-ID first, see the steps", rows_[i].node));
     }
-    desk_->tell(report::to_text(Value(step_table())));
+    desk_->tell_value(Value(step_table()));
     return planned_address(*desk_, sent, options_->each.unlock);
   }
 
   Result<void> ask() const {
-    desk_->tell(report::to_text(Value(step_table())));
+    desk_->tell_value(Value(step_table()));
     return desk_->confirm(fmt::format("Re-address {} drives in {} steps? Each one is restarted.",
                                       rows_.size(), journal_.steps.size() - journal_.done));
   }

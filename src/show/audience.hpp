@@ -28,6 +28,8 @@ class Audience {
   virtual void write(std::string_view lines);
   /// Shows lines at once where people look (stderr), whatever form the result has.
   virtual void tell(std::string_view text);
+  /// Columns of the terminal that it looks at; 0: none, or not known.
+  virtual std::size_t width() const { return 0; }
   /// A table that is updated where it stands, until the answer is destroyed; null where samples are lines or
   /// records: no terminal, `--json`, `-o jsonl`.
   virtual std::unique_ptr<LiveView> open_view(const LiveView::Layout& layout);

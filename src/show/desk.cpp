@@ -18,6 +18,10 @@ void Desk::tell(std::string_view text) const {
   if (audience != nullptr) audience->tell(text);
 }
 
+void Desk::tell_value(const report::Value& value) const {
+  if (audience != nullptr) audience->tell(report::to_text(value, audience->width()));
+}
+
 std::unique_ptr<LiveView> Desk::open_view(const LiveView::Layout& layout) const {
   return audience == nullptr ? nullptr : audience->open_view(layout);
 }

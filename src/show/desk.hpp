@@ -38,6 +38,8 @@ struct Desk {
   void emit(const report::Record& sample, std::string_view line) const;
   void write(std::string_view lines) const;
   void tell(std::string_view text) const;
+  /// The same of what is to be laid out: it fits the terminal.
+  void tell_value(const report::Value& value) const;
   std::unique_ptr<LiveView> open_view(const LiveView::Layout& layout) const;
   bool audience_is_gone() const { return audience != nullptr && audience->is_gone(); }
 };

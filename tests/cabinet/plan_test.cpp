@@ -6,7 +6,9 @@
 #include <fstream>
 #include <set>
 
+#include "drive/bitrate.hpp"
 #include "drive/drive_settings.hpp"
+#include "drive/naming.hpp"
 #include "fleet_checks.hpp"
 #include "session/write.hpp"
 #include "settings/comparison.hpp"
@@ -103,6 +105,33 @@ TEST(CabinetPlan, RefusesAnotherDriveAndTellsBothSerialNumbers) {
   const auto swapped = fleet.look()[2];
   ASSERT_FALSE(swapped.plan);
   EXPECT_EQ(swapped.plan.error().code, Errc::refused);
+}
+
+TEST(CabinetPlan, TellsAStoredBitrateThatIsNotThatOfTheBus) {
+  Fleet fleet(5);
+  std::size_t told = 0;
+  std::size_t silent = 0;
+  for (const auto* rate : {"500k", "250k", "1M"}) {
+    fleet.cabinet.buses[0].bitrate = rate;
+    const auto looks = fleet.look({.unlisted = true});
+    for (std::size_t i = 0; i < fleet.size(); ++i) {
+      const auto& profile = family_of(looks[i].axis->family);
+      const auto object = drive::place_of(profile, profile.rules.nmt.bitrate);
+      const auto code = drive::bitrate_code(profile, drive::parse_bitrate(rate).value());
+      const bool differs =
+          object && code && static_cast<std::int64_t>(load_le(fleet.drive(i).value(*object))) != *code;
+      const auto& notices = looks[i].notices;
+      const bool is_told = std::any_of(notices.begin(), notices.end(), [&](const std::string& notice) {
+        return notice.find(fmt::format("`address --bitrate {} -n {}`", rate, looks[i].axis->name)) !=
+               std::string::npos;
+      });
+      EXPECT_EQ(is_told, differs) << profile.family << " " << rate;
+      EXPECT_EQ(looks[i].plan->different, fleet.look()[i].plan->different);
+      ++(is_told ? told : silent);
+    }
+  }
+  EXPECT_GE(told, 4U);
+  EXPECT_GE(silent, 4U);
 }
 
 TEST(CabinetPlan, TellsWhatTheFileSaysWrongWithItsLine) {
