@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "can/frame.hpp"
+#include "canopen/node_id.hpp"
 
 /// The services of LSS (CiA 305, layer setting services): frames of 8 bytes that give a device its node-ID
 /// and its bitrate without knowing either; the device is told apart by its identity object (1018h).
@@ -15,9 +16,6 @@ namespace servoctl::canopen {
 /// The identifiers of LSS (CiA 305, 5.2).
 inline constexpr std::uint32_t kLssRequest = 0x7E5;  ///< From the master.
 inline constexpr std::uint32_t kLssAnswer = 0x7E4;   ///< From a slave.
-
-/// The node-ID of a device that has none (CiA 305, 3.2).
-inline constexpr std::uint8_t kUnconfigured = 0xFF;
 
 /// The first byte of a frame.
 enum class LssService : std::uint8_t {

@@ -8,7 +8,6 @@
 #include "base/duration.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
-#include "canopen/lss.hpp"
 #include "canopen/node_id.hpp"
 
 namespace servoctl::sim {

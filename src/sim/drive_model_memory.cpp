@@ -1,7 +1,6 @@
 // What a drive model keeps when its power goes, and what it makes of that when it starts.
 #include <algorithm>
 
-#include "canopen/lss.hpp"
 #include "canopen/node_id.hpp"
 #include "canopen/sdo_abort.hpp"
 #include "drive/naming.hpp"
