@@ -16,7 +16,7 @@ using traffic::Findings;
 
 constexpr Parameter kParameters[] = {
     {.name = "bus",
-     .help = "can0, coe:eth0, local:NAME (default: --bus, or all CAN interfaces)",
+     .help = "can0, coe:eth0 (default: --bus, of any kind, or all CAN interfaces)",
      .kind = Kind::bus},
     {.name = "--active", .help = "also ask all nodes for 1000h", .kind = Kind::flag},
     {.name = "--for", .help = "how long to listen to each (default 2s)", .kind = Kind::duration},
@@ -76,7 +76,8 @@ const Command kDoctor{
         "EtherCAT it reads registers only: link, lost frames, error counters of each port and whether they go on "
         "counting, slaves that come and go. On CAN nothing is sent; --active also asks all nodes for 1000h, which "
         "shows who does not talk by itself, and lets a controller find out that nobody acknowledges. What is heard of "
-        "errors is what the driver tells: many USB adapters tell no errors on the wire, only their counters. `note` is "
+        "errors is what the driver tells: many USB adapters tell no errors on the wire, only their counters; one behind "
+        "slcan: tells the flags of its controller and no counters, and acknowledges what it hears. `note` is "
         "worth knowing, `fault` is wrong or very likely so. Exit code 1 when there is a fault.",
     .parameters = kParameters,
     .needs = Needs::nothing,

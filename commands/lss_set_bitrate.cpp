@@ -157,6 +157,13 @@ void tell(Context& context, const BitrateWish& wish) {
         wish.keep
             ? "it holds when the slave is switched off and on: change all nodes of the bus before that"
             : "it is not in force: --activate DELAY puts it in force, --keep stores it for the next start");
+  if (url.starts_with("slcan:")) {
+    if (wish.bitrate)
+      context.notices.push_back(fmt::format(
+          "{} the bus has to be named with that bitrate: slcan:PORT@{}; then `lss inquire` or `scan`",
+          wish.delay_ms ? "now" : "then", *wish.bitrate));
+    return;
+  }
   if (!has_bitrate) {
     context.notices.push_back(fmt::format(
         "{} has no bitrate: slaves that are simulated take it, and nothing follows", context.session->url()));

@@ -142,8 +142,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   if (!length) return fail(length.error());
   auto bitrate = bitrate_option(arguments);
   if (!bitrate) return fail(bitrate.error());
-  if (const auto link = session::link_of(context.session->url()); *bitrate == 0 && link)
-    bitrate = link->bitrate.value_or(0);
+  if (*bitrate == 0) bitrate = session::bitrate_of(context.session->url()).value_or(0);
   traffic::FrameLog log(context, std::move(*filter), arguments.has("--raw"));
   if (arguments.has("--ask"))
     if (const auto asked = ask_mappings(context, log.decoder().pdos()); !asked) return fail(asked.error());

@@ -77,6 +77,7 @@ function __servoctl_buses
     end
     echo sim:
     echo local:
+    echo slcan:/dev/
     echo coe:local:
     echo coe:sim:
 end

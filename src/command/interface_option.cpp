@@ -11,8 +11,12 @@ namespace servoctl::command {
 Result<std::string> interface_argument(const Arguments& arguments) {
   auto name = session::canonical_url(arguments.text("interface"));
   if (name.find(':') != std::string::npos)
-    return fail(Errc::usage, fmt::format("{} is no CAN interface of the kernel", name),
-                "name one, such as can0; `bus status` lists them");
+    return fail(
+        Errc::usage, fmt::format("{} is no CAN interface of the kernel", name),
+        name.starts_with("slcan:")
+            ? "the bitrate of such an adapter stands behind the @ and is set when it is opened: `scan -b "
+              "slcan:PORT@500k`"
+            : "name one, such as can0; `bus status` lists them");
   return name;
 }
 

@@ -6,6 +6,7 @@
 #include "canopen/cob_id.hpp"
 #include "canopen/nmt.hpp"
 #include "session/can_object_channel.hpp"
+#include "session/open_bus.hpp"
 #include "session/tpdo_values.hpp"
 
 namespace servoctl::session {
@@ -141,12 +142,15 @@ Result<TimePoint> CanNetwork::send_sync() {
 Result<void> CanNetwork::on_report(can::ControllerReport report) {
   if (report == can::ControllerReport::bus_off) {
     last_report_.reset();
+    const auto name = canonical_url(url_);
     return fail(
         Errc::bus, url_ + ": " + std::string(can::text(report)),
-        fmt::format(
-            "check bitrate, wiring and termination; then `bus up {}` takes it down and up again (with "
-            "`--restart-ms 100` it comes back by itself)",
-            url_));
+        name.find(':') == std::string::npos
+            ? fmt::format(
+                  "check bitrate, wiring and termination; then `bus up {}` takes it down and up again "
+                  "(with `--restart-ms 100` it comes back by itself)",
+                  name)
+            : "check bitrate, wiring and termination; the next command opens the adapter anew");
   }
   if (report != last_report_) reports_.push_back(report);
   last_report_ = report;

@@ -7,6 +7,7 @@
 #include "base/text.hpp"
 #include "can/local.hpp"
 #include "can/replay.hpp"
+#include "can/slcan.hpp"
 #include "can/socketcan.hpp"
 #include "can/trace.hpp"
 #include "session/open_port.hpp"
@@ -15,8 +16,9 @@
 namespace servoctl::session {
 namespace {
 
-constexpr std::array<std::string_view, 5> kSchemes{"socketcan", "local", "sim", "replay", "coe"};
-constexpr std::string_view kForms = "write can0, coe:eth0, local:NAME, sim:FAMILY@NODE or replay:FILE";
+constexpr std::array<std::string_view, 6> kSchemes{"socketcan", "slcan", "local", "sim", "replay", "coe"};
+constexpr std::string_view kForms =
+    "write can0, slcan:/dev/ttyACM0@500k, coe:eth0, local:NAME, sim:FAMILY@NODE or replay:FILE";
 
 tl::unexpected<Error> no_bus(std::string_view url) {
   auto hint =
@@ -31,6 +33,7 @@ Result<std::unique_ptr<can::Bus>> open_plain(std::string_view url, const BusOpti
   const auto scheme = url.substr(0, colon);
   const auto rest = colon == std::string_view::npos ? std::string_view() : url.substr(colon + 1);
   if (scheme == "socketcan") return can::open_socketcan(rest);
+  if (scheme == "slcan") return can::open_slcan(rest);
   if (scheme == "local") return can::open_local(rest);
   if (scheme == "sim") return sim::open_sim(rest, options.drive_folders, options.clock);
   if (scheme == "replay") return can::open_replay(rest);
@@ -45,8 +48,11 @@ Result<void> check_url(std::string_view url) {
                          ? !url.empty()
                          : std::count(kSchemes.begin(), kSchemes.end(), url.substr(0, colon)) > 0;
   if (!known) return no_bus(url);
-  if (colon + 1 != url.size()) return {};
-  return fail(Errc::usage, fmt::format("'{}' names no bus", url), std::string(kForms));
+  if (colon + 1 == url.size())
+    return fail(Errc::usage, fmt::format("'{}' names no bus", url), std::string(kForms));
+  if (url.substr(0, colon) != "slcan") return {};
+  const auto place = can::parse_slcan_place(url.substr(colon + 1));
+  return place ? Result<void>() : fail(place.error());
 }
 
 Result<std::unique_ptr<can::Bus>> open_bus(std::string_view url, const BusOptions& options) {
@@ -71,6 +77,14 @@ std::string canonical_url(std::string_view url) {
   constexpr std::string_view kPlain = "socketcan:";
   if (url.starts_with(kPlain)) url.remove_prefix(kPlain.size());
   return std::string(url);
+}
+
+std::optional<std::uint32_t> bitrate_of(std::string_view url) {
+  if (const auto link = link_of(url)) return link->bitrate;
+  constexpr std::string_view kSerial = "slcan:";
+  if (!url.starts_with(kSerial)) return std::nullopt;
+  const auto place = can::parse_slcan_place(url.substr(kSerial.size()));
+  return place ? std::optional(place->bitrate) : std::nullopt;
 }
 
 std::optional<can::LinkState> link_of(std::string_view url) {

@@ -166,10 +166,13 @@ Result<report::Value> planned_address(show::Desk& desk, std::span<const AddressC
 
 std::vector<std::string> bitrate_steps(const std::string& bus_url, std::uint32_t bitrate) {
   auto name = session::canonical_url(bus_url);
+  const bool is_serial = name.starts_with("slcan:");
   if (name.find(':') != std::string::npos) name = "can0";
   return {
       "change all nodes of the bus before any of them restarts: one with another bitrate disturbs the rest",
-      "then switch all of them off", fmt::format("`bus up {} --bitrate {}`", name, bitrate),
+      "then switch all of them off",
+      is_serial ? fmt::format("name the bus with its new bitrate: slcan:PORT@{}", bitrate)
+                : fmt::format("`bus up {} --bitrate {}`", name, bitrate),
       "switch them on; `scan` shows who answers"};
 }
 

@@ -36,7 +36,9 @@ Result<void> check_all_bitrates(const Desk& desk) {
   const auto& url = desk.session->url();
   if (desk.session->can() != nullptr && session::canonical_url(url).find(':') == std::string::npos) return {};
   return fail(Errc::usage, fmt::format("--all-bitrates needs a CAN interface, and {} is none", url),
-              "only an interface of the kernel has a bitrate that can be set: can0");
+              url.starts_with("slcan:")
+                  ? "name its bitrates one after the other: `scan -b slcan:PORT@250k`"
+                  : "only an interface of the kernel has a bitrate that can be set: can0");
 }
 
 Result<std::vector<session::Identity>> scan_all_bitrates(Desk& desk, std::span<const std::uint8_t> nodes) {

@@ -20,7 +20,12 @@ constexpr std::uint16_t kWarning = 96;
 
 double in_seconds(Duration time) { return std::chrono::duration<double>(time).count(); }
 
-std::string here(const LinkFacts* facts) { return facts == nullptr ? "IFACE" : facts->name; }
+/// How the bitrate is found, and taken; only an interface of the kernel has commands for it.
+std::string find_bitrate(const LinkFacts* facts) {
+  if (facts == nullptr)
+    return "try the other bitrates: behind the @ of slcan:PORT@500k, or at the interface that this bus leads to";
+  return fmt::format("`bus detect {0}`, and `bus up {0} --bitrate …`", facts->name);
+}
 
 bool sends_in_vain(const BusPicture& picture, const LinkFacts* facts) {
   if (picture.frames() > 0) return false;
@@ -50,9 +55,8 @@ void add_alone(std::vector<Finding>& out, const BusPicture& picture, const LinkF
                          *facts->state.tx_errors),
        "it is alone on the bus: the drives have no power, the plug or the cable is open, or they have another bitrate",
        fmt::format(
-           "check power and plug, and measure 60 ohm between CAN_H and CAN_L with the power off; then `bus detect "
-           "{0}`, and `bus up {0} --bitrate …`",
-           here(facts))});
+           "check power and plug, and measure 60 ohm between CAN_H and CAN_L with the power off; then {}",
+           find_bitrate(facts))});
 }
 
 void add_wrong_bitrate(std::vector<Finding>& out, const BusPicture& picture, const LinkFacts* facts) {
@@ -67,7 +71,8 @@ void add_wrong_bitrate(std::vector<Finding>& out, const BusPicture& picture, con
        fmt::format("somebody talks, and nothing of it can be read: another bitrate{}; seldom CAN_H and CAN_L "
                    "crossed, or no terminator at all",
                    bitrate),
-       fmt::format("`bus detect {}` finds the bitrate", here(facts))});
+       facts != nullptr ? fmt::format("`bus detect {}` finds the bitrate", facts->name)
+                        : find_bitrate(facts)});
 }
 
 void add_damage(std::vector<Finding>& out, const BusPicture& picture, const LinkFacts* facts) {

@@ -194,7 +194,7 @@ Result<Findings> examine_link(const std::string& name, const DoctorOptions& opti
 Result<Findings> examine(session::Session& session, const DoctorOptions& options) {
   if (auto* ring = session.ethercat()) return examine_ring(session, *ring, options);
   Findings out{session.url()};
-  BusPicture picture(0, session.now());
+  BusPicture picture(session::bitrate_of(session.url()).value_or(0), session.now());
   Listener listener;
   listener.on_frame = [&](const can::Frame& frame, TimePoint time) { picture.add(frame, time); };
   if (const auto heard = listen(session, options.listen, listener); !heard) return fail(heard.error());

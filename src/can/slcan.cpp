@@ -1,0 +1,213 @@
+#include "can/slcan.hpp"
+
+#include <poll.h>
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cerrno>
+#include <utility>
+
+#include "base/signal_wait.hpp"
+
+namespace servoctl::can {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// A frame is offered for so long, and its answer waited for.
+constexpr Duration kSlcanSendLimit = std::chrono::seconds(1);
+/// The answer to it; then the adapter is asked whether it is there.
+constexpr Duration kFrameAnswer = milliseconds(300);
+/// Between two offers of a frame that was refused.
+constexpr Duration kOfferPause = milliseconds(2);
+/// For the answer to F; a frame waits for it.
+constexpr Duration kFlagsPatience = milliseconds(100);
+/// Frames that wait here at most.
+constexpr std::size_t kMostReceived = 1U << 20U;
+
+bool is_of_the_protocol(const Frame& frame) {
+  return !frame.error && frame.size <= 8 && frame.id <= (frame.extended ? 0x1FFF'FFFFU : 0x7FFU);
+}
+
+}  // namespace
+
+tl::unexpected<Error> SlcanBus::lose(Error error) {
+  port_.reset();  // A port that is held keeps its number: the adapter would come back under another.
+  lost_ = error;
+  return fail(std::move(error));
+}
+
+Result<void> SlcanBus::write(std::string_view text, TimePoint limit) {
+  if (!port_) return fail(lost_.value_or(make_error(Errc::bug, "an adapter that is not open")));
+  if (auto sent = port_->write(text, limit); !sent) return lose(sent.error());
+  return {};
+}
+
+Result<void> SlcanBus::send(const Frame& frame) {
+  if (!is_of_the_protocol(frame))
+    return fail(Errc::bug,
+                fmt::format("a frame that cannot be sent: {}, {} bytes", to_string(frame), frame.size));
+  const auto line = slcan_line(frame);
+  const auto limit = now() + kSlcanSendLimit;
+  wait_for_flags();
+  for (;;) {
+    answer_ = Answer::none;
+    version_came_ = false;
+    if (const auto sent = write(line, limit); !sent) return sent;
+    if (!acknowledges_ || !acknowledges_frames_) return {};
+    const auto answer = answer_to_frame(limit);
+    if (!answer) return fail(answer.error());
+    if (*answer != Answer::refused) return {};
+    if (now() >= limit)
+      return fail(
+          Errc::bus,
+          fmt::format("the adapter at {} refuses frames: its transmit queue remains full", place_.device),
+          "is another node on the bus, and is the bitrate right?");
+    nap(kOfferPause);
+  }
+}
+
+/// A frame that is not acknowledged: the adapter is asked for its version. It answers in order: when the
+/// version is there and the acknowledge is not, that was lost, or its firmware has none for frames. What
+/// became of the frame is for whoever waits for an answer to it.
+Result<SlcanBus::Answer> SlcanBus::answer_to_frame(TimePoint limit) {
+  auto answer = wait_for_answer(now() + kFrameAnswer);
+  if (!answer || *answer != Answer::none) {
+    frame_was_acknowledged_ = frame_was_acknowledged_ || (answer && *answer == Answer::acknowledged);
+    return answer;
+  }
+  if (!version_.empty()) {
+    if (const auto asked = write("V\r", limit); !asked) return fail(asked.error());
+    answer = wait_for_answer(limit);
+    if (!answer || *answer != Answer::none) return answer;
+  }
+  if (!version_came_ && (frame_was_acknowledged_ || !version_.empty()))
+    return lose(make_error(Errc::bus,
+                           fmt::format("the adapter at {} does not answer any more", place_.device),
+                           "unplug it and plug it in again"));
+  if (frame_was_acknowledged_)
+    ++unanswered_;
+  else
+    acknowledges_frames_ = false;
+  return Answer::none;
+}
+
+/// Its answer would be taken for that of the frame.
+void SlcanBus::wait_for_flags() {
+  while (flags_asked_ && port_ && now() < *flags_asked_ + kFlagsPatience)
+    if (wait_for(port_->get(), POLLIN, *flags_asked_ + kFlagsPatience) == Wake::ready && !fill()) return;
+  miss_flags();
+}
+
+void SlcanBus::miss_flags() {
+  constexpr int kMostMissed = 3;
+  if (!flags_asked_) return;
+  flags_asked_.reset();
+  if (++flags_missed_ == kMostMissed) knows_flags_ = false;
+}
+
+Result<SlcanBus::Answer> SlcanBus::wait_for_answer(TimePoint limit) {
+  is_offering_ = true;
+  while (answer_ == Answer::none && !version_came_ && now() < limit) {
+    if (wait_for(port_->get(), POLLIN, limit) != Wake::ready) continue;
+    if (const auto filled = fill(); !filled) return fail(filled.error());
+  }
+  is_offering_ = false;
+  return answer_;
+}
+
+Result<void> SlcanBus::fill() {
+  std::string bytes;
+  const auto got = port_->read(bytes);
+  const auto time = now();
+  reader_.put(bytes);
+  while (const auto line = reader_.take()) on_line(*line, time);
+  if (!got) return lose(got.error());
+  return {};
+}
+
+void SlcanBus::on_line(const SlcanLine& line, TimePoint time) {
+  const auto take = [&](const Frame& frame, TimePoint at) {
+    if (inbox_.size() < kMostReceived) inbox_.push_back({frame, at});
+  };
+  switch (line.kind) {
+    case SlcanLine::Kind::acknowledged:
+    case SlcanLine::Kind::refused:
+      return on_answer(line.kind == SlcanLine::Kind::refused ? Answer::refused : Answer::acknowledged);
+    case SlcanLine::Kind::flags:
+      flags_asked_.reset();
+      flags_missed_ = 0;
+      // The first ones are of a time before this.
+      if (!std::exchange(flags_are_old_, false))
+        for (const auto& report : slcan_reports(line.flags)) take(report, time);
+      return;
+    case SlcanLine::Kind::frame:
+      return take(line.frame, line.stamp ? stamps_.time(milliseconds(*line.stamp), time) : time);
+    case SlcanLine::Kind::report: return take(line.frame, time);
+    case SlcanLine::Kind::damaged: ++damaged_; return;
+    case SlcanLine::Kind::text: version_came_ = version_came_ || line.text == version_; return;
+  }
+}
+
+/// To F from an adapter that does not know it; or to the frame.
+void SlcanBus::on_answer(Answer answer) {
+  if (flags_asked_) {
+    flags_asked_.reset();
+    knows_flags_ = false;
+    return;
+  }
+  answer_ = answer;
+  if (answer == Answer::refused && !is_offering_) ++refused_late_;
+}
+
+Result<void> SlcanBus::ask_for_flags() {
+  flags_due_ = kNever;
+  miss_flags();
+  if (!knows_flags_) return {};
+  flags_due_ = now() + kFlagsEvery;
+  const auto sent = write("F\r", now() + kFlagsPatience);
+  if (sent) flags_asked_ = now();
+  return sent;
+}
+
+Result<std::optional<Frame>> SlcanBus::receive(TimePoint deadline) {
+  for (;;) {
+    if (!inbox_.empty()) {
+      const auto [frame, time] = inbox_.front();
+      inbox_.pop_front();
+      arrived_ = time;
+      return std::optional(frame);
+    }
+    if (!port_) return fail(lost_.value_or(make_error(Errc::bug, "an adapter that is not open")));
+    if (now() >= flags_due_)
+      if (const auto asked = ask_for_flags(); !asked) return fail(asked.error());
+    const auto woken = wait_or_signal(port_->get(), POLLIN, std::min(deadline, flags_due_));
+    if (woken == Wake::interrupted) return std::optional<Frame>();
+    if (woken == Wake::elapsed) {
+      if (now() >= deadline) return std::optional<Frame>();
+      continue;
+    }
+    // What came before the loss is given first.
+    if (const auto filled = fill(); !filled && inbox_.empty()) return fail(filled.error());
+  }
+}
+
+std::vector<std::string> SlcanBus::take_notices() {
+  std::vector<std::string> out;
+  if (const auto count = std::exchange(damaged_, 0); count > 0)
+    out.push_back(fmt::format(
+        "{}: {} damaged line{} left out: bytes were lost between adapter and computer, and frames with them",
+        place_.device, count, count == 1 ? " was" : "s were"));
+  if (const auto count = std::exchange(unanswered_, 0); count > 0)
+    out.push_back(fmt::format("{}: {} frame{} not acknowledged by the adapter: whether {} sent is not known",
+                              place_.device, count, count == 1 ? " was" : "s were",
+                              count == 1 ? "it was" : "they were"));
+  if (const auto count = std::exchange(refused_late_, 0); count > 0)
+    out.push_back(fmt::format("{}: the adapter refused {} frame{} after a while: {} not sent", place_.device,
+                              count, count == 1 ? "" : "s", count == 1 ? "it was" : "they were"));
+  return out;
+}
+
+TimePoint SlcanBus::next_event() const { return inbox_.empty() ? flags_due_ : TimePoint::min(); }
+
+}  // namespace servoctl::can

@@ -1,0 +1,124 @@
+// How the bus behind an adapter is opened, closed and opened again.
+#include <poll.h>
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <utility>
+
+#include "base/signal_wait.hpp"
+#include "can/slcan.hpp"
+
+namespace servoctl::can {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// For one command.
+constexpr Duration kCommandLimit = std::chrono::seconds(1);
+/// For the last word.
+constexpr Duration kClosePatience = milliseconds(200);
+/// Between two tries to open a port that is gone.
+constexpr Duration kPortPause = milliseconds(20);
+
+}  // namespace
+
+SlcanBus::~SlcanBus() { close(); }
+
+/// An adapter that stays open goes on acknowledging the frames of others, and floods its next program.
+void SlcanBus::close() {
+  if (!port_) return;
+  const auto limit = now() + kClosePatience;
+  answer_ = Answer::none;
+  flags_asked_.reset();
+  version_came_ = false;
+  if (port_->write("C\r", limit) && acknowledges_)
+    while (answer_ == Answer::none && wait_for(port_->get(), POLLIN, limit) == Wake::ready && fill()) {
+    }
+  if (port_) port_->drain(limit);
+  port_.reset();
+}
+
+Result<void> SlcanBus::open(TimePoint limit, bool ends_by_signal) {
+  auto port = SerialPort::open(place_.device, place_.baud);
+  if (!port) return fail(port.error());
+  port_.emplace(std::move(*port));
+  reader_.reset();
+  stamps_.reset();
+  inbox_.clear();
+  flags_asked_.reset();
+  acknowledges_frames_ = true;
+  frame_was_acknowledged_ = false;
+  if (auto done = hand_shake(limit, ends_by_signal); !done) {
+    lost_ = done.error();
+    close();
+    return done;
+  }
+  lost_.reset();
+  knows_flags_ = acknowledges_;
+  flags_due_ = knows_flags_ ? now() : kNever;
+  flags_are_old_ = true;
+  flags_missed_ = 0;
+  return {};
+}
+
+Result<void> SlcanBus::hand_shake(TimePoint limit, bool ends_by_signal) {
+  SlcanOpening opening(slcan_bitrate_digit(place_.bitrate).value_or('6'), mode_, now());
+  while (!opening.is_done()) {
+    if (const auto sent = write(opening.take_text(), now() + kCommandLimit); !sent) return sent;
+    const auto end = std::min(opening.deadline(), limit);
+    const auto woken =
+        ends_by_signal ? wait_or_signal(port_->get(), POLLIN, end) : wait_for(port_->get(), POLLIN, end);
+    if (woken == Wake::interrupted && ends_by_signal) return fail(Errc::interrupted, "interrupted");
+    if (woken == Wake::ready) {
+      std::string bytes;
+      if (const auto got = port_->read(bytes); !got) return got;
+      reader_.put(bytes);
+      while (const auto line = reader_.take()) opening.on_line(*line, now());
+    }
+    opening.on_time(now());
+    if (now() >= limit) break;
+  }
+  acknowledges_ = opening.acknowledges();
+  version_ = opening.version();
+  return judge(opening);
+}
+
+Result<void> SlcanBus::judge(const SlcanOpening& opening) const {
+  switch (opening.state()) {
+    case SlcanOpening::State::open: return {};
+    case SlcanOpening::State::refused_bitrate:
+      return fail(Errc::bus,
+                  fmt::format("the adapter at {} refuses {} kbit/s", place_.device, place_.bitrate / 1000),
+                  "its manual lists the bitrates that it has");
+    case SlcanOpening::State::refused_opening:
+      return fail(Errc::bus, fmt::format("the adapter at {} does not open its bus", place_.device),
+                  "unplug it and plug it in again");
+    default: break;
+  }
+  return fail(
+      Errc::bus,
+      fmt::format("no adapter answers at {}{}", place_.device,
+                  opening.heard_something() ? ", though something talks there" : ""),
+      "is it one with the LAWICEL protocol (slcan)? A real serial line needs the adapter's baud rate as well: "
+      "slcan:/dev/ttyUSB0@500k,57600");
+}
+
+Result<void> SlcanBus::recover(TimePoint deadline) {
+  close();
+  for (;;) {
+    // So that an adapter which answers late has a chance.
+    auto opened = open(std::max(deadline, now() + SlcanOpening::kPatience * 2), false);
+    if (opened || now() >= deadline) return opened;
+    nap(std::min<Duration>(kPortPause, deadline - now()));
+  }
+}
+
+Result<std::unique_ptr<Bus>> open_slcan(std::string_view place, SlcanOpening::Mode mode) {
+  auto parsed = parse_slcan_place(place);
+  if (!parsed) return fail(parsed.error());
+  auto bus = std::make_unique<SlcanBus>(std::move(*parsed), mode);
+  if (const auto opened = bus->open(kNever, true); !opened) return fail(opened.error());
+  return bus;
+}
+
+}  // namespace servoctl::can

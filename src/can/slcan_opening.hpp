@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "base/time.hpp"
+#include "can/slcan_codec.hpp"
+
+namespace servoctl::can {
+
+/// How an adapter is opened: C, V, Sn, then O, or L to listen only. Lines and the time go in, text to send
+/// comes out; no I/O.
+///
+/// The adapter may be in any state: open, because its last program was killed, and full of frames; starting,
+/// because its port was opened; half through a line. C is the first word, and never an empty line: some
+/// firmware sends its last frame again for one. V comes before what matters because its answer is a text:
+/// when it is there, every acknowledge before it is there too, however late. Firmware that acknowledges
+/// nothing is known by its version, twice the same. Each round waits twice as long as the one before.
+class SlcanOpening {
+ public:
+  enum class Mode : std::uint8_t { normal, listen_only };
+  enum class State : std::uint8_t {
+    closing,          ///< C
+    asking,           ///< V
+    asking_again,     ///< V, where nothing was acknowledged.
+    setting_bitrate,  ///< Sn
+    opening,          ///< O or L
+    open,
+    no_answer,  ///< Nothing that an adapter would say.
+    refused_bitrate,
+    refused_opening,
+  };
+  static constexpr int kRounds = 3;
+  /// For one answer in the first round.
+  static constexpr Duration kPatience = std::chrono::milliseconds(300);
+  /// Between two commands to firmware that acknowledges nothing.
+  static constexpr Duration kPause = std::chrono::milliseconds(10);
+
+  /// `bitrate` is the digit of Sn.
+  SlcanOpening(char bitrate, Mode mode, TimePoint now);
+
+  void on_line(const SlcanLine& line, TimePoint now);
+  void on_time(TimePoint now);
+  /// What is to be sent now; empty when nothing is.
+  std::string take_text();
+  TimePoint deadline() const { return deadline_; }
+
+  State state() const { return state_; }
+  bool is_done() const { return state_ >= State::open; }
+  /// Whether commands are acknowledged.
+  bool acknowledges() const { return acknowledges_; }
+  /// What it answered to V; empty where it did not.
+  const std::string& version() const { return version_; }
+  /// Something came that was neither a frame nor an answer: another device, or another baud rate.
+  bool heard_something() const { return heard_something_; }
+
+ private:
+  void enter(State state, TimePoint now);
+  void on_acknowledge(TimePoint now);
+  void on_refusal(TimePoint now);
+  void on_text(const std::string& text, TimePoint now);
+  void begin_round(TimePoint now);
+
+  char bitrate_;
+  Mode mode_;
+  State state_ = State::closing;
+  TimePoint deadline_ = kNever;
+  std::string to_send_;
+  std::string version_;
+  int round_ = 0;
+  bool acknowledges_ = false;
+  bool heard_something_ = false;
+};
+
+}  // namespace servoctl::can
