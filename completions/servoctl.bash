@@ -258,7 +258,7 @@ _servoctl_words() {
           1) [ -e "$interface/phy80211" ] || printf '%s\n' "coe:${interface##*/}" ;;
         esac
       done
-      printf '%s\n' sim: local: slcan:/dev/ coe:local: coe:sim: ;;
+      printf '%s\n' sim: local: slcan:/dev/ socketcand:// coe:local: coe:sim: ;;
   esac
 }
 

@@ -50,6 +50,7 @@ function __servoctl_buses
     echo sim:
     echo local:
     echo slcan:/dev/
+    echo socketcand://
     echo coe:local:
     echo coe:sim:
 end
@@ -62,7 +63,7 @@ function __servoctl_sheets
 end
 
 complete -c servoctl -f
-complete -c servoctl -l bus -s b -x -a '(__servoctl_buses)' -d 'bus: can0, slcan:/dev/ttyACM0@500k, local:NAME, sim:gsd600@1 (default $SERVOCTL_BUS)'
+complete -c servoctl -l bus -s b -x -a '(__servoctl_buses)' -d 'bus: can0, slcan:PORT@500k, socketcand://HOST/can0, local:NAME, sim:gsd600@1 (default $SERVOCTL_BUS)'
 complete -c servoctl -l node -s n -x -a 'all' -d 'node-ID, a list 1,3,5-8, axes by name, or all (default $SERVOCTL_NODE)'
 complete -c servoctl -l drive -s d -x -a '(servoctl completion families 2>/dev/null; __servoctl_sheets)' -d 'drive family, an .eds, .dcf or .xml file, or online: the drive itself (default $SERVOCTL_DRIVE)'
 complete -c servoctl -l cabinet -r -F -d 'cabinet file: axes by name (default $SERVOCTL_CABINET, or cabinet.toml here or above)'

@@ -189,6 +189,7 @@ Result<std::optional<Frame>> SlcanBus::receive(TimePoint deadline) {
     }
     // What came before the loss is given first.
     if (const auto filled = fill(); !filled && inbox_.empty()) return fail(filled.error());
+    if (inbox_.empty() && now() >= deadline) return std::optional<Frame>();
   }
 }
 

@@ -73,7 +73,13 @@ Result<void> SlcanBus::hand_shake(TimePoint limit, bool ends_by_signal) {
       std::string bytes;
       if (const auto got = port_->read(bytes); !got) return got;
       reader_.put(bytes);
-      while (const auto line = reader_.take()) opening.on_line(*line, now());
+      while (const auto line = reader_.take()) {
+        // Behind the last acknowledge stand the first frames.
+        if (opening.is_done())
+          on_line(*line, now());
+        else
+          opening.on_line(*line, now());
+      }
     }
     opening.on_time(now());
     if (now() >= limit) break;

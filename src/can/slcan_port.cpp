@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <linux/serial.h>
+#include <linux/tty.h>
 #include <poll.h>
 #include <sys/file.h>
 #include <sys/ioctl.h>
@@ -173,6 +174,9 @@ Result<SerialPort> SerialPort::open(const std::string& device, std::uint32_t bau
   if (!port) return serial_not_opened(device, errno);
   termios before{};
   if (::tcgetattr(port.get(), &before) != 0) return serial_not_opened(device, errno);
+  // The kernel's own driver for such adapters (slcand) sits on the port as a line discipline.
+  int discipline = N_TTY;
+  if (::ioctl(port.get(), TIOCGETD, &discipline) == 0 && discipline != N_TTY) return serial_in_use(device);
   // TIOCEXCL holds back ordinary users and other programs, the lock another servoctl of root.
   if (::flock(port.get(), LOCK_EX | LOCK_NB) != 0) return serial_not_opened(device, errno);
   if (::ioctl(port.get(), TIOCEXCL) != 0) return serial_not_opened(device, errno);

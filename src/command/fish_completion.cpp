@@ -78,6 +78,7 @@ function __servoctl_buses
     echo sim:
     echo local:
     echo slcan:/dev/
+    echo socketcand://
     echo coe:local:
     echo coe:sim:
 end

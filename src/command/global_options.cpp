@@ -8,7 +8,8 @@ constexpr std::string_view kLanguages[] = {"en", "zh"};
 
 constexpr Parameter kGlobal[] = {
     {.name = "--bus",
-     .help = "bus: can0, slcan:/dev/ttyACM0@500k, local:NAME, sim:gsd600@1 (default $SERVOCTL_BUS)",
+     .help =
+         "bus: can0, slcan:PORT@500k, socketcand://HOST/can0, local:NAME, sim:gsd600@1 (default $SERVOCTL_BUS)",
      .kind = Kind::bus,
      .short_name = "-b"},
     {.name = "--node",

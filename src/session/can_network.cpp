@@ -220,6 +220,11 @@ Result<void> CanNetwork::request_state(std::uint8_t node, NodeState state) {
 
 Result<void> CanNetwork::ask_state(std::uint8_t node) { return send(canopen::guarding_request(node)); }
 
+bool CanNetwork::carries(LifeSign::Kind sign) const {
+  return sign == LifeSign::Kind::heartbeat ||
+         (sign == LifeSign::Kind::guarding && carries_remote_frames(url_));
+}
+
 Result<void> CanNetwork::arm_watchdog(std::uint8_t node, const LifeSign& sign) {
   if (sign.kind == LifeSign::Kind::heartbeat)
     produce_heartbeat(sign.producer, sign.period);

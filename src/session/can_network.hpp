@@ -57,7 +57,8 @@ class CanNetwork final : public Network {
   /// By node guarding: a node that guards its master's life begins to do so.
   Result<void> ask_state(std::uint8_t node) override;
   void doubt_state(std::uint8_t node) override { watch_.on_command(node); }
-  bool carries(LifeSign::Kind sign) const override { return sign != LifeSign::Kind::process_data; }
+  /// No guarding where there are no remote frames.
+  bool carries(LifeSign::Kind sign) const override;
   Result<void> arm_watchdog(std::uint8_t node, const LifeSign& sign) override;
   void disarm_watchdog(std::uint8_t node) override;
   void send_last_word(std::uint8_t node, ObjectAddress object, std::uint16_t value) noexcept override;

@@ -9,6 +9,7 @@
 #include "can/replay.hpp"
 #include "can/slcan.hpp"
 #include "can/socketcan.hpp"
+#include "can/socketcand.hpp"
 #include "can/trace.hpp"
 #include "session/open_port.hpp"
 #include "sim/cell.hpp"
@@ -16,9 +17,10 @@
 namespace servoctl::session {
 namespace {
 
-constexpr std::array<std::string_view, 6> kSchemes{"socketcan", "slcan", "local", "sim", "replay", "coe"};
+constexpr std::array<std::string_view, 7> kSchemes{"socketcan", "slcan",  "socketcand", "local",
+                                                   "sim",       "replay", "coe"};
 constexpr std::string_view kForms =
-    "write can0, slcan:/dev/ttyACM0@500k, coe:eth0, local:NAME, sim:FAMILY@NODE or replay:FILE";
+    "write can0, slcan:/dev/ttyACM0@500k, socketcand://HOST/can0, coe:eth0, local:NAME, sim:FAMILY@NODE or replay:FILE";
 
 tl::unexpected<Error> no_bus(std::string_view url) {
   auto hint =
@@ -34,6 +36,7 @@ Result<std::unique_ptr<can::Bus>> open_plain(std::string_view url, const BusOpti
   const auto rest = colon == std::string_view::npos ? std::string_view() : url.substr(colon + 1);
   if (scheme == "socketcan") return can::open_socketcan(rest);
   if (scheme == "slcan") return can::open_slcan(rest);
+  if (scheme == "socketcand") return can::open_socketcand(rest);
   if (scheme == "local") return can::open_local(rest);
   if (scheme == "sim") return sim::open_sim(rest, options.drive_folders, options.clock);
   if (scheme == "replay") return can::open_replay(rest);
@@ -50,9 +53,13 @@ Result<void> check_url(std::string_view url) {
   if (!known) return no_bus(url);
   if (colon + 1 == url.size())
     return fail(Errc::usage, fmt::format("'{}' names no bus", url), std::string(kForms));
-  if (url.substr(0, colon) != "slcan") return {};
-  const auto place = can::parse_slcan_place(url.substr(colon + 1));
-  return place ? Result<void>() : fail(place.error());
+  const auto scheme = url.substr(0, colon);
+  const auto rest = url.substr(colon + 1);
+  if (scheme == "slcan")
+    if (const auto place = can::parse_slcan_place(rest); !place) return fail(place.error());
+  if (scheme == "socketcand")
+    if (const auto place = can::parse_socketcand_place(rest); !place) return fail(place.error());
+  return {};
 }
 
 Result<std::unique_ptr<can::Bus>> open_bus(std::string_view url, const BusOptions& options) {
@@ -86,6 +93,8 @@ std::optional<std::uint32_t> bitrate_of(std::string_view url) {
   const auto place = can::parse_slcan_place(url.substr(kSerial.size()));
   return place ? std::optional(place->bitrate) : std::nullopt;
 }
+
+bool carries_remote_frames(std::string_view url) { return !url.starts_with("socketcand:"); }
 
 std::optional<can::LinkState> link_of(std::string_view url) {
   const auto colon = url.find(':');

@@ -23,9 +23,9 @@ struct BusOptions {
   sim::SimBus::Clock clock = sim::SimBus::Clock::real_time;
 };
 
-/// Opens a bus by URL: `can0` or `socketcan:can0`, `slcan:/dev/ttyACM0@500k`, `local:NAME`,
-/// `sim:gsd600@1,gsd600@2?state=FILE`, `replay:FILE`. Errc::usage for a URL that is not understood, Errc::bus
-/// with the mending command for an interface that is missing or down.
+/// Opens a bus by URL: `can0` or `socketcan:can0`, `slcan:/dev/ttyACM0@500k`, `socketcand://HOST/can0`,
+/// `local:NAME`, `sim:gsd600@1,gsd600@2?state=FILE`, `replay:FILE`. Errc::usage for a URL that is not
+/// understood, Errc::bus with the mending command for an interface that is missing or down.
 Result<std::unique_ptr<can::Bus>> open_bus(std::string_view url, const BusOptions& options);
 
 /// Whether it may be the URL of a bus, before anything is opened: Errc::usage for a kind that there is not,
@@ -34,6 +34,9 @@ Result<void> check_url(std::string_view url);
 
 /// The URL in the one form in which the same bus has the same: `socketcan:can0` is `can0`.
 std::string canonical_url(std::string_view url);
+
+/// Whether remote frames can be sent on it: the protocol of socketcand has none.
+bool carries_remote_frames(std::string_view url);
 
 /// The bitrate of a bus in bit/s, where its URL or the kernel tells it.
 std::optional<std::uint32_t> bitrate_of(std::string_view url);

@@ -148,10 +148,9 @@ TEST(CabinetFile, TellsWithLineAndColumnWhatItCannotUse) {
             "50k, 100k, 125k, 250k, 500k, 800k or 1M)");
   EXPECT_TRUE(refused("[bus.main]\nurl = \"can0\"\nbitrate = \"501k\"\n")
                   .starts_with("cabinet.toml:3:11: 'bitrate' cannot be \"501k\""));
-  EXPECT_EQ(
-      refused("[bus.main]\nurl = \"local:\"\n"),
-      "cabinet.toml:2:7: bus main: 'local:' names no bus|write can0, slcan:/dev/ttyACM0@500k, coe:eth0, local:NAME, "
-      "sim:FAMILY@NODE or replay:FILE");
+  EXPECT_EQ(refused("[bus.main]\nurl = \"local:\"\n"),
+            "cabinet.toml:2:7: bus main: 'local:' names no bus|write can0, slcan:/dev/ttyACM0@500k, "
+            "socketcand://HOST/can0, coe:eth0, local:NAME, sim:FAMILY@NODE or replay:FILE");
   EXPECT_EQ(refused("[bus.main]\nurl = \"lokal:x\"\n"),
             "cabinet.toml:2:7: bus main: 'lokal:x' is not a bus|did you mean local?");
   EXPECT_EQ(refused("[bus.main]\nurl = \"can0\n").substr(0, 21), "cabinet.toml:2:12: Er");

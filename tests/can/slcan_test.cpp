@@ -71,6 +71,14 @@ TEST(Slcan, OpensSendsReceivesAndCloses) {
   EXPECT_EQ(heard, (std::vector<std::string>{"C", "V", "S6", "O", "t60184041600000000000", "r7011", "C"}));
 }
 
+TEST(Slcan, FramesThatComeWithTheLastAcknowledgeAreNotLost) {
+  ScriptedAdapter adapter([](const std::string& command) {
+    return command == "O" ? "\rt5811AA\r" : ScriptedAdapter::good(command);
+  });
+  const auto bus = open_at(adapter);
+  EXPECT_EQ(next_frame(*bus), slcan_frame("581#AA"));
+}
+
 TEST(Slcan, SendsNoFrameThatIsNone) {
   ScriptedAdapter adapter;
   const auto bus = open_at(adapter);

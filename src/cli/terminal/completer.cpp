@@ -71,7 +71,7 @@ class Candidates {
   }
   void add_buses() {
     for (const auto& interface : can::can_interfaces()) add(interface);
-    for (const auto word : {"sim:", "local:", "slcan:/dev/"}) add(word);
+    for (const auto word : {"sim:", "local:", "slcan:/dev/", "socketcand://"}) add(word);
     for (const auto& url : session::ethercat_urls()) add(url);
   }
 

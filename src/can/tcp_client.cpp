@@ -1,0 +1,143 @@
+#include "can/tcp_client.hpp"
+
+#include <netdb.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/socket.h>
+
+#include <fmt/format.h>
+#include <array>
+#include <cerrno>
+#include <memory>
+#include <optional>
+
+namespace servoctl::can {
+namespace {
+
+/// The kernel gives a connection up after so long without an acknowledge.
+constexpr int kSilenceMs = 5'000;
+
+struct FreeAddresses {
+  void operator()(addrinfo* list) const { ::freeaddrinfo(list); }
+};
+using Addresses = std::unique_ptr<addrinfo, FreeAddresses>;
+
+Result<Addresses> addresses_of(const std::string& host, std::uint16_t port) {
+  addrinfo wanted{};
+  wanted.ai_family = AF_UNSPEC;
+  wanted.ai_socktype = SOCK_STREAM;
+  wanted.ai_flags = AI_NUMERICSERV;
+  addrinfo* list = nullptr;
+  const int error = ::getaddrinfo(host.c_str(), std::to_string(port).c_str(), &wanted, &list);
+  if (error == 0) return Addresses(list);
+  return fail(Errc::bus,
+              fmt::format("the host {} is not found: {}", host,
+                          error == EAI_SYSTEM ? system_text(errno) : std::string(::gai_strerror(error))),
+              "check its name, or write its address");
+}
+
+void set_tcp_option(int socket, int level, int option, int value) {
+  (void)::setsockopt(socket, level, option, &value, sizeof value);
+}
+
+void configure_connection(int socket) {
+  set_tcp_option(socket, IPPROTO_TCP, TCP_NODELAY, 1);
+  set_tcp_option(socket, SOL_SOCKET, SO_KEEPALIVE, 1);
+  set_tcp_option(socket, IPPROTO_TCP, TCP_KEEPIDLE, 2);
+  set_tcp_option(socket, IPPROTO_TCP, TCP_KEEPINTVL, 1);
+  set_tcp_option(socket, IPPROTO_TCP, TCP_KEEPCNT, 3);
+  set_tcp_option(socket, IPPROTO_TCP, TCP_USER_TIMEOUT, kSilenceMs);
+}
+
+/// What became of a connection that was begun: 0 when it stands, else the error; ETIMEDOUT at the limit,
+/// EINTR by a signal.
+int await_connection(int socket, TimePoint limit, bool ends_by_signal) {
+  for (;;) {
+    const auto woken =
+        ends_by_signal ? wait_or_signal(socket, POLLOUT, limit) : wait_for(socket, POLLOUT, limit);
+    if (woken == Wake::interrupted && ends_by_signal) return EINTR;
+    if (woken == Wake::elapsed) return ETIMEDOUT;
+    if (woken == Wake::interrupted) continue;
+    int error = 0;
+    socklen_t size = sizeof error;
+    return ::getsockopt(socket, SOL_SOCKET, SO_ERROR, &error, &size) == 0 ? error : errno;
+  }
+}
+
+int try_address(const addrinfo& address, Descriptor& out, TimePoint limit, bool ends_by_signal) {
+  Descriptor socket(::socket(address.ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  if (!socket) return errno;
+  configure_connection(socket.get());
+  if (::connect(socket.get(), address.ai_addr, address.ai_addrlen) != 0) {
+    if (errno != EINPROGRESS) return errno;
+    if (const int error = await_connection(socket.get(), limit, ends_by_signal); error != 0) return error;
+  }
+  out = std::move(socket);
+  return 0;
+}
+
+tl::unexpected<Error> not_connected(const std::string& server, int error) {
+  if (error == EINTR) return fail(Errc::interrupted, "interrupted");
+  if (error == ECONNREFUSED)
+    return fail(Errc::bus, fmt::format("nothing listens at {}", server),
+                "is the server started there, for this network and port? `socketcand -i can0 -l eth0`");
+  if (error == ETIMEDOUT)
+    return fail(Errc::bus, fmt::format("{} does not answer", server),
+                "is it switched on, in this network, and does a firewall let this port through?");
+  return fail(Errc::bus, fmt::format("cannot reach {}: {}", server, system_text(error)),
+              "check the network: `ip route get ADDRESS`");
+}
+
+}  // namespace
+
+Result<TcpClient> TcpClient::connect(const std::string& host, std::uint16_t port, const std::string& server,
+                                     TimePoint limit, bool ends_by_signal) {
+  const auto addresses = addresses_of(host, port);
+  if (!addresses) return fail(addresses.error());
+  int error = EADDRNOTAVAIL;
+  for (const auto* at = addresses->get(); at != nullptr; at = at->ai_next) {
+    Descriptor socket;
+    error = try_address(*at, socket, limit, ends_by_signal);
+    if (error == 0) return TcpClient(std::move(socket), server);
+    if (error == EINTR || steady_now() >= limit) break;
+  }
+  return not_connected(server, error);
+}
+
+tl::unexpected<Error> TcpClient::lost(int error) const {
+  if (error == 0)
+    return fail(Errc::bus, fmt::format("{} closed the connection", server_),
+                "did its server end, or its CAN interface go down? Its own log says");
+  return fail(Errc::bus, fmt::format("the connection to {} is lost: {}", server_, system_text(error)),
+              "check cable and network");
+}
+
+Result<void> TcpClient::send(std::string_view text, TimePoint limit) {
+  while (!text.empty()) {
+    const auto sent = ::send(socket_.get(), text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (sent >= 0) {
+      text.remove_prefix(static_cast<std::size_t>(sent));
+      continue;
+    }
+    if (errno == EINTR) continue;
+    if (errno != EAGAIN) return lost(errno);
+    if (steady_now() >= limit) return lost(ETIMEDOUT);
+    wait_for(socket_.get(), POLLOUT, limit);
+  }
+  return {};
+}
+
+Result<void> TcpClient::receive(std::string& out) {
+  std::array<char, 8192> bytes;
+  for (;;) {
+    const auto count = ::recv(socket_.get(), bytes.data(), bytes.size(), MSG_DONTWAIT);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0 && errno == EAGAIN) return {};
+    if (count <= 0) return lost(count < 0 ? errno : 0);
+    out.append(bytes.data(), static_cast<std::size_t>(count));
+    if (static_cast<std::size_t>(count) < bytes.size()) return {};
+  }
+}
+
+}  // namespace servoctl::can
