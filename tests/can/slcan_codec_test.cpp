@@ -1,5 +1,5 @@
-// Lines and flags are those of the CAN232 manual (version 3) and of drivers/net/can/slcan/slcan-core.c of
-// Linux.
+// SlcanLines and flags are those of the CAN232 manual (version 3) and of drivers/net/can/slcan/slcan-core.c
+// of Linux.
 #include "can/slcan_codec.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 using LineKind = SlcanLine::Kind;
 
 /// What the bytes become: frames in the notation of candump, other lines by a word.
-std::vector<std::string> lines_of(std::string_view bytes, std::size_t piece = 0) {
+std::vector<std::string> slcan_lines(std::string_view bytes, std::size_t piece = 0) {
   SlcanReader reader;
   if (piece == 0) piece = bytes.size() + 1;
   for (; !bytes.empty(); bytes.remove_prefix(std::min(piece, bytes.size())))
@@ -38,16 +38,16 @@ std::vector<std::string> lines_of(std::string_view bytes, std::size_t piece = 0)
   return out;
 }
 
-using Lines = std::vector<std::string>;
+using SlcanLines = std::vector<std::string>;
 
 Frame frame_from(const char* text) { return parse_frame(text).value(); }
 
 TEST(SlcanCodec, ReadsFramesOfAllKinds) {
-  EXPECT_EQ(lines_of("t1230\rt4563112233\rT12ABCDEF2AA55\rr1230\rr7011\rR000000018\r"),
-            (Lines{"123#", "456#112233", "12ABCDEF#AA55", "123#R", "701#R1", "00000001#R8"}));
+  EXPECT_EQ(slcan_lines("t1230\rt4563112233\rT12ABCDEF2AA55\rr1230\rr7011\rR000000018\r"),
+            (SlcanLines{"123#", "456#112233", "12ABCDEF#AA55", "123#R", "701#R1", "00000001#R8"}));
 }
 
-TEST(SlcanCodec, ReadsSmallDigitsToo) { EXPECT_EQ(lines_of("t7ff1ab\r"), (Lines{"7FF#AB"})); }
+TEST(SlcanCodec, ReadsSmallDigitsToo) { EXPECT_EQ(slcan_lines("t7ff1ab\r"), (SlcanLines{"7FF#AB"})); }
 
 TEST(SlcanCodec, WritesFramesOfAllKinds) {
   EXPECT_EQ(slcan_line(frame_from("456#112233")), "t4563112233\r");
@@ -58,32 +58,32 @@ TEST(SlcanCodec, WritesFramesOfAllKinds) {
 }
 
 TEST(SlcanCodec, TakesStampsOfAMinute) {
-  EXPECT_EQ(lines_of("t60120102EA5F\rt60100000\r"), (Lines{"601#0102@59999", "601#@0"}));
-  EXPECT_EQ(lines_of("t60120102EA60\r"), (Lines{"damaged"})) << "a minute has 60000 ms";
-  EXPECT_EQ(lines_of("r70110010\r"), (Lines{"701#R1@16"}));
+  EXPECT_EQ(slcan_lines("t60120102EA5F\rt60100000\r"), (SlcanLines{"601#0102@59999", "601#@0"}));
+  EXPECT_EQ(slcan_lines("t60120102EA60\r"), (SlcanLines{"damaged"})) << "a minute has 60000 ms";
+  EXPECT_EQ(slcan_lines("r70110010\r"), (SlcanLines{"701#R1@16"}));
 }
 
 TEST(SlcanCodec, AFrameThatDiffersInItsStampHasLostDigitsUnlessOthersFollow) {
-  EXPECT_EQ(lines_of("t60140102030400FF\rt60140102FF03\rt60140102030400FF\r"),
-            (Lines{"601#01020304@255", "damaged", "601#01020304@255"}));
+  EXPECT_EQ(slcan_lines("t60140102030400FF\rt60140102FF03\rt60140102030400FF\r"),
+            (SlcanLines{"601#01020304@255", "damaged", "601#01020304@255"}));
   // The first one was damaged: a length of 8 that became 6.
-  EXPECT_EQ(lines_of("t60161122334455660708\rt6011AA\rt6011BB\rt6011CC\rt6011DD\r"),
-            (Lines{"601#112233445566@1800", "damaged", "damaged", "601#CC", "601#DD"}));
+  EXPECT_EQ(slcan_lines("t60161122334455660708\rt6011AA\rt6011BB\rt6011CC\rt6011DD\r"),
+            (SlcanLines{"601#112233445566@1800", "damaged", "damaged", "601#CC", "601#DD"}));
 }
 
 TEST(SlcanCodec, KnowsAnswersApart) {
-  EXPECT_EQ(lines_of("\rz\rZ\r\aV1013\rNA123\rF24\r"),
-            (Lines{"ok", "ok", "ok", "refused", "text V1013", "text NA123", "flags 36"}));
+  EXPECT_EQ(slcan_lines("\rz\rZ\r\aV1013\rNA123\rF24\r"),
+            (SlcanLines{"ok", "ok", "ok", "refused", "text V1013", "text NA123", "flags 36"}));
 }
 
 TEST(SlcanCodec, LinesEndInAnyWay) {
-  EXPECT_EQ(lines_of("t1230\r\nt1231AA\n\r\nz\r\n"), (Lines{"123#", "123#AA", "ok", "ok"}));
+  EXPECT_EQ(slcan_lines("t1230\r\nt1231AA\n\r\nz\r\n"), (SlcanLines{"123#", "123#AA", "ok", "ok"}));
 }
 
 TEST(SlcanCodec, LinesAreTheSameHoweverTheyAreCut) {
   const std::string all = "t6018404160000000000\rt60184041600000000000\r\n\aV1013\rT12ABCDEF2AA55\r\nF00\r\r";
   for (std::size_t piece = 1; piece < all.size(); ++piece)
-    EXPECT_EQ(lines_of(all, piece), lines_of(all)) << piece;
+    EXPECT_EQ(slcan_lines(all, piece), slcan_lines(all)) << piece;
 }
 
 TEST(SlcanCodec, ALineThatLostOneByteIsNoFrame) {
@@ -91,23 +91,23 @@ TEST(SlcanCodec, ALineThatLostOneByteIsNoFrame) {
   for (std::size_t at = 0; at + 1 < whole.size(); ++at) {
     auto line = whole;
     line.erase(at, 1);
-    for (const auto& got : lines_of(line)) EXPECT_EQ(got.find('#'), std::string::npos) << line;
+    for (const auto& got : slcan_lines(line)) EXPECT_EQ(got.find('#'), std::string::npos) << line;
   }
 }
 
 TEST(SlcanCodec, ALostEndSpoilsTwoLinesAndNoMore) {
-  EXPECT_EQ(lines_of("t6011AAt6011BB\rt6011CC\r"), (Lines{"damaged", "601#CC"}));
-  EXPECT_EQ(lines_of("t6011A\at6011CC\r"), (Lines{"damaged", "refused", "601#CC"}));
+  EXPECT_EQ(slcan_lines("t6011AAt6011BB\rt6011CC\r"), (SlcanLines{"damaged", "601#CC"}));
+  EXPECT_EQ(slcan_lines("t6011A\at6011CC\r"), (SlcanLines{"damaged", "refused", "601#CC"}));
 }
 
 TEST(SlcanCodec, WhatIsOutOfRangeIsNoFrame) {
   for (const char* line : {"t8000\r", "t1239112233445566778899\r", "T200000000\r", "t123\r", "t\r",
                            "t12312\r", "tx230\r", "t1231+1\r", "t123-\r", "t1231 A\r"})
-    EXPECT_EQ(lines_of(line), (Lines{"damaged"})) << line;
+    EXPECT_EQ(slcan_lines(line), (SlcanLines{"damaged"})) << line;
 }
 
 TEST(SlcanCodec, ALineWithoutEndIsLeftOutUpToItsEnd) {
-  EXPECT_EQ(lines_of(std::string(100'000, 't') + "\rt1230\r"), (Lines{"damaged", "123#"}));
+  EXPECT_EQ(slcan_lines(std::string(100'000, 't') + "\rt1230\r"), (SlcanLines{"damaged", "123#"}));
 }
 
 TEST(SlcanCodec, HasTheNineBitratesOfTheProtocol) {

@@ -10,15 +10,15 @@ namespace servoctl::can {
 namespace {
 
 using std::chrono::milliseconds;
-using State = SlcanOpening::State;
+using OpeningState = SlcanOpening::State;
 
 /// An adapter that answers to each command what a function says, so long after it; in virtual time.
 class SlcanOpen : public testing::Test {
  protected:
   using Firmware = std::function<std::string(const std::string& command)>;
 
-  State open(const Firmware& firmware, milliseconds delay = milliseconds(1),
-             SlcanOpening::Mode mode = SlcanOpening::Mode::normal) {
+  OpeningState open(const Firmware& firmware, milliseconds delay = milliseconds(1),
+                    SlcanOpening::Mode mode = SlcanOpening::Mode::normal) {
     TimePoint now{milliseconds(1000)};
     const auto begin = now;
     SlcanOpening opening('6', mode, now);
@@ -60,7 +60,7 @@ std::string lawicel(const std::string& command) {
 }
 
 TEST_F(SlcanOpen, ClosesSetsTheBitrateAndOpens) {
-  EXPECT_EQ(open(lawicel), State::open);
+  EXPECT_EQ(open(lawicel), OpeningState::open);
   EXPECT_EQ(sent_, "C\rV\rS6\rO\r");
   EXPECT_EQ(version_, "V1013");
   EXPECT_TRUE(acknowledges_);
@@ -68,14 +68,14 @@ TEST_F(SlcanOpen, ClosesSetsTheBitrateAndOpens) {
 }
 
 TEST_F(SlcanOpen, OpensToListenOnly) {
-  EXPECT_EQ(open(lawicel, milliseconds(1), SlcanOpening::Mode::listen_only), State::open);
+  EXPECT_EQ(open(lawicel, milliseconds(1), SlcanOpening::Mode::listen_only), OpeningState::open);
   EXPECT_EQ(sent_, "C\rV\rS6\rL\r");
 }
 
 TEST_F(SlcanOpen, ALateAdapterIsWaitedForLongerEachRound) {
   for (const int delay : {250, 400}) {
     sent_.clear();
-    EXPECT_EQ(open(lawicel, milliseconds(delay)), State::open) << delay;
+    EXPECT_EQ(open(lawicel, milliseconds(delay)), OpeningState::open) << delay;
     EXPECT_TRUE(acknowledges_) << delay;
   }
 }
@@ -85,7 +85,7 @@ TEST_F(SlcanOpen, AnAdapterThatStillFloodsFramesIsOpenedAllTheSame) {
     const auto answer = command == "C\r" ? std::string("\r") : lawicel(command);
     return command == "C\r" ? "0000000\rt5818430010009201\rt58184300100092010200\rt5818\r" + answer : answer;
   };
-  EXPECT_EQ(open(flooding), State::open);
+  EXPECT_EQ(open(flooding), OpeningState::open);
   EXPECT_EQ(sent_, "C\rV\rS6\rO\r");
 }
 
@@ -93,7 +93,7 @@ TEST_F(SlcanOpen, FirmwareThatAcknowledgesNothingIsKnownByItsVersion) {
   EXPECT_EQ(open([](const std::string& command) {
               return command == "V\r" ? std::string("b158aa7 github.com/normaldotcom\r") : "";
             }),
-            State::open);
+            OpeningState::open);
   EXPECT_FALSE(acknowledges_);
   EXPECT_EQ(sent_, "C\rV\rV\rS6\rO\r");
   EXPECT_LT(took_, milliseconds(400));
@@ -101,36 +101,36 @@ TEST_F(SlcanOpen, FirmwareThatAcknowledgesNothingIsKnownByItsVersion) {
 
 TEST_F(SlcanOpen, AnAdapterWithoutAVersionIsOneByItsAcknowledges) {
   EXPECT_EQ(open([](const std::string& command) { return std::string(command == "V\r" ? "\a" : "\r"); }),
-            State::open);
+            OpeningState::open);
   sent_.clear();
   EXPECT_EQ(open([](const std::string& command) { return std::string(command == "V\r" ? "" : "\r"); }),
-            State::open);
+            OpeningState::open);
 }
 
 TEST_F(SlcanOpen, WhatAnswersNothingIsNoAdapter) {
-  EXPECT_EQ(open([](const std::string&) { return std::string(); }), State::no_answer);
+  EXPECT_EQ(open([](const std::string&) { return std::string(); }), OpeningState::no_answer);
   EXPECT_FALSE(heard_something_);
   EXPECT_EQ(sent_, "C\rV\rC\rV\rC\rV\r") << "and nothing else was sent to it";
   EXPECT_LT(took_, milliseconds(5000));
 }
 
 TEST_F(SlcanOpen, AnEchoIsNoAdapter) {
-  EXPECT_EQ(open([](const std::string& command) { return command; }), State::no_answer);
+  EXPECT_EQ(open([](const std::string& command) { return command; }), OpeningState::no_answer);
   EXPECT_TRUE(heard_something_);
 }
 
 TEST_F(SlcanOpen, ADeviceThatTalksByItselfIsNoAdapter) {
   int line = 0;
   EXPECT_EQ(open([&](const std::string&) { return "$GPGGA," + std::to_string(++line) + ",4807.038,N\r\n"; }),
-            State::no_answer);
+            OpeningState::no_answer);
   EXPECT_TRUE(heard_something_);
 }
 
 TEST_F(SlcanOpen, ARefusedBitrateIsTold) {
   EXPECT_EQ(open([](const std::string& command) { return command == "S6\r" ? "\a" : lawicel(command); }),
-            State::refused_bitrate);
+            OpeningState::refused_bitrate);
   EXPECT_EQ(open([](const std::string& command) { return command == "O\r" ? "\a" : lawicel(command); }),
-            State::refused_opening);
+            OpeningState::refused_opening);
 }
 
 TEST_F(SlcanOpen, ALostAnswerCostsOneRound) {
@@ -138,7 +138,7 @@ TEST_F(SlcanOpen, ALostAnswerCostsOneRound) {
   EXPECT_EQ(open([&](const std::string& command) {
               return command == "S6\r" && ++seen == 1 ? std::string() : lawicel(command);
             }),
-            State::open);
+            OpeningState::open);
   EXPECT_EQ(sent_, "C\rV\rS6\rC\rV\rS6\rO\r");
 }
 

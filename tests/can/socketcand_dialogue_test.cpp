@@ -7,7 +7,7 @@ namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
-using State = SocketcandDialogue::State;
+using TalkState = SocketcandDialogue::State;
 using ElementKind = SocketcandElement::Kind;
 
 class SocketcandTalk : public testing::Test {
@@ -40,28 +40,28 @@ TEST_F(SocketcandTalk, GoesToRawModeStepByStep) {
   hear(ElementKind::ok);
   EXPECT_EQ(talk_.take_text(), "< echo >");
   hear(ElementKind::echo);
-  EXPECT_EQ(talk_.state(), State::raw);
+  EXPECT_EQ(talk_.state(), TalkState::raw);
 }
 
 TEST_F(SocketcandTalk, ARefusalIsTold) {
   hear(ElementKind::hi);
   hear(ElementKind::refusal, "could not open bus");
-  EXPECT_EQ(talk_.state(), State::refused);
+  EXPECT_EQ(talk_.state(), TalkState::refused);
   EXPECT_EQ(talk_.why(), "could not open bus");
 }
 
 TEST_F(SocketcandTalk, WhoGreetsInAnotherWayIsAStranger) {
   hear(ElementKind::damaged);
-  EXPECT_EQ(talk_.state(), State::stranger);
+  EXPECT_EQ(talk_.state(), TalkState::stranger);
 }
 
 TEST_F(SocketcandTalk, EachAnswerIsWaitedFor) {
   pass(milliseconds(2900));
   hear(ElementKind::hi);
   pass(milliseconds(2900));
-  EXPECT_EQ(talk_.state(), State::opening);
+  EXPECT_EQ(talk_.state(), TalkState::opening);
   pass(milliseconds(200));
-  EXPECT_EQ(talk_.state(), State::silent);
+  EXPECT_EQ(talk_.state(), TalkState::silent);
 }
 
 TEST_F(SocketcandTalk, NoMoreIsUnderWayThanTheServerHasRead) {
@@ -84,12 +84,12 @@ TEST_F(SocketcandTalk, AServerThatIsQuietIsAskedAndThenGivenUp) {
   pass(milliseconds(1100));
   EXPECT_EQ(talk_.take_text(), "< echo >");
   pass(milliseconds(2000));
-  EXPECT_EQ(talk_.state(), State::raw);
+  EXPECT_EQ(talk_.state(), TalkState::raw);
   hear(ElementKind::echo);
   pass(milliseconds(1100));
   EXPECT_EQ(talk_.take_text(), "< echo >");
   pass(milliseconds(3100));
-  EXPECT_EQ(talk_.state(), State::silent);
+  EXPECT_EQ(talk_.state(), TalkState::silent);
 }
 
 TEST_F(SocketcandTalk, FramesAreASignOfLife) {
@@ -100,7 +100,7 @@ TEST_F(SocketcandTalk, FramesAreASignOfLife) {
     pass(milliseconds(2000));
     talk_.on_life(now_);
   }
-  EXPECT_EQ(talk_.state(), State::raw);
+  EXPECT_EQ(talk_.state(), TalkState::raw);
 }
 
 TEST_F(SocketcandTalk, AServerWithoutEchoIsNotAskedAgain) {
@@ -109,7 +109,7 @@ TEST_F(SocketcandTalk, AServerWithoutEchoIsNotAskedAgain) {
   hear(ElementKind::ok);
   (void)talk_.take_text();
   pass(milliseconds(1100));
-  EXPECT_EQ(talk_.state(), State::raw);
+  EXPECT_EQ(talk_.state(), TalkState::raw);
   EXPECT_TRUE(talk_.has_room(1'000'000));
   talk_.on_sent(1'000'000, now_);
   EXPECT_EQ(talk_.take_text(), "");
