@@ -18,7 +18,7 @@ using report::Value;
 
 constexpr Parameter kParameters[] = {
     {.name = "file",
-     .help = "a recording: --trace, candump -L, -l, -ta or plain, or .asc",
+     .help = "a recording: --trace, candump -L, -l, -ta or plain, .asc, .trc, .blf, pcap, pcapng",
      .kind = Kind::file,
      .required = true},
     {.name = "--raw", .help = "show the frames as well", .kind = Kind::flag},
@@ -37,9 +37,11 @@ Result<Value> run(Context& context, const Arguments& arguments) {
     return true;
   });
   log.flush();
-  if (log.count() == 0) return traffic::no_frames(arguments.text("file"));
+  const auto whole = traffic::check_damage(arguments.text("file"), strays);
+  if (log.count() == 0) return whole ? traffic::no_frames(arguments.text("file")) : fail(whole.error());
   for (auto& notice : traffic::notices(arguments.text("file"), strays))
     context.notices.push_back(std::move(notice));
+  if (!whole) context.errors.push_back(whole.error());
   if (!context.keeps_samples) return Value();
   return Value(log.take_kept());
 }
@@ -51,11 +53,12 @@ const Command kDecode{
     .path = "decode",
     .summary = "Decode a recording: PDO and SDO with names and values, NMT, EMCY",
     .details =
-        "Reads what --trace or candump wrote (-L, -l, or as on a terminal, -ta -tz -tA -x -a), and .asc "
-        "logs. With -d the objects have their names, units and labels; -n limits the output to these nodes "
+        "Reads what --trace or candump wrote (-L, -l, or as on a terminal, -ta -tz -tA -x -a), .asc logs, PEAK "
+        ".trc traces, Vector .blf logs, and pcap and pcapng files with CAN frames; what it is, the file tells. One "
+        "that is cut short or damaged is shown up to there, and the place told; exit code 7. With -d the objects have their names, units and labels; -n limits the output to these nodes "
         "(and frames without a node), --service and --object to such frames. PDOs are decoded by the mapping "
         "read or written in the recording itself, else by the family's factory mapping. `-o jsonl` gives one "
-        "document per frame. A candump recording can also serve as a bus that answers commands: --bus "
+        "document per frame. A recording can also serve as a bus that answers commands: --bus "
         "replay:FILE.",
     .parameters = kParameters,
     .needs = Needs::nothing,

@@ -19,7 +19,7 @@ using namespace command;
 using report::Value;
 
 constexpr Parameter kParameters[] = {
-    {.name = "file", .help = "a recording in candump format, or .asc", .kind = Kind::file, .required = true},
+    {.name = "file", .help = "a recording, as `decode` reads it", .kind = Kind::file, .required = true},
     {.name = "--speed", .help = "2 is twice as fast as recorded (default 1)", .kind = Kind::number},
     {.name = "--only",
      .help = "only this service, such as sdo (may be given several times)",
@@ -175,6 +175,10 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   const auto plan = traffic::plan_replay(
       context, {.only = arguments.all("--only"), .of_master = arguments.has("--master")}, *text, *drives);
   tell_plan(context, plan, file);
+  if (auto whole = traffic::check_damage(file, plan.strays); !whole) {
+    whole.error().hint = "no frame of it was sent; `decode` shows what stands in front of that byte";
+    return fail(whole.error());
+  }
   if (plan.seen == 0) return traffic::no_frames(file);
   if (plan.frames.size() > 1 && plan.frames.back().time == Duration::zero())
     return fail(Errc::usage, fmt::format("{} has no timestamps: its frames cannot be timed", file),

@@ -5,8 +5,7 @@
 #include <utility>
 
 #include "base/file.hpp"
-#include "base/text.hpp"
-#include "can/candump.hpp"
+#include "can/recording.hpp"
 
 namespace servoctl::can {
 namespace {
@@ -60,14 +59,18 @@ Result<std::unique_ptr<Bus>> open_replay(const std::filesystem::path& file) {
   const auto text = read_file(file, kMaxFile);
   if (!text) return fail(text.error());
   std::vector<LogFrame> lines;
-  for (const auto row : split(std::string_view(*text), '\n')) {
-    auto line = parse_log_line(row);
-    if (!line) line = parse_candump_line(row);
-    if (line) lines.push_back(std::move(*line));
-  }
+  const auto strays = for_each_frame(*text, [&](const LogFrame& line) {
+    lines.push_back(line);
+    return true;
+  });
+  if (strays.damage)
+    return fail(Errc::file,
+                fmt::format("{} is damaged at byte {}: {}", file.string(), strays.damage->offset,
+                            strays.damage->what),
+                "`decode` shows what stands in front of that byte");
   if (lines.empty())
     return fail(Errc::file, fmt::format("{} contains no frames", file.string()),
-                "recordings are candump files; `--trace FILE` writes them");
+                "recordings are what `decode` reads; `--trace FILE` writes them");
   std::stable_sort(lines.begin(), lines.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
   return std::make_unique<ReplayBus>(std::move(lines), file.string());
 }

@@ -12,8 +12,9 @@
 
 namespace servoctl::can {
 
-/// A bus that answers as it did when `file` was recorded (candump -L form, as trace_to() writes). Time is
-/// that of the recording: nobody waits. Errc::file when the file cannot be read or holds no frame.
+/// A bus that answers as it did when `file` was recorded; any recording that for_each_frame() reads. Time is
+/// that of the recording: nobody waits. Errc::file when the file cannot be read, is damaged or holds no
+/// frame.
 ///
 /// Frames that only masters send (NMT, SDO requests, remote frames, LSS requests) are taken as sent by us:
 /// each frame sent must be among them, and what follows them in the recording is received after they were
