@@ -120,6 +120,7 @@ const Command kBackup{
     .effect = Effect::reads,
     .family = FamilyCheck::always,
     .run = run,
+    .on_registers = true,
 };
 
 }  // namespace servoctl::commands

@@ -78,6 +78,7 @@ const Command kClone{
     .needs = Needs::bus | Needs::dictionary,
     .effect = Effect::stores,
     .run = run,
+    .on_registers = true,
 };
 
 }  // namespace servoctl::commands

@@ -69,6 +69,8 @@ class Difference {
         if (!side) return fail(side.error());
         sides_[i] = std::move(*side);
       }
+    if (!are_files())
+      for (auto& side : sides_) settings::leave_unreachable(*context_, profile_, side);
     const bool whole = std::none_of(operands_.begin(), operands_.end(),
                                     [](const Operand& operand) { return operand.is_factory(); });
     auto comparison = settings::compare(profile_, sides_[0], sides_[1], whole, context_->chinese);
@@ -210,6 +212,7 @@ const Command kDiff{
     .needs = Needs::nothing,
     .effect = Effect::reads,
     .run = run,
+    .on_registers = true,
 };
 
 }  // namespace servoctl::commands

@@ -5,6 +5,7 @@
 #include "command/command.hpp"
 #include "command/duration_option.hpp"
 #include "session/open_bus.hpp"
+#include "session/open_register_line.hpp"
 #include "traffic/doctor.hpp"
 
 namespace servoctl::commands {
@@ -26,6 +27,10 @@ constexpr Parameter kParameters[] = {
 Result<Findings> examine_url(Context& context, const std::string& url,
                              const traffic::DoctorOptions& options) {
   if (url.find(':') == std::string::npos) return traffic::examine_link(url, options);
+  if (session::is_modbus(url))
+    return fail(
+        Errc::usage, "`doctor` looks at CAN and EtherCAT, not at Modbus",
+        fmt::format("`scan --bus {}` asks all addresses, and says what comes instead of an answer", url));
   if (session::canonical_url(context.front_end->bus_url()) != url)
     return fail(Errc::usage, fmt::format("{} is looked at as the bus of the line", url),
                 fmt::format("`doctor --bus {}`", url));

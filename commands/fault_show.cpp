@@ -26,6 +26,7 @@ std::string code_text(std::uint16_t code, const std::string& words) {
 }
 
 constexpr std::string_view kMissing = "the drive does not have it";
+constexpr std::string_view kNotReached = "no Modbus register";
 
 /// Everything one node says of its faults.
 class FaultReport {
@@ -69,6 +70,10 @@ class FaultReport {
     return std::nullopt;
   }
 
+  std::string missing() const {
+    return std::string(context_->session->modbus() != nullptr ? kNotReached : kMissing);
+  }
+
   std::string words(std::uint16_t code, const std::array<std::uint8_t, 5>& vendor = {}) {
     if (context_->profile != nullptr)
       for (const auto* fault :
@@ -86,7 +91,7 @@ class FaultReport {
   void add_code() {
     const auto answer = read(objects::kErrorCode);
     if (!answer) {
-      out_.push_back({"code_text", std::string(kMissing), Show::text, "error code 603Fh"});
+      out_.push_back({"code_text", missing(), Show::text, "error code 603Fh"});
       out_.push_back({"code", Value(), Show::json});
       return;
     }
@@ -101,8 +106,7 @@ class FaultReport {
     const auto answer = read(objects::kErrorRegister);
     const auto bits = answer ? static_cast<std::uint8_t>(load_le(*answer)) : std::uint8_t{0};
     out_.push_back({"register_text",
-                    answer ? fmt::format("0x{:02X} {}", bits, canopen::error_register_text(bits))
-                           : std::string(kMissing),
+                    answer ? fmt::format("0x{:02X} {}", bits, canopen::error_register_text(bits)) : missing(),
                     Show::text, "error register 1001h"});
     out_.push_back({"error_register", answer ? Value(bits) : Value(), Show::json});
   }
@@ -115,7 +119,7 @@ class FaultReport {
     const auto answer = read(target->address);
     const auto code = answer ? static_cast<std::uint16_t>(load_le(*answer)) : std::uint16_t{0};
     out_.push_back({"alarm_text",
-                    !answer     ? std::string(kMissing)
+                    !answer     ? missing()
                     : code == 0 ? std::string("none")
                                 : code_text(code, words(code)),
                     Show::text, context_->chinese ? target->label_zh() : target->label()});
@@ -160,7 +164,7 @@ class FaultReport {
       table.rows.push_back({i, report::Hex{code, 4}, report::Hex{vendor, 4}, text});
     }
     if (!count)
-      out_.push_back({"history_text", std::string(kMissing), Show::text, "history 1003h"});
+      out_.push_back({"history_text", missing(), Show::text, "history 1003h"});
     else if (table.rows.empty())
       out_.push_back({"history_text", "empty", Show::text, "history 1003h"});
     else
@@ -201,6 +205,7 @@ const Command kFaultShow{
     .needs = Needs::node,
     .effect = Effect::reads,
     .run = run,
+    .on_registers = true,
 };
 
 }  // namespace servoctl::commands

@@ -9,6 +9,7 @@
 #include "session/identify.hpp"
 #include "show/identity.hpp"
 #include "show/records.hpp"
+#include "show/registers.hpp"
 #include "show/ring_table.hpp"
 
 namespace servoctl::commands {
@@ -97,7 +98,20 @@ Error no_answer(session::Session& session, std::uint8_t node, std::span<const Er
   return drive_error(Errc::timeout, node, "no answer", "`scan` shows which nodes answer");
 }
 
+Result<report::Value> run_registers(Context& context) {
+  report::List out;
+  for (const auto node : context.nodes) {
+    auto told = show::register_info(context, node);
+    if (told)
+      out.push_back(std::move(*told));
+    else
+      context.errors.push_back(told.error());
+  }
+  return report::Value(std::move(out));
+}
+
 Result<report::Value> run(Context& context, const Arguments&) {
+  if (context.session->modbus() != nullptr) return run_registers(context);
   std::vector<Error> away;
   auto found = session::scan(*context.session, context.nodes, &away);
   if (!found) return fail(found.error());
@@ -137,12 +151,14 @@ const Command kInfo{
     .summary = "Show the identity of a node",
     .details =
         "Reads device type, name, versions, identity, error register, heartbeat time and supported modes. If "
-        "they contradict the family given with -d, it lists the families that fit and ends with exit code 8.",
+        "they contradict the family given with -d, it lists the families that fit and ends with exit code 8. On Modbus no "
+        "register says what a device is: with -d FAMILY it shows its main parameters, inputs and outputs.",
     .parameters = {},
     .needs = Needs::node,
     .effect = Effect::reads,
     .family = FamilyCheck::never,
     .run = run,
+    .on_registers = true,
 };
 
 }  // namespace servoctl::commands

@@ -75,6 +75,7 @@ const Command kParamGet{
     .effect = Effect::reads,
     .run = run,
     .check = check,
+    .on_registers = true,
 };
 
 }  // namespace servoctl::commands

@@ -83,6 +83,7 @@ const Command kParamSet{
     .run = run,
     .check = check,
     .settings = setting_values,
+    .on_registers = true,
 };
 
 }  // namespace servoctl::commands

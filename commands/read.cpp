@@ -150,6 +150,7 @@ const Command kRead{
     .effect = Effect::reads,
     .run = run,
     .check = check,
+    .on_registers = true,
 };
 
 }  // namespace servoctl::commands

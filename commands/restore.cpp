@@ -84,6 +84,7 @@ const Command kRestore{
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::stores,
     .run = run,
+    .on_registers = true,
 };
 
 }  // namespace servoctl::commands

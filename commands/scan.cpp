@@ -14,6 +14,7 @@
 #include "session/ring_scan.hpp"
 #include "show/bitrate_scan.hpp"
 #include "show/identity.hpp"
+#include "show/registers.hpp"
 #include "show/ring_table.hpp"
 
 namespace servoctl::commands {
@@ -80,6 +81,17 @@ Result<report::Value> run_ring(Context& context, session::EtherCatNetwork& netwo
                                         drive::find_families(context.drive_folders), in_full || !any_told));
 }
 
+/// All addresses in turn, or those that were named.
+Result<report::Value> run_registers(Context& context) {
+  const bool all = !context.nodes_typed || context.nodes.empty() || context.nodes.front() == 0;
+  const auto nodes = all ? canopen::every_node_id() : context.nodes;
+  const auto found = session::scan(*context.session, nodes);
+  if (!found) return fail(found.error());
+  if (!found->empty()) return report::Value(show::register_scan(context, *found));
+  return fail(Errc::timeout, "no unit answered on " + context.session->url(),
+              context.session->network().silence_hint(nodes.front()));
+}
+
 Result<report::Value> planned_bitrates(const Context& context) {
   if (const auto possible = show::check_all_bitrates(context); !possible) return fail(possible.error());
   report::Table table;
@@ -93,6 +105,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   const bool all_bitrates = arguments.has("--all-bitrates");
   if (auto* ring = context.session->ethercat(); ring != nullptr && !all_bitrates)
     return run_ring(context, *ring, arguments.has("--long"));
+  if (context.session->modbus() != nullptr && !all_bitrates) return run_registers(context);
   auto nodes = context.nodes_typed ? context.nodes : std::vector<std::uint8_t>();
   if (nodes.empty() || nodes.front() == 0) nodes = canopen::every_node_id();
   if (all_bitrates && context.dry_run) return planned_bitrates(context);
@@ -133,12 +146,14 @@ const Command kScan{
         "address, name by the SII, AL state, ports with a link and, as notices, every error counter that is not "
         "0; of slaves in PRE-OP and above that servoctl has numbered also the drive's state and fault (`status -n "
         "all` takes the others there). Nothing is changed: no state is entered, no address given, and a ring that "
-        "another master works with is only looked at.",
+        "another master works with is only looked at. On Modbus, asks the addresses 1 to 127 one after the other; with -d "
+        "FAMILY it shows the alarm of each that answers: registers do not say what a device is.",
     .parameters = kParameters,
     .needs = Needs::bus,
     .effect = Effect::links,
     .reads_without = "--all-bitrates",
     .run = run,
+    .on_registers = true,
 };
 
 }  // namespace servoctl::commands

@@ -235,6 +235,7 @@ const Command kScope{
     .effect = Effect::reads,
     .run = run,
     .goes_on = true,
+    .on_registers = true,
 };
 
 }  // namespace servoctl::commands

@@ -3,7 +3,9 @@
 
 #include "command/command.hpp"
 #include "session/open_port.hpp"
+#include "session/open_register_line.hpp"
 #include "session/serve.hpp"
+#include "session/serve_registers.hpp"
 #include "session/serve_ring.hpp"
 
 namespace servoctl::commands {
@@ -45,14 +47,27 @@ Result<void> run_on_ethercat(Context& context, std::string_view drives, std::str
   return (*end)->serve(*cell);
 }
 
+Result<void> run_on_modbus(Context& context, std::string_view drives, std::string_view url) {
+  const auto end = context.front_end->open_register_end();
+  if (!end) return fail(end.error());
+  auto cell = sim::build_modbus_cell(drives, context.drive_folders, (*end)->now());
+  if (!cell) return fail(cell.error());
+  report::List nodes;
+  for (const auto& unit : cell->units) nodes.emplace_back(unit->unit());
+  tell(context, url, std::move(nodes));
+  if (context.dry_run) return {};
+  return (*end)->serve(*cell);
+}
+
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   const auto url = context.front_end->bus_url();
   if (url.starts_with("sim:"))
     return fail(Errc::usage, "a simulated drive cannot be put on a bus that is simulated itself",
                 "use a bus others can reach: vcan0 or local:NAME");
   const auto drives = arguments.text("drives");
-  const auto served =
-      session::is_ethercat(url) ? run_on_ethercat(context, drives, url) : run_on_can(context, drives);
+  const auto served = session::is_ethercat(url) ? run_on_ethercat(context, drives, url)
+                      : session::is_modbus(url) ? run_on_modbus(context, drives, url)
+                                                : run_on_can(context, drives);
   if (!served) return fail(served.error());
   return report::Value();
 }
@@ -74,7 +89,8 @@ const Command kSim{
         "power=1@5s-8s switches drive 1 off and on, fall=5s takes the drives out of OP (fall=0x1B@5s with "
         "this AL status code), free-run=no demands SYNC0, mailbox=full leaves requests unread, emergency=3 "
         "sends emergencies before 3 answers, and the SII is bad by sii=checksum, blank, cut-short, mailboxes "
-        "or mute.",
+        "or mute. On Modbus, `servoctl sim ts@1 --bus modbus:/dev/pts/4` stands at one end of a serial line, and "
+        "--bus modbus://127.0.0.1:1502 listens there; damage=10 damages every 10th answer.",
     .parameters = kParameters,
     .needs = Needs::bus,
     .effect = Effect::none,

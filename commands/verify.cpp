@@ -33,8 +33,9 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   }
   report::List out;
   for (const auto node : context.nodes) {
-    const auto expected = backup ? settings::side_of(*backup, std::string(name))
-                                 : settings::factory_side(*context.profile, node);
+    auto expected = backup ? settings::side_of(*backup, std::string(name))
+                           : settings::factory_side(*context.profile, node);
+    settings::leave_unreachable(context, context.profile, expected);
     std::vector<ObjectAddress> objects;
     for (const auto& value : expected.values) objects.push_back(value.first);
     const auto read = session::read_objects(*context.session, node, objects);
@@ -70,6 +71,7 @@ const Command kVerify{
     .effect = Effect::reads,
     .family = FamilyCheck::always,
     .run = run,
+    .on_registers = true,
 };
 
 }  // namespace servoctl::commands

@@ -203,6 +203,7 @@ const Command kWatch{
     .effect = Effect::reads,
     .run = run,
     .goes_on = true,
+    .on_registers = true,
 };
 
 }  // namespace servoctl::commands

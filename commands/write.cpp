@@ -111,6 +111,7 @@ const Command kWrite{
     .run = run,
     .check = check,
     .settings = setting_values,
+    .on_registers = true,
 };
 
 }  // namespace servoctl::commands

@@ -17,6 +17,7 @@
 #include "drive/toml_reader.hpp"
 #include "session/bitrate_search.hpp"
 #include "session/open_bus.hpp"
+#include "session/open_register_line.hpp"
 
 namespace servoctl::cabinet {
 namespace {
@@ -89,6 +90,10 @@ class CabinetReader {
       if (const auto good = session::check_url(bus.url); !good)
         return fail_at(*one->get("url"), fmt::format("bus {}: {}", name, good.error().message),
                        good.error().hint);
+      if (session::is_modbus(bus.url))
+        return fail_at(
+            *one->get("url"), fmt::format("bus {}: drives on Modbus cannot stand in a cabinet file", name),
+            "name the line with -b and the drive with -d and -n; `backup` and `restore` work there");
       for (const auto& other : out_.buses)
         if (other.url == bus.url)
           return reader.fail_at(*one, fmt::format("bus {} is {} as bus {} is", name, bus.url, other.name));

@@ -35,6 +35,26 @@ Result<void> check_network(const command::Command& command, session::Session& se
   return {};
 }
 
+Result<void> check_registers(const command::Command& command, session::Session& session,
+                             const drive::Profile* profile, bool chinese) {
+  if (session.modbus() == nullptr) return {};
+  if (profile != nullptr && !profile->rules.modbus.exists())
+    return fail(Errc::usage, fmt::format("of {} no Modbus registers are known", profile->family),
+                "use its CAN or EtherCAT port, or describe the registers: docs/drive-data.md, [modbus]");
+  if (command.on_registers) return {};
+  auto what =
+      fmt::format("'{}' does not work over Modbus, which has parameters and readings alone", command.path);
+  if (command.effect < Effect::moves)
+    return fail(Errc::usage, std::move(what),
+                "what works there: `read`, `write`, `param`, `watch`, `backup`, `restore`, `fault show`");
+  const auto* rules = profile == nullptr ? nullptr : &profile->rules.modbus;
+  if (rules == nullptr || rules->motion.empty())
+    return fail(Errc::usage, std::move(what), "motion needs the drive's CAN or EtherCAT port");
+  return fail(Errc::usage, std::move(what),
+              "what its manual has instead, by `param set`: " +
+                  (chinese && !rules->motion_zh.empty() ? rules->motion_zh : rules->motion));
+}
+
 Error no_node(const command::Command& command) {
   return fail(Errc::usage, fmt::format("'{}' needs a node", command.path),
               "add -n 1 (or a list, or all); `scan` shows who is there")

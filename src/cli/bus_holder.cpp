@@ -17,6 +17,7 @@
 #include "session/link_wait.hpp"
 #include "session/open_network.hpp"
 #include "session/open_port.hpp"
+#include "session/serve_registers.hpp"
 #include "session/serve_ring.hpp"
 #include "traffic/sync_end.hpp"
 
@@ -94,6 +95,11 @@ const show::AxisNames& BusHolder::names(const session::Session& session) const {
 Result<std::unique_ptr<session::RingEnd>> BusHolder::open_ring_end(const Settings& settings) {
   bus_options_.trace = settings.trace;
   return session::open_ring_end(settings.bus, bus_options_, options_.cancelled);
+}
+
+Result<std::unique_ptr<session::RegisterEnd>> BusHolder::open_register_end(const Settings& settings) {
+  bus_options_.trace = settings.trace;
+  return session::open_register_end(settings.bus, bus_options_, options_.cancelled);
 }
 
 Result<void> BusHolder::connect(const std::string& url) {

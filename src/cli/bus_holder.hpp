@@ -18,6 +18,7 @@
 #include "session/session.hpp"
 
 namespace servoctl::session {
+class RegisterEnd;
 class RingEnd;
 }  // namespace servoctl::session
 
@@ -45,6 +46,8 @@ class BusHolder {
   /// The nodes that were left energised over this bus, which is open now or was lost.
   std::vector<std::uint8_t> energised_on(std::string_view url) const;
 
+  /// The devices' end of a bus with Modbus; errors as session::open_register_end().
+  Result<std::unique_ptr<session::RegisterEnd>> open_register_end(const Settings& settings);
   /// The session on the bus of the settings. Another bus that is open is let go first, unless the settings
   /// are those of a cabinet's axes. Errors as open_bus(), Errc::usage when the settings name no bus.
   Result<session::Session*> open(const Settings& settings);

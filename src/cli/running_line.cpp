@@ -5,6 +5,8 @@
 #include "base/printable.hpp"
 #include "cli/batch/setting_lines.hpp"
 #include "cli/shell.hpp"
+#include "session/modbus_network.hpp"
+#include "session/serve_registers.hpp"
 #include "session/serve_ring.hpp"
 
 namespace servoctl::cli {
@@ -90,6 +92,10 @@ Result<session::Session*> RunningLine::open_bus(const cabinet::Cabinet& cabinet,
   return shell_->open(on_bus(cabinet, *settings_, bus).settings);
 }
 
+Result<std::unique_ptr<session::RegisterEnd>> RunningLine::open_register_end() {
+  return shell_->open_register_end(*settings_);
+}
+
 Result<std::unique_ptr<session::RingEnd>> RunningLine::open_ring_end() {
   return shell_->open_ring_end(*settings_);
 }
@@ -101,6 +107,8 @@ Result<void> RunningLine::hold_family(std::span<const std::uint8_t> nodes, const
 
 Result<void> RunningLine::hold_family(std::span<const std::uint8_t> nodes, const drive::Profile* profile,
                                       FamilyGate::Weight weight) {
+  if (auto* line = context_->session->modbus(); line != nullptr && profile != nullptr)
+    for (const auto node : nodes) line->learn(node, profile->rules.modbus);
   FamilyGate gate(
       *context_->session,
       {.folders = shell_->drive_folders(), .force = settings_->force_family, .dry_run = settings_->dry_run},

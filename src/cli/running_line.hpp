@@ -35,6 +35,7 @@ class RunningLine final : public show::Audience, public command::FrontEnd {
   std::string_view bus_url() const override { return settings_->bus; }
   std::vector<std::uint8_t> energised_on(std::string_view url) const override;
   Result<std::unique_ptr<session::RingEnd>> open_ring_end() override;
+  Result<std::unique_ptr<session::RegisterEnd>> open_register_end() override;
   Result<void> hold_family(std::span<const std::uint8_t> nodes, const drive::Profile* profile,
                            bool changes) override;
   Result<const drive::Profile*> family(const std::string& name) override;

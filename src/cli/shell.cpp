@@ -13,7 +13,9 @@
 #include "command/help_text.hpp"
 #include "session/ethercat_network.hpp"
 #include "session/identify.hpp"
+#include "session/modbus_network.hpp"
 #include "session/scan.hpp"
+#include "session/serve_registers.hpp"
 #include "session/serve_ring.hpp"
 #include "show/notice.hpp"
 #include "show/records.hpp"
@@ -37,12 +39,15 @@ bool wants_json(const std::vector<std::string>& words) {
   return false;
 }
 
-/// Where a slave does not tell how it is reached, the data of its family do.
+/// How a slave is reached, and which registers a unit has, the data of its family tell.
 void learn_family(session::Session& session, std::span<const std::uint8_t> nodes,
                   const drive::Profile& profile) {
   auto* ring = session.ethercat();
-  for (const auto node : nodes)
+  auto* line = session.modbus();
+  for (const auto node : nodes) {
     if (ring != nullptr) ring->learn(node, profile.rules.coe);
+    if (line != nullptr) line->learn(node, profile.rules.modbus);
+  }
 }
 
 /// Whatever is told of a line speaks of axes by their names.
@@ -157,6 +162,8 @@ Result<void> Shell::prepare(Run& run, const command::Arguments& arguments) {
   const auto opened = open(run.settings);
   if (!opened) return fail(opened.error());
   run.context.session = *opened;
+  if (const auto fits = check_registers(command, **opened, run.context.profile, run.settings.chinese); !fits)
+    return fits;
   if (const auto possible = check_network(command, **opened); !possible) return possible;
   if (const auto named = prepare_nodes(run); !named) return named;
   if (run.context.profile != nullptr) learn_family(**opened, run.context.nodes, *run.context.profile);
@@ -251,6 +258,10 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
 
 Result<std::unique_ptr<session::RingEnd>> Shell::open_ring_end(const Settings& settings) {
   return bus_.open_ring_end(settings);
+}
+
+Result<std::unique_ptr<session::RegisterEnd>> Shell::open_register_end(const Settings& settings) {
+  return bus_.open_register_end(settings);
 }
 
 /// A drive that stays energised only while servoctl is there is held until the user ends it.

@@ -103,6 +103,8 @@ class Shell {
   Result<session::Session*> open(const Settings& settings) { return bus_.open(settings); }
   /// As BusHolder::open_ring_end().
   Result<std::unique_ptr<session::RingEnd>> open_ring_end(const Settings& settings);
+  /// As BusHolder::open_register_end().
+  Result<std::unique_ptr<session::RegisterEnd>> open_register_end(const Settings& settings);
   const std::vector<std::filesystem::path>& drive_folders() const { return options_.drive_folders; }
 
   /// Lines about what nodes told since the last call.

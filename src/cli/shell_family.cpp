@@ -124,6 +124,8 @@ Result<void> Shell::find_family(Run& run, bool changes) {
   const auto opened = open(run.settings);
   if (!opened) return fail(opened.error());
   run.context.session = *opened;
+  if ((*opened)->modbus() != nullptr)
+    return needs_family(*run.command, "registers do not say what a device is: " + no_family_hint());
   if (nodes->front() == 0) nodes = session::nodes_present(**opened);
   if (!nodes) return fail(nodes.error());
   std::string family;
@@ -155,6 +157,8 @@ void Shell::remember_family(Run& run) {
   const auto& settings = run.settings;
   const bool said = !settings.drive.empty() && !run.family_found && !settings.of_cabinet &&
                     run.context.profile != nullptr && !equals_nocase(settings.drive, "online");
+  // Nothing there says that it is still the same device.
+  if (session != nullptr && session->modbus() != nullptr) return;
   if (!said || session == nullptr || options_.state_folder.empty() || settings.dry_run ||
       settings.force_family || settings.bus.starts_with("replay:") || cancelled())
     return;

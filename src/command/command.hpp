@@ -85,6 +85,8 @@ struct Command {
   bool opens_bus = false;     ///< Its words decide which end of the bus it needs: it opens it itself.
   bool of_front_end = false;  ///< It runs other command lines: the front end does it, `run` is null.
   bool goes_on = false;       ///< It shows what comes until it is ended: one bus and family at a time.
+  /// It works where drives are known by registers alone (Modbus): without the objects of CiA 301 and CiA 402.
+  bool on_registers = false;
   /// What there is instead of it on a network of another kind, for a hint; empty: nothing.
   std::string_view elsewhere = {};
 

@@ -14,6 +14,7 @@
 #include "settings/setting_line.hpp"
 
 namespace servoctl::session {
+class RegisterEnd;
 class RingEnd;
 }  // namespace servoctl::session
 
@@ -36,6 +37,9 @@ class FrontEnd : public settings::LineReader {
   /// Opens the slaves' end of the bus of the line, which is one with EtherCAT; errors as
   /// session::open_ring_end().
   virtual Result<std::unique_ptr<session::RingEnd>> open_ring_end() = 0;
+  /// Opens the devices' end of the bus of the line, which is one with Modbus; errors as
+  /// session::open_register_end().
+  virtual Result<std::unique_ptr<session::RegisterEnd>> open_register_end() = 0;
   /// Holds a family against the identity of these nodes; `changes`: they will be written to. Errc::refused
   /// when they contradict it, or two nodes have one number.
   virtual Result<void> hold_family(std::span<const std::uint8_t> nodes, const drive::Profile* profile,

@@ -38,6 +38,7 @@ class RulesReader {
                               {"nmt", section(read_nmt)},
                               {"pdo", section(read_pdo)},
                               {"coe", section(read_coe)},
+                              {"modbus", section(read_modbus)},
                               {"store", section(read_store)},
                               {"restart", section(read_restart)},
                               {"mirror", section(read_mirror)},

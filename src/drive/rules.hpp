@@ -12,6 +12,7 @@
 #include "base/object_address.hpp"
 #include "base/result.hpp"
 #include "drive/cia402.hpp"
+#include "drive/modbus_rules.hpp"
 #include "drive/pdo_recipe.hpp"
 #include "drive/scaling.hpp"
 #include "od/doubts.hpp"
@@ -263,6 +264,7 @@ struct Rules {
   NmtRules nmt;
   PdoRules pdo;
   CoeRules coe;
+  ModbusRules modbus;
   StoreRules store;
   MotionRules motion;
   EmergencyRules emergency;

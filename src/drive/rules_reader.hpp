@@ -12,6 +12,7 @@ Result<void> read_sdo(const TableReader& reader, Rules& rules);
 Result<void> read_nmt(const TableReader& reader, Rules& rules);
 Result<void> read_pdo(const TableReader& reader, Rules& rules);
 Result<void> read_coe(const TableReader& reader, Rules& rules);
+Result<void> read_modbus(const TableReader& reader, Rules& rules);
 Result<void> read_store(const TableReader& reader, Rules& rules);
 Result<void> read_restart(const TableReader& reader, Rules& rules);
 Result<void> read_mirror(const TableReader& reader, Rules& rules);

@@ -78,6 +78,17 @@ std::string held(const Identity& identity, const drive::Rules& rules) {
   return out;
 }
 
+/// What is missing for a proof; `soft` is a mark that is not so, or null.
+std::string why_unproven(const Identity& identity, const drive::Profile& profile, const IdentityMark* soft) {
+  const auto& rules = profile.rules;
+  if (soft != nullptr)
+    return fmt::format("its {} is {}, but {} has {}", to_string(soft->object), drive_says(identity, *soft),
+                       profile.family, family_says(*soft));
+  if (rules.identity.empty()) return fmt::format("{} has no known identity", profile.family);
+  if (fits(identity, rules)) return fmt::format("{} matches, but not uniquely", held(identity, rules));
+  return fmt::format("it does not report all that {} would", profile.family);
+}
+
 /// The other family that the drive tells it is, where the one that was named says nothing against it.
 void judge_by_others(const Identity& identity, const drive::Profile& profile,
                      std::span<const drive::Family> families, FamilyVerdict& verdict) {
@@ -142,6 +153,10 @@ FamilyVerdict judge_family(const Identity& identity, const drive::Profile& profi
         fmt::format("it refuses to read {}, which every {} has", names(rules.identity_looks), profile.family);
     return out;
   }
+  if (identity.by_registers) {
+    out.why = "registers do not say what a device is";
+    return out;
+  }
   const auto* soft = violated(identity, rules, true);
   const bool has_own = own_objects(identity, rules) == Says::yes;
   const bool tells = has_own || (is_telling(rules) && !rules.identity.empty());
@@ -151,15 +166,7 @@ FamilyVerdict judge_family(const Identity& identity, const drive::Profile& profi
   }
   judge_by_others(identity, profile, families, out);
   if (out.kind == FamilyVerdict::Kind::contradicted) return out;
-  if (soft != nullptr)
-    out.why = fmt::format("its {} is {}, but {} has {}", to_string(soft->object), drive_says(identity, *soft),
-                          profile.family, family_says(*soft));
-  else if (rules.identity.empty())
-    out.why = fmt::format("{} has no known identity", profile.family);
-  else if (fits(identity, rules))
-    out.why = fmt::format("{} matches, but not uniquely", held(identity, rules));
-  else
-    out.why = fmt::format("it does not report all that {} would", profile.family);
+  out.why = why_unproven(identity, profile, soft);
   return out;
 }
 

@@ -75,6 +75,7 @@ std::vector<Result<Identity>> identify(Session& session, std::span<const std::ui
       continue;
     }
     auto identity = identity_in(node, here, with_revision);
+    identity.by_registers = session.modbus() != nullptr;
     for (std::size_t i = looks_at; i < objects.size(); ++i)
       identity.looked.emplace(objects[i], here[i].has_value());
     session.identities().keep(identity, session.watch().boots(node));
@@ -93,6 +94,7 @@ Result<Identity> read_identity(Session& session, std::uint8_t node) {
   const auto answers = session.transfer(requests);
   Identity out;
   out.node = node;
+  out.by_registers = session.modbus() != nullptr;
   std::optional<std::uint32_t>* const places[] = {&out.device_type, &out.vendor_id, &out.product_code,
                                                   &out.revision, &out.serial};
   for (std::size_t i = 0; i < answers.size(); ++i) {
@@ -112,7 +114,7 @@ void look_for_families(Session& session, std::span<Identity> identities,
   std::vector<Identity*> whose;
   for (const auto& family : families) {
     const auto rules = drive::load_rules(family);
-    if (!rules) continue;
+    if (!rules || session.modbus() != nullptr) continue;
     for (auto& identity : identities)
       if (fits(identity, *rules))
         for (const auto object : rules->identity_looks) {

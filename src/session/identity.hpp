@@ -21,6 +21,7 @@ struct Identity {
   std::string device_name;                    ///< 1008h
   std::string hardware_version;               ///< 1009h
   std::string software_version;               ///< 100Ah
+  bool by_registers = false;                  ///< Of Modbus, where nothing tells what a device is.
   std::optional<NodeState> state;             ///< Heard from heartbeat or boot-up, if any.
   std::map<ObjectAddress, bool>
       looked;  ///< Objects of families that were looked for: whether they are there.

@@ -24,6 +24,7 @@ namespace servoctl::session {
 
 class CanNetwork;
 class EtherCatNetwork;
+class ModbusNetwork;
 
 /// The way to the objects of one node: one transfer at a time, whatever carries it. Lives no longer than its
 /// network, which serves it in every step: what the node answers is noted there.
@@ -191,6 +192,8 @@ class Network {
   virtual std::string_view state_word(NodeState state) const { return name(state); }
   /// What request_state() sends, in words that follow "it was sent": `NMT "stop"`, `the request for PRE-OP`.
   virtual std::string state_order(NodeState state) const;
+  /// Its nodes are asked one after the other, so that each that is silent costs a timeout of its own.
+  virtual bool takes_turns() const { return false; }
   /// A node is a place on a ring, not a number of its own.
   virtual bool is_ring() const { return false; }
   /// What to do about a node that does not answer.
@@ -202,6 +205,8 @@ class Network {
   virtual CanNetwork* can() { return nullptr; }
   /// What only EtherCAT has; null elsewhere.
   virtual EtherCatNetwork* ethercat() { return nullptr; }
+  /// What only Modbus has; null elsewhere.
+  virtual ModbusNetwork* modbus() { return nullptr; }
 };
 
 }  // namespace servoctl::session

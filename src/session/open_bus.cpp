@@ -17,10 +17,11 @@
 namespace servoctl::session {
 namespace {
 
-constexpr std::array<std::string_view, 7> kSchemes{"socketcan", "slcan",  "socketcand", "local",
-                                                   "sim",       "replay", "coe"};
+constexpr std::array<std::string_view, 8> kSchemes{"socketcan", "slcan",  "socketcand", "local",
+                                                   "sim",       "replay", "coe",        "modbus"};
 constexpr std::string_view kForms =
-    "write can0, slcan:/dev/ttyACM0@500k, socketcand://HOST/can0, coe:eth0, local:NAME, sim:FAMILY@NODE or replay:FILE";
+    "write can0, slcan:/dev/ttyACM0@500k, socketcand://HOST/can0, coe:eth0, modbus:/dev/ttyUSB0@19200,8E1, local:NAME, "
+    "sim:FAMILY@NODE or replay:FILE";
 
 tl::unexpected<Error> no_bus(std::string_view url) {
   auto hint =

@@ -2,7 +2,9 @@
 
 #include "session/can_network.hpp"
 #include "session/ethercat_network.hpp"
+#include "session/modbus_network.hpp"
 #include "session/open_port.hpp"
+#include "session/open_register_line.hpp"
 
 namespace servoctl::session {
 
@@ -11,6 +13,11 @@ Result<std::unique_ptr<Network>> open_network(const std::string& url, const BusO
     auto port = open_port(url, options);
     if (!port) return fail(port.error());
     return std::make_unique<EtherCatNetwork>(std::move(*port), url);
+  }
+  if (is_modbus(url)) {
+    auto line = open_register_line(url, options);
+    if (!line) return fail(line.error());
+    return std::make_unique<ModbusNetwork>(std::move(*line), url);
   }
   auto bus = open_bus(url, options);
   if (!bus) return fail(bus.error());

@@ -8,8 +8,8 @@
 
 namespace servoctl::session {
 
-/// Opens what a URL names: a CAN bus (open_bus()), or an EtherCAT ring, `coe:…` (open_port()). Errors as
-/// there.
+/// Opens what a URL names: a CAN bus (open_bus()), an EtherCAT ring, `coe:…` (open_port()), or a line with
+/// Modbus, `modbus:…` (open_register_line()). Errors as there.
 Result<std::unique_ptr<Network>> open_network(const std::string& url, const BusOptions& options);
 
 }  // namespace servoctl::session

@@ -11,11 +11,14 @@
 #include "session/ethercat_network.hpp"
 #include "session/family_check.hpp"
 #include "session/identify.hpp"
+#include "session/modbus_network.hpp"
 #include "session/option_scope.hpp"
 
 namespace servoctl::session {
 namespace {
 
+/// Where nodes are asked one after the other: from so many on each has less time.
+constexpr std::size_t kFewNodes = 8;
 constexpr std::array kNumbers{objects::kVendorId, objects::kProductCode, objects::kRevision,
                               objects::kSerialNumber};
 constexpr std::array kTexts{objects::kDeviceName, ObjectAddress{0x1009, 0}, ObjectAddress{0x100A, 0}};
@@ -32,6 +35,12 @@ Result<std::vector<Identity>> find_nodes(Session& session, std::span<const std::
   for (const auto node : nodes) requests.push_back({node, objects::kDeviceType, {}});
   const auto answers = [&] {
     const OptionScope once(session, &Options::retries, 0U);
+    // A whole timeout for each that is not there would take a minute.
+    auto* line = session.modbus();
+    const auto timeout = session.options().timeout;
+    const bool many = line != nullptr && nodes.size() > kFewNodes;
+    const OptionScope patience(session, &Options::timeout,
+                               many ? std::min(timeout, line->scan_patience()) : timeout);
     return session.transfer(requests);
   }();
   std::vector<Identity> found;
@@ -44,6 +53,7 @@ Result<std::vector<Identity>> find_nodes(Session& session, std::span<const std::
     }
     Identity identity;
     identity.node = nodes[i];
+    identity.by_registers = session.modbus() != nullptr;
     identity.device_type = u32_in(answers[i]);
     found.push_back(std::move(identity));
   }
@@ -103,6 +113,7 @@ std::vector<Guess> guess_families(const Identity& identity, std::span<const driv
   for (const auto& family : families) {
     const auto rules = drive::load_rules(family);
     if (!rules) continue;
+    if (identity.by_registers) continue;  // Registers are numbers: every device has some.
     const bool generic = fits_as_generic(identity, *rules);
     if (generic || may_be(identity, *rules)) out.push_back({family.name, rules->identity_certain, generic});
   }

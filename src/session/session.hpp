@@ -112,6 +112,8 @@ class Session {
   CanNetwork* can() { return network_->can(); }
   /// What only EtherCAT has; null elsewhere.
   EtherCatNetwork* ethercat() { return network_->ethercat(); }
+  /// What only Modbus has; null elsewhere.
+  ModbusNetwork* modbus() { return network_->modbus(); }
   const std::string& url() const { return url_; }
   Options& options() { return options_; }
 

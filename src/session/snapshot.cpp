@@ -8,6 +8,8 @@
 namespace servoctl::session {
 namespace {
 
+constexpr std::string_view kNoRegister = "no Modbus register";
+
 SdoRequest read_request(std::uint8_t node, ObjectAddress object, std::size_t size) {
   return {.node = node, .object = object, .size = size};
 }
@@ -19,7 +21,8 @@ Result<void> take_answer(const Result<Bytes>& answer, SnapshotEntry& entry) {
     return {};
   }
   if (answer.error().code != Errc::sdo_abort) return fail(answer.error());
-  entry.left_out = fmt::format("refused: {}", canopen::sdo_abort_text(answer.error().abort_code.value_or(0)));
+  const auto code = answer.error().abort_code;
+  entry.left_out = code ? fmt::format("refused: {}", canopen::sdo_abort_text(*code)) : answer.error().message;
   return {};
 }
 
@@ -30,6 +33,11 @@ std::vector<Result<Snapshot>> take_snapshots(Session& session, const drive::Prof
                                              const SettingFilter& wanted) {
   auto settings = drive::settings_of(profile);
   if (wanted) std::erase_if(settings, [&](const auto& s) { return !wanted(s); });
+  // What this network does not reach is no part of what is asked.
+  if (session.modbus() != nullptr)
+    for (auto& setting : settings)
+      if (setting.left_out.empty() && !profile.rules.modbus.register_of(setting.entry->address))
+        setting.left_out = kNoRegister;
   const auto identities = scan(session, nodes);
   std::vector<SdoRequest> requests;
   for (const auto node : nodes)

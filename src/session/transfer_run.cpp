@@ -11,6 +11,8 @@ constexpr int kNone = -1;
 constexpr std::size_t kLongTransfer = 1000;
 /// Requests from which on a list is; a scan asks 127 nodes at once.
 constexpr std::size_t kLongList = 128;
+/// The same where one is asked after the other.
+constexpr std::size_t kLongTurns = 40;
 
 }  // namespace
 
@@ -123,7 +125,8 @@ void TransferRun::finish(Lane& channel, Result<Bytes> result) {
   if (request.ended != nullptr) *request.ended = session_->network().stepped_at();
   --open_;
   const auto& options = session_->options();
-  if (options.list_progress && requests_.size() >= kLongList)
+  const auto long_list = session_->network().takes_turns() ? kLongTurns : kLongList;
+  if (options.list_progress && requests_.size() >= long_list)
     options.list_progress(requests_.size() - open_, requests_.size(), session_->received_at());
   if (!place && (silent || request.data)) skip_rest(channel, place.error(), silent);
   start(channel);

@@ -9,6 +9,7 @@
 #include "session/cob_id_check.hpp"
 #include "session/measure.hpp"
 #include "settings/keeping_nodes.hpp"
+#include "settings/rest.hpp"
 
 namespace servoctl::settings {
 namespace {
@@ -133,6 +134,10 @@ std::string_view reason_to_ask(const drive::Profile* profile, const Change& chan
   if (profile != nullptr && (is_parameter(*profile, change, profile->rules.nmt.node_id) ||
                              is_parameter(*profile, change, profile->rules.nmt.bitrate)))
     return "After a restart the drive has another node-ID.";
+  if (profile != nullptr && (is_parameter(*profile, change, profile->rules.modbus.node_id) ||
+                             is_parameter(*profile, change, profile->rules.modbus.baud) ||
+                             is_parameter(*profile, change, profile->rules.modbus.framing)))
+    return "After a restart the drive has another Modbus address, speed or form of frames.";
   return {};
 }
 
@@ -268,6 +273,7 @@ Result<Value> write_changes(show::Desk& desk, std::span<const Change> changes, c
   keeping.close(written);
   for (const auto& change : changes)
     if (enables(change)) desk.session->energised().insert(change.node);
+  tell_not_at_rest(desk, changes, written);
   auto table = change_table();
   table.json_only = std::none_of(written.begin(), written.end(), [](const auto& w) { return w.has_value(); });
   for (std::size_t i = 0; i < changes.size(); ++i) {

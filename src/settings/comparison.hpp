@@ -23,7 +23,12 @@ Side side_of(const Backup& backup, std::string title);
 /// The factory values the family's data knows, for this node.
 Side factory_side(const drive::Profile& profile, std::uint8_t node);
 
-/// Whether it is the node-ID or the bitrate, by the family's rules. `profile` may be null.
+/// Takes away what the network of the desk does not reach (Modbus: what has no register), and says how many.
+/// `profile` may be null.
+void leave_unreachable(show::Desk& desk, const drive::Profile* profile, Side& side);
+
+/// Whether it is the node-ID or the bitrate, or address, speed and framing of Modbus, by the family's rules.
+/// `profile` may be null.
 bool is_address(const drive::Profile* profile, ObjectAddress object);
 
 /// Bytes read from node `from` as node `to` would hold them: a COB-ID that contains the node-ID, and the

@@ -55,8 +55,9 @@ Result<void> RestoreTarget::check_identity() {
     return fail(Errc::refused, fmt::format("node {} is not the drive of {}: {} differs", node_, title_, what),
                 "--force restores what fits anyway");
   const bool says_firmware = backup_->identity.revision || !backup_->identity.software_version.empty();
-  if (says_firmware && (backup_->identity.revision != drive.revision ||
-                        backup_->identity.software_version != drive.software_version))
+  if (says_firmware && !drive.by_registers &&
+      (backup_->identity.revision != drive.revision ||
+       backup_->identity.software_version != drive.software_version))
     desk_->notices.push_back(
         fmt::format("node {}: its firmware differs from the backup's: check the important values", node_));
   return {};
@@ -65,12 +66,30 @@ Result<void> RestoreTarget::check_identity() {
 /// Gains and limits are no things to change under a drive that holds a load.
 Result<void> RestoreTarget::check_standstill() const {
   if (choice_.only_looks) return {};
+  if (desk_->session->modbus() != nullptr) return check_at_rest();
   const auto word = desk_->session->upload(node_, objects::kStatusword);
   if (!word && word.error().code != Errc::sdo_abort) return fail(word.error());
   if (!word || !drive::is_energised(drive::decode_state(static_cast<std::uint16_t>(load_le(*word)))))
     return {};
   return fail(Errc::refused, fmt::format("node {} is energised: its settings cannot be changed now", node_),
               "`disable` de-energises it; make sure that the load is held");
+}
+
+/// Where no statusword tells: what the family names instead. An input that enables it tells nothing there.
+Result<void> RestoreTarget::check_at_rest() const {
+  for (const auto& name : desk_->profile->rules.modbus.at_rest) {
+    const auto place = drive::place_of(*desk_->profile, name);
+    if (!place) continue;
+    const auto value = desk_->session->upload(node_, *place);
+    if (!value) return fail(value.error());
+    if (load_le(*value) == 0) continue;
+    return fail(drive_error(Errc::refused, node_, *place,
+                            fmt::format("{} is not 0: it may be enabled, or its motor turns; its settings "
+                                        "cannot be changed now",
+                                        name),
+                            "stop and disable it first; make sure that the load is held"));
+  }
+  return {};
 }
 
 /// Only what this drive's own data calls a setting is ever written, whatever the file says.
@@ -86,7 +105,14 @@ Result<void> RestoreTarget::choose_values() {
   std::map<ObjectAddress, std::string_view> settings;
   for (const auto& setting : drive::settings_of(*desk_->profile))
     settings.emplace(setting.entry->address, setting.left_out);
+  std::size_t unreachable = 0;
   for (const auto& entry : backup_->entries) {
+    const bool without_register =
+        desk_->session->modbus() != nullptr && !desk_->profile->rules.modbus.register_of(entry.object);
+    if (entry.bytes && without_register) {
+      ++unreachable;
+      continue;
+    }
     const bool address = is_address(desk_->profile, entry.object);
     if (!entry.bytes || (address && !choice_.with_address)) continue;
     const auto setting = settings.find(entry.object);
@@ -99,6 +125,9 @@ Result<void> RestoreTarget::choose_values() {
     else if (const auto left_out = leave_out(entry, reason); !left_out)
       return left_out;
   }
+  if (unreachable > 0)
+    desk_->notices.push_back(fmt::format(
+        "node {}: {} values of {} have no Modbus register and stay as they are", node_, unreachable, title_));
   return {};
 }
 

@@ -44,6 +44,7 @@ class RestoreTarget {
  private:
   Result<void> check_identity();
   Result<void> check_standstill() const;
+  Result<void> check_at_rest() const;
   Result<void> leave_out(const Backup::Entry& entry, std::string_view reason);
   Result<void> choose_values();
   Result<void> read_present();

@@ -154,6 +154,27 @@ Value store(const drive::Profile& profile) {
                  "restores at the next start"}};
 }
 
+/// Null for a family whose data name no registers.
+Value modbus(const Rules& rules, bool chinese) {
+  const auto& r = rules.modbus;
+  if (!r.exists()) return {};
+  std::string text;
+  List blocks;
+  for (const auto& block : r.registers) {
+    append(text, fmt::format("{:04X}h-{:04X}h in {:04X}h-{:04X}h", block.index, block.index + block.count - 1,
+                             block.at, block.at + block.count - 1));
+    blocks.emplace_back(Record{{"index", block.index}, {"count", block.count}, {"at", block.at}});
+  }
+  return Record{{"registers", text, Show::text, "objects in registers"},
+                {"registers", std::move(blocks), Show::json},
+                {"node_id", report::text_or_null(r.node_id), Show::everywhere, "address in"},
+                {"baud", report::text_or_null(r.baud), Show::everywhere, "speed in"},
+                {"framing", report::text_or_null(r.framing), Show::everywhere, "RTU or ASCII in"},
+                {"silence_ms", r.silence_ms, Show::everywhere, "silence (ms)"},
+                {"at_rest", text_list(r.at_rest), Show::everywhere, "0 at rest"},
+                {"motion", report::text_or_null(chinese && !r.motion_zh.empty() ? r.motion_zh : r.motion)}};
+}
+
 Value motion(const Rules& rules) {
   const auto& r = rules.motion;
   return Record{
@@ -249,6 +270,7 @@ Record rules_record(const drive::Profile& profile, bool chinese) {
              {"exact_length", rules.sdo.exact_length, Show::everywhere, "exact SDO length"},
              {"units", units(rules)},
              {"pdo", pdo(rules), Show::everywhere, "PDO"},
+             {"modbus", modbus(rules, chinese), Show::everywhere, "Modbus"},
              {"store", store(profile), Show::everywhere, "storing"},
              {"motion", motion(rules)},
              {"fault", fault(rules), Show::everywhere, "faults and emergencies"},

@@ -73,6 +73,31 @@ sdo_info = true
     EXPECT_FALSE(parse_rules(head + "mailbox_out = " + wrong + "\n", "x1.toml")) << wrong;
 }
 
+TEST(Rules, RegistersOfModbusAreBlocksOfObjects) {
+  const std::string head = "format = 1\nfamily = \"x1\"\n[modbus]\n";
+  const auto rules = parse_rules(
+      head +
+          "registers = [{ index = 0x2000, count = 0x300, at = 0 }, { index = 0x3000, count = 0x30, at = 0x1000 }]",
+      "x1.toml");
+  ASSERT_TRUE(rules) << rules.error().message;
+  const auto& modbus = rules->modbus;
+  EXPECT_EQ(modbus.register_of({0x2000, 0}), 0);
+  EXPECT_EQ(modbus.register_of({0x22FF, 0}), 0x02FF);
+  EXPECT_EQ(modbus.register_of({0x2300, 0}), std::nullopt);
+  EXPECT_EQ(modbus.register_of({0x2000, 1}), std::nullopt);
+  EXPECT_EQ(modbus.register_of({0x302F, 0}), 0x102F);
+  EXPECT_EQ(modbus.register_of({0x3030, 0}), std::nullopt);
+  EXPECT_EQ(modbus.register_of({0x1FFF, 0}), std::nullopt);
+  EXPECT_EQ(modbus.object_at(0x02FF), (ObjectAddress{0x22FF, 0}));
+  EXPECT_EQ(modbus.object_at(0x0300), std::nullopt);
+  EXPECT_EQ(modbus.object_at(0x1000), (ObjectAddress{0x3000, 0}));
+  for (const auto* bad :
+       {"registers = [{ index = 0x2000, count = 0, at = 0 }]", "registers = [{ index = 0x2000, count = 1 }]",
+        "registers = [{ index = 0xFFFF, count = 2, at = 0 }]", "inputs = 33", "speed = 3"})
+    EXPECT_FALSE(parse_rules(head + bad, "x1.toml")) << bad;
+  EXPECT_FALSE(parse_rules("format = 1\nfamily = \"x1\"\n", "x1.toml")->modbus.exists());
+}
+
 TEST(Rules, KnowSeveralWaysToOneMeasureAndWordsInTwoLanguages) {
   const auto rules = parse_rules(R"(
 format = 1

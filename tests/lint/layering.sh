@@ -11,11 +11,12 @@ declare -A may=(
   [canopen]="base can"
   [ethercat]="base canopen"
   [ethernet]="base can"
+  [modbus]="base can"
   [od]="base"
   [drive]="base od"
   [report]="base"
-  [sim]="base can canopen ethercat ethernet od drive"
-  [session]="base can canopen ethercat ethernet od drive sim"
+  [sim]="base can canopen ethercat ethernet modbus od drive"
+  [session]="base can canopen ethercat ethernet modbus od drive sim"
   [show]="base can canopen od drive sim session report"
   [motion]="base can canopen od drive sim session report show"
   [settings]="base can canopen od drive sim session report show"
@@ -63,12 +64,12 @@ done
 
 # A simulated drive is a model without a wire and ports around it: of canopen the model includes what knows no frame, of sim nothing
 # that does. What is new in sim is the model's until it is named here.
-wire='can_port|cell|communication_guard|device|emergency_producer|esc_[a-z_]+|heartbeat_consumer|lss_slave|pdo_engine|pdo_guard|sim_bus|sim_drive|sim_port'
+wire='can_port|cell|communication_guard|device|emergency_producer|esc_[a-z_]+|heartbeat_consumer|lss_slave|modbus_cell|modbus_port|modbus_unit|pdo_engine|pdo_guard|sim_bus|sim_drive|sim_port'
 frameless='node_id|object_store|sdo_abort'
 model=$(find src/sim -name '*.?pp' | grep -vE "/($wire)\.[ch]pp$")
 grep -q 'drive_model\.hpp' <<<"$model" || { echo "src/sim/drive_model.hpp was not found: the check itself is broken"; bad=1; }
 # shellcheck disable=SC2086  # Names of files without spaces.
-if grep -nE "^#include \"(can/|canopen/|ethercat/|sim/($wire)\.hpp)" $model | grep -vE "\"canopen/($frameless)\.hpp\""; then echo "the model of a simulated drive must know no wire"; bad=1; fi
+if grep -nE "^#include \"(can/|canopen/|ethercat/|modbus/|sim/($wire)\.hpp)" $model | grep -vE "\"canopen/($frameless)\.hpp\""; then echo "the model of a simulated drive must know no wire"; bad=1; fi
 for header in ${frameless//|/ }; do
   if grep -nE '^#include "(can|canopen)/' "src/canopen/$header.hpp"; then echo "canopen/$header.hpp must know no frame"; bad=1; fi
 done

@@ -11,6 +11,7 @@
 #include "command/registry.hpp"
 #include "drive/naming.hpp"
 #include "session/open_port.hpp"
+#include "session/open_register_line.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -73,6 +74,7 @@ class Candidates {
     for (const auto& interface : can::can_interfaces()) add(interface);
     for (const auto word : {"sim:", "local:", "slcan:/dev/", "socketcand://"}) add(word);
     for (const auto& url : session::ethercat_urls()) add(url);
+    for (const auto& url : session::modbus_urls()) add(url);
   }
 
   void add_axes() {

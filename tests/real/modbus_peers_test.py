@@ -1,0 +1,169 @@
+#!/usr/bin/env python3
+"""Modbus against other stacks: the server of libmodbus, and pymodbus as server and as client of a simulated drive.
+Stacks that are not installed are left out; without any of them the exit code is 77.
+usage: modbus_peers_test.py SERVOCTL"""
+import json
+import os
+import shutil
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "cli"))
+from checks import check, finish
+from joined_ptys import JoinedPtys
+
+servoctl = os.path.abspath(sys.argv[1])
+folder = tempfile.mkdtemp(prefix="servoctl-peers-")
+env = {k: v for k, v in os.environ.items() if not k.startswith("SERVOCTL_")}
+env.update(LANG="C", SERVOCTL_DRIVE="ts", XDG_STATE_HOME=folder)
+
+LIBMODBUS_SERVER = r"""
+#include <modbus/modbus.h>
+#include <stdlib.h>
+#include <string.h>
+int main(int argc, char** argv) {
+  const int tcp = strcmp(argv[1], "tcp") == 0;
+  modbus_t* line = tcp ? modbus_new_tcp("127.0.0.1", atoi(argv[2])) : modbus_new_rtu(argv[2], 19200, 'N', 8, 1);
+  modbus_mapping_t* map = modbus_mapping_new(4, 8, 0x1030, 0);
+  uint8_t query[MODBUS_TCP_MAX_ADU_LENGTH];
+  int listening = -1;
+  map->tab_registers[0x33] = 200;
+  map->tab_registers[0x99] = 1;
+  map->tab_registers[0x100A] = 0xF32D;
+  map->tab_input_bits[2] = 1;
+  map->tab_bits[0] = 1;
+  modbus_set_slave(line, 1);
+  if (tcp) listening = modbus_tcp_listen(line, 1);
+  else if (modbus_connect(line) != 0) return 1;
+  for (;;) {
+    if (tcp) modbus_tcp_accept(line, &listening);
+    for (;;) {
+      const int size = modbus_receive(line, query);
+      if (size > 0) modbus_reply(line, query, size, map);
+      if (size < 0 && tcp) break;
+    }
+  }
+}
+"""
+
+PYMODBUS_SERVER = r"""
+import sys
+from pymodbus.datastore import ModbusSequentialDataBlock as Block, ModbusServerContext, ModbusSlaveContext
+from pymodbus.server import StartSerialServer, StartTcpServer
+from pymodbus.transaction import ModbusAsciiFramer, ModbusRtuFramer, ModbusSocketFramer
+registers = [0] * 0x1030
+registers[0x33], registers[0x99] = 200, 1
+unit = ModbusSlaveContext(hr=Block(0, registers), di=Block(0, [0, 0, 1, 0, 0, 0, 0, 0]), co=Block(0, [1, 0, 0, 0]), zero_mode=True)
+context = ModbusServerContext(slaves={1: unit}, single=False)
+kind, where = sys.argv[1:]
+if kind == "tcp":
+    StartTcpServer(context=context, address=("127.0.0.1", int(where)), framer=ModbusSocketFramer)
+else:
+    StartSerialServer(context=context, port=where, framer={"rtu": ModbusRtuFramer, "ascii": ModbusAsciiFramer}[kind], baudrate=19200,
+                      bytesize=8, parity="N", stopbits=1)
+"""
+
+PYMODBUS_CLIENT = r"""
+import sys
+from pymodbus.client import ModbusSerialClient, ModbusTcpClient
+from pymodbus.transaction import ModbusAsciiFramer, ModbusRtuFramer
+kind, where = sys.argv[1:]
+if kind == "tcp":
+    client = ModbusTcpClient("127.0.0.1", port=int(where))
+else:
+    client = ModbusSerialClient(where, framer={"rtu": ModbusRtuFramer, "ascii": ModbusAsciiFramer}[kind], baudrate=19200, bytesize=8,
+                                parity="N", stopbits=1, timeout=1)
+assert client.connect()
+assert client.read_holding_registers(0x00, 1, slave=1).registers == [2]
+assert not client.write_register(0x33, 200, slave=1).isError()
+assert client.read_holding_registers(0x33, 1, slave=1).registers == [200]
+assert not client.write_registers(0x30, [5, 6], slave=1).isError()
+assert client.read_holding_registers(0x30, 2, slave=1).registers == [5, 6]
+assert client.read_discrete_inputs(0, 8, slave=1).bits == [False] * 8
+assert len(client.read_coils(0, 4, slave=1).bits) == 8
+assert client.read_holding_registers(0x0500, 1, slave=1).exception_code == 2
+assert client.write_register(0x99, 2, slave=1).exception_code == 3
+assert client.write_register(0x1000, 2, slave=1).exception_code == 2
+assert client.read_input_registers(0, 1, slave=1).exception_code == 1
+print("good")
+"""
+
+
+def run(bus, *words):
+    return subprocess.run([servoctl, "-b", bus, *words], env=env, capture_output=True, text=True, cwd=folder)
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+def ask(what, bus, server):
+    begin = time.monotonic()
+    while run(bus, "param", "get", "Fn_33", "-n", "1", "--timeout", "200ms").returncode != 0 and time.monotonic() - begin < 10:
+        time.sleep(0.1)
+    try:
+        answer = run(bus, "param", "get", "Fn_33", "-n", "1", "--json")
+        check(f"{what}: a register is read\n{answer.stdout}{answer.stderr}", json.loads(answer.stdout)["result"][0]["value"] == 200)
+        answer = run(bus, "param", "set", "Fn_33=-300", "-n", "1")
+        check(f"{what}: written, and read back\n{answer.stdout}{answer.stderr}", answer.returncode == 0 and "read back" in answer.stdout)
+        answer = run(bus, "info", "-n", "1", "--json")
+        told = json.loads(answer.stdout)["result"][0]
+        check(f"{what}: inputs and outputs\n{answer.stdout}{answer.stderr}",
+              told["inputs"] == [False, False, True] + [False] * 5 and told["outputs"] == [True, False, False, False])
+        answer = run(bus, "backup", "peer.json", "-n", "1")
+        check(f"{what}: backup of all parameters\n{answer.stdout}{answer.stderr}", answer.returncode == 0)
+        answer = run(bus, "read", "Dn_2F", "-n", "1", "--json")
+        check(f"{what}: the last register\n{answer.stdout}", answer.returncode == 0)
+        answer = run(bus, "watch", "Dn_00", "--for", "300ms", "--every", "50ms", "-n", "1")
+        check(f"{what}: watch\n{answer.stdout}{answer.stderr}", answer.returncode == 0)
+        answer = run(bus, "scan", "-n", "1,2", "--timeout", "300ms")
+        check(f"{what}: scan\n{answer.stdout}{answer.stderr}", answer.returncode == 0)
+    finally:
+        server.terminate()
+        server.wait()
+
+
+def python(text, *words):
+    return subprocess.Popen([sys.executable, "-c", text, *words], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+
+
+peers = 0
+library = os.environ.get("LIBMODBUS", "")  # Where it is unpacked, if it is not installed.
+flags = [f"-I{library}/usr/include", f"-L{library}/usr/lib/x86_64-linux-gnu", f"-Wl,-rpath,{library}/usr/lib/x86_64-linux-gnu"] if library else []
+program = os.path.join(folder, "server")
+with open(program + ".c", "w", encoding="utf-8") as source:
+    source.write(LIBMODBUS_SERVER)
+if shutil.which("cc") and subprocess.run(["cc", program + ".c", "-o", program, *flags, "-l:libmodbus.so.5"], capture_output=True).returncode == 0:
+    peers += 1
+    port = free_port()
+    ask("libmodbus over TCP", f"modbus://127.0.0.1:{port}", subprocess.Popen([program, "tcp", str(port)]))
+    line = JoinedPtys()
+    ask("libmodbus over RTU", f"modbus:{line.ends[0]}@19200,8N1", subprocess.Popen([program, "rtu", line.ends[1]]))
+    line.close()
+else:
+    print("libmodbus is not here: left out")
+if subprocess.run([sys.executable, "-c", "import pymodbus.server, pymodbus.client"], capture_output=True).returncode == 0:
+    peers += 1
+    for kind in ("tcp", "rtu", "ascii"):
+        port, line = free_port(), JoinedPtys()
+        form = "19200,8N1" + (",ascii" if kind == "ascii" else "")
+        near, far = (f"modbus://127.0.0.1:{port}",) * 2 if kind == "tcp" else (f"modbus:{line.ends[i]}@{form}" for i in range(2))
+        ask(f"pymodbus over {kind}", near, python(PYMODBUS_SERVER, kind, str(port) if kind == "tcp" else line.ends[1]))
+        drive = subprocess.Popen([servoctl, "sim", "ts@1", "-b", near, "-o", "jsonl"], env=env, stdout=subprocess.PIPE, text=True, cwd=folder)
+        drive.stdout.readline()
+        client = python(PYMODBUS_CLIENT, kind, str(port) if kind == "tcp" else line.ends[1])
+        told = client.communicate(timeout=30)[0]
+        check(f"pymodbus asks a simulated drive over {kind}\n{told}", "good" in told)
+        drive.terminate()
+        drive.wait()
+        line.close()
+else:
+    print("pymodbus is not here: left out")
+if peers == 0:
+    sys.exit(77)
+finish()
