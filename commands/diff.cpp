@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 #include <algorithm>
+#include <set>
 
 #include "base/number.hpp"
 #include "canopen/cob_id.hpp"
 #include "command/command.hpp"
 #include "command/setting_options.hpp"
+#include "session/no_register.hpp"
 #include "settings/comparison.hpp"
 #include "settings/dictionary_comparison.hpp"
 
@@ -69,8 +71,7 @@ class Difference {
         if (!side) return fail(side.error());
         sides_[i] = std::move(*side);
       }
-    if (!are_files())
-      for (auto& side : sides_) settings::leave_unreachable(*context_, profile_, side);
+    for (const std::size_t i : {0U, 1U}) leave_unreached(i);
     const bool whole = std::none_of(operands_.begin(), operands_.end(),
                                     [](const Operand& operand) { return operand.is_factory(); });
     auto comparison = settings::compare(profile_, sides_[0], sides_[1], whole, context_->chinese);
@@ -119,6 +120,16 @@ class Difference {
     return settings::factory_side(*profile_, other_node(i));
   }
 
+  /// What the other side could not know, because it was read over Modbus, is no difference.
+  void leave_unreached(std::size_t i) {
+    if (!are_files()) return settings::leave_unreachable(*context_, profile_, sides_[i]);
+    const auto left = std::erase_if(
+        sides_[i].values, [&](const auto& value) { return unreached_[1 - i].count(value.first) != 0; });
+    if (left > 0)
+      context_->notices.push_back(fmt::format("{} values of {} are not compared: {} was read over Modbus",
+                                              left, operands_[i].word, operands_[1 - i].word));
+  }
+
   /// The node that a side without one of its own stands for.
   std::uint8_t other_node(std::size_t i) const {
     return operands_[1 - i].node != 0 ? operands_[1 - i].node : sides_[1 - i].node;
@@ -129,6 +140,8 @@ class Difference {
     const auto backup = settings::read_backup(*context_, *operands_[i].source,
                                               own != nullptr ? own : profile_, other_node(i), skip_invalid_);
     if (!backup) return fail(backup.error());
+    for (const auto& entry : backup->entries)
+      if (entry.left_out == session::kNoRegister) unreached_[i].insert(entry.object);
     if (own != nullptr) {
       auto out = settings::side_of(*backup, operands_[i].word);
       out.profile = own;
@@ -176,6 +189,7 @@ class Difference {
   const drive::Profile* sides_own_[2] = {};  ///< Of DCFs that no family describes.
   std::string family_;                       ///< Of the files read so far.
   settings::Side sides_[2];
+  std::set<ObjectAddress> unreached_[2];  ///< What the file could not hold: it was read over Modbus.
 };
 
 Result<Value> run(Context& context, const Arguments& arguments) {

@@ -5,6 +5,7 @@
 #include "command/command.hpp"
 #include "drive/cia402.hpp"
 #include "drive/standard_objects.hpp"
+#include "session/no_register.hpp"
 #include "show/fault_records.hpp"
 #include "show/reading.hpp"
 #include "show/records.hpp"
@@ -26,7 +27,6 @@ std::string code_text(std::uint16_t code, const std::string& words) {
 }
 
 constexpr std::string_view kMissing = "the drive does not have it";
-constexpr std::string_view kNotReached = "no Modbus register";
 
 /// Everything one node says of its faults.
 class FaultReport {
@@ -71,7 +71,7 @@ class FaultReport {
   }
 
   std::string missing() const {
-    return std::string(context_->session->modbus() != nullptr ? kNotReached : kMissing);
+    return std::string(context_->session->modbus() != nullptr ? session::kNoRegister : kMissing);
   }
 
   std::string words(std::uint16_t code, const std::array<std::uint8_t, 5>& vendor = {}) {

@@ -52,7 +52,10 @@ function __servoctl_buses
     echo slcan:/dev/
     echo socketcand://
     echo coe:local:
+    find /dev -maxdepth 1 \( -name 'ttyUSB*' -o -name 'ttyACM*' \) 2>/dev/null | sed 's|^|modbus:|'
     echo coe:sim:
+    echo modbus:
+    echo modbus:sim:
 end
 
 function __servoctl_sheets

@@ -134,6 +134,13 @@ std::unique_ptr<ProcessValues> ModbusNetwork::process_values(std::uint8_t, std::
   return std::make_unique<NoValues>();
 }
 
+std::string ModbusNetwork::write_frame(std::uint8_t node, ObjectAddress object, ByteSpan data) const {
+  const auto address = register_of(node, object);
+  if (!address || data.size() != 2) return {};
+  const auto pdu = modbus::write_request(*address, static_cast<std::uint16_t>(load_le(data)));
+  return to_hex(modbus::frame(client_.framing(), {node, 0, pdu}));
+}
+
 /// For the drive, and for twice eight characters on the line; what is behind a gateway is not known.
 Duration ModbusNetwork::scan_patience() const {
   constexpr Duration kOfADrive = std::chrono::milliseconds(100);

@@ -63,6 +63,8 @@ class ModbusNetwork final : public Network {
   }
   /// The node's, for requests that are not of objects.
   std::unique_ptr<ModbusObjectChannel> request_channel(std::uint8_t node, Duration timeout);
+  /// The bytes of a write in hexadecimal; empty for what has no register or is no register's value.
+  std::string write_frame(std::uint8_t node, ObjectAddress object, ByteSpan data) const;
   const std::string& url() const { return url_; }
   /// How long one unit of many is waited for, when all are asked whether they are there.
   Duration scan_patience() const;

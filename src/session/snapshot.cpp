@@ -4,11 +4,10 @@
 #include <algorithm>
 
 #include "canopen/sdo_abort.hpp"
+#include "session/no_register.hpp"
 
 namespace servoctl::session {
 namespace {
-
-constexpr std::string_view kNoRegister = "no Modbus register";
 
 SdoRequest read_request(std::uint8_t node, ObjectAddress object, std::size_t size) {
   return {.node = node, .object = object, .size = size};

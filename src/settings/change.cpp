@@ -9,7 +9,7 @@
 #include "session/cob_id_check.hpp"
 #include "session/measure.hpp"
 #include "settings/keeping_nodes.hpp"
-#include "settings/rest.hpp"
+#include "settings/register_writes.hpp"
 
 namespace servoctl::settings {
 namespace {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "drive/standard_objects.hpp"
+#include "settings/register_writes.hpp"
 
 namespace servoctl::settings {
 namespace {
@@ -26,6 +27,7 @@ void KeepingNodes::rehearse(session::Rehearsal& rehearsal) {
 }
 
 Result<void> KeepingNodes::open(const WriteOptions& options) {
+  if (const auto reachable = check_registers(*desk_, changes_); !reachable) return reachable;
   for (auto& each : nodes_) {
     const auto node = each.first;
     const bool choose = std::any_of(changes_.begin(), changes_.end(), [&](const Change& change) {

@@ -6,6 +6,7 @@
 #include "canopen/sdo_client.hpp"
 #include "drive/naming.hpp"
 #include "session/can_network.hpp"
+#include "session/modbus_network.hpp"
 
 namespace servoctl::show {
 namespace {
@@ -55,6 +56,20 @@ report::Value planned_on_ring(const Desk& desk, std::span<const session::Planned
   return table;
 }
 
+/// The frames of Modbus; a network of CAN has none of them, nor one of Modbus any but writes.
+report::Value planned_on_line(const Desk& desk, std::span<const session::PlannedMessage> messages) {
+  report::Table table;
+  table.columns = {{"node"}, {"object"}, {"name"}, {"when"}, {"frame"}};
+  table.json_only = messages.empty();
+  for (const auto& message : messages)
+    if (message.write)
+      table.rows.push_back(
+          {message.node, object_text(message), report::text_or_null(name_text(desk, message)),
+           report::text_or_null(message.when),
+           desk.session->modbus()->write_frame(message.node, message.write->object, *message.write->data)});
+  return table;
+}
+
 }  // namespace
 
 std::string frame_text(const session::PlannedMessage& message) {
@@ -70,10 +85,11 @@ std::string frame_text(const session::PlannedMessage& message) {
 }
 
 bool is_sent_as_frames(const Desk& desk) {
-  return desk.session == nullptr || !desk.session->network().is_ring();
+  return desk.session == nullptr || (!desk.session->network().is_ring() && desk.session->modbus() == nullptr);
 }
 
 report::Value planned_messages(const Desk& desk, std::span<const session::PlannedMessage> messages) {
+  if (desk.session != nullptr && desk.session->modbus() != nullptr) return planned_on_line(desk, messages);
   if (!is_sent_as_frames(desk)) return planned_on_ring(desk, messages);
   report::Table table;
   table.columns = {{"node"}, {"object"}, {"name"}, {"when"}, {"frame"}};

@@ -14,7 +14,7 @@ std::string frame_text(const session::PlannedMessage& message);
 bool is_sent_as_frames(const Desk& desk);
 
 /// What --dry-run shows of commands that change a drive: `node object name when frame`, one row a message. On
-/// EtherCAT there are no such frames, and `value` says what is written.
+/// EtherCAT there are no such frames, and `value` says what is written; on Modbus `frame` is its bytes.
 report::Value planned_messages(const Desk& desk, std::span<const session::PlannedMessage> messages);
 
 }  // namespace servoctl::show

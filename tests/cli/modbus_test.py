@@ -58,7 +58,15 @@ def everything(what, asks, serves):
         answer = run(asks, "restore", "one.json", "-n", "1", "--yes")
         check(f"{what}: restore\n{answer.stdout}{answer.stderr}", answer.returncode == 0)
         check(f"{what}: puts it back", value(run(asks, "param", "get", "Fn_33", "-n", "1", "--json")) == -200)
-        run(asks, "param", "set", "Fn_38=1", "-n", "1", "--yes")
+        run("sim:ts@1", "backup", "can.json", "-n", "1")
+        answer = run(asks, "diff", "one.json", "can.json", "--json")
+        told = [row["id"] for row in json.loads(answer.stdout)["result"]["differences"]]
+        check(f"{what}: a backup compares with one over CAN\n{answer.stdout}{answer.stderr}", told == ["Fn_33"])
+        answer = run(asks, "restore", "can.json", "-n", "1", "--yes")
+        check(f"{what}: which can be put back\n{answer.stdout}{answer.stderr}",
+              answer.returncode == 0 and "have no Modbus register" in answer.stderr)
+        answer = run(asks, "param", "set", "Fn_38=1", "-n", "1", "--yes")
+        check(f"{what}: what may turn the motor is told\n{answer.stderr}", "nothing stops it" in answer.stderr)
         answer = run(asks, "restore", "one.json", "-n", "1", "--yes")
         check(f"{what}: not into a drive that is enabled\n{answer.stderr}", answer.returncode == 8)
         answer = run(asks, "jog", "60rpm", "-n", "1", "--yes")
@@ -127,6 +135,10 @@ out, err = watching.communicate(timeout=10)
 check(f"a connection that is lost ends a watch with exit code 3\n{out[-300:]}{err}", watching.returncode == 3)
 answer = run(f"modbus://127.0.0.1:{port}", "param", "get", "Fn_33", "-n", "1")
 check(f"nobody listens\n{answer.stderr}", answer.returncode == 3 and "nobody listens" in answer.stderr)
+
+for bus, says in (("modbus:/dev/nosuchtty@9600", "no such port"), ("modbus://no.such.host.invalid", "not found")):
+    answer = run(bus, "scan")
+    check(f"{bus}: {says}\n{answer.stderr}", answer.returncode == 3 and says in answer.stderr)
 
 # Another service than Modbus.
 with socket.socket() as other:

@@ -27,7 +27,9 @@ class OnRegisters : public testing::Test {
   }
   bool works(const command::Command& command, const drive::Profile* profile) {
     const auto possible = check_registers(command, *session, profile, false);
-    if (!possible) EXPECT_EQ(possible.error().code, Errc::usage) << command.path;
+    if (!possible) {
+      EXPECT_EQ(possible.error().code, Errc::usage) << command.path;
+    }
     return possible.has_value();
   }
 
@@ -39,8 +41,9 @@ class OnRegisters : public testing::Test {
 TEST_F(OnRegisters, NothingThatMovesADriveWorks) {
   for (const auto* command : command::registry())
     if (command->effect >= Effect::moves || includes(command->needs, Needs::can) ||
-        includes(command->needs, Needs::ethercat))
+        includes(command->needs, Needs::ethercat)) {
       EXPECT_FALSE(works(*command, &ts)) << command->path;
+    }
 }
 
 TEST_F(OnRegisters, WorksWhatNeedsParametersAlone) {

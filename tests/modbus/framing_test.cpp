@@ -55,7 +55,9 @@ TEST(ModbusFraming, TakesPrintedFramesByteByByte) {
       }
       const auto message = in.take();
       ASSERT_EQ(message.has_value(), !bytes.empty()) << printed.line;
-      if (message) EXPECT_EQ(message->pdu, Bytes(bytes.begin() + 1, bytes.end() - 2));
+      if (message) {
+        EXPECT_EQ(message->pdu, Bytes(bytes.begin() + 1, bytes.end() - 2));
+      }
       EXPECT_EQ(in.take_damaged(), 0U);
     }
 }

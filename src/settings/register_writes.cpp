@@ -1,8 +1,21 @@
-#include "settings/rest.hpp"
+#include "settings/register_writes.hpp"
 
 #include <fmt/format.h>
 
+#include "session/modbus_network.hpp"
+
 namespace servoctl::settings {
+
+Result<void> check_registers(const show::Desk& desk, std::span<const Change> changes) {
+  const auto* line = desk.session->modbus();
+  if (line == nullptr) return {};
+  for (const auto& change : changes)
+    if (line->is_known(change.node) && !line->has_register(change.node, change.target.address))
+      return fail(drive_error(Errc::sdo_abort, change.node, change.target.address,
+                              "it has no Modbus register",
+                              "nothing was written; `param list` shows what has one"));
+  return {};
+}
 
 void tell_not_at_rest(show::Desk& desk, std::span<const Change> changes,
                       std::span<const Result<session::Written>> written) {
