@@ -108,7 +108,8 @@ Result<void> BusHolder::connect(const std::string& url) {
   auto session = std::make_unique<session::Session>(std::move(*network), url, options_);
   session->options().beside = [this] { return serve_beside(); };
   // Boot-ups of drives that are simulated in this process are no news.
-  if (auto heard = session->listen(); !heard) return heard;
+  // Ctrl-C closes no bus that was just opened: a drive that is to be stopped may be behind it.
+  if (auto heard = session->listen(); !heard && heard.error().code != Errc::interrupted) return heard;
   (void)session->take_events();
   if (auto left = left_energised_.extract(session::canonical_url(url)))
     session->energised() = std::move(left.mapped());
@@ -169,14 +170,16 @@ void BusHolder::let_go() {
   }
 }
 
-/// A bus that is lost may come back: behind it drives are energised.
+/// A bus that is lost may come back: behind it drives are energised. A signal ends one try to open it, not
+/// the patience.
 Result<void> BusHolder::connect_again(const std::string& url, const std::set<std::uint8_t>& nodes) {
   const auto end = steady_now() + session::LinkWait::kPatience;
   auto next_line = steady_now();
   for (;;) {
     auto back = connect(url);
     const auto time = steady_now();
-    if (back || back.error().code != Errc::bus || time >= end) return back;
+    const bool may_come = !back && (back.error().code == Errc::bus || back.error().code == Errc::interrupted);
+    if (!may_come || time >= end) return back;
     if (time >= next_line) {
       console_->note(fmt::format("notice: {}: trying again to stop node{} {}\n", back.error().message,
                                  nodes.size() == 1 ? "" : "s", fmt::join(nodes, ", ")));

@@ -130,6 +130,39 @@ with World() as world, tempfile.TemporaryDirectory() as folder:
     state = run(f"slcan:{world.adapter.path}@500k", "status", "-n", "1", "-d", "gsd600", "--json").stdout
     check(f"the drive is not energised\n{state}", json.loads(state)["result"][0]["energised"] is False)
 
+# The adapter is gone when a batch file ends that has left the drive energised, and somebody presses Ctrl-C: it is waited for.
+with World() as world, tempfile.TemporaryDirectory() as folder:
+    name = os.path.join(folder, "adapter")
+    os.symlink(world.adapter.path, name)
+    with open(os.path.join(folder, "lines"), "w") as lines:
+        lines.write("enable -n 1 --yes\nwait 20s\n")
+    batch = subprocess.Popen([servoctl, "-b", f"slcan:{name}@500k", "-d", "gsd600", "run", lines.name], env=env,
+                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    for _ in range(500):
+        if any(line.startswith("t6018") and "4060000F" in line for line in world.adapter.heard):
+            break
+        time.sleep(0.02)
+    time.sleep(0.5)
+    os.remove(name)
+    world.adapter.unplug()
+    world.wire.adapters.remove(world.adapter)
+    time.sleep(0.5)
+    silent = Adapter(world.wire, silent=True, version="")  # Opening it takes its time, in which the signals come.
+    os.symlink(silent.path, name)
+    for _ in range(3):
+        time.sleep(0.3)
+        batch.send_signal(signal.SIGINT)
+    time.sleep(0.3)
+    os.remove(name)
+    silent.unplug()
+    world.wire.adapters.remove(silent)
+    world.adapter = Adapter(world.wire)
+    os.symlink(world.adapter.path, name)
+    out, err = batch.communicate(timeout=40)
+    state = run(f"slcan:{world.adapter.path}@500k", "status", "-n", "1", "-d", "gsd600", "--json").stdout
+    check(f"a drive left energised is stopped though signals came\n{out}{err}{state}",
+          json.loads(state)["result"][0]["energised"] is False and "disabled" in err)
+
 for bus, code, words in (
         ("slcan:/dev/null@500k", 3, "/dev/null is no serial port"),
         (f"slcan:{__file__}@500k", 3, "is no serial port"),
