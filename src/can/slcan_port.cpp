@@ -157,6 +157,8 @@ SerialPort::~SerialPort() {
   // close() waits half a minute for bytes that a port which hangs does not take.
   if (waiting() > 0) ::tcflush(port_.get(), TCOFLUSH);
   ::tcsetattr(port_.get(), TCSANOW, &before_);
+  // Else the port stays closed to ordinary users while any other program still has it.
+  (void)::ioctl(port_.get(), TIOCNXCL);
 }
 
 /// Bytes that were written and have not left.
