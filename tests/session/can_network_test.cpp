@@ -46,6 +46,27 @@ TEST_F(CanNetworkTest, HasHeartbeatAndGuardingForItsNodesAndNoProcessImage) {
   EXPECT_FALSE(session->network().carries(LifeSign::Kind::process_data));
 }
 
+TEST_F(CanNetworkTest, HasNoGuardingWhereThereAreNoRemoteFrames) {
+  CanNetwork remote(std::make_unique<ScriptedBus>(), "socketcand://cabinet/can0");
+  EXPECT_TRUE(remote.carries(LifeSign::Kind::heartbeat));
+  EXPECT_FALSE(remote.carries(LifeSign::Kind::guarding))
+      << "a motion would rely on questions that nobody hears";
+}
+
+TEST_F(CanNetworkTest, ABusOffNamesACommandOnlyWhereItHelps) {
+  const auto hint_on = [](const std::string& url) {
+    auto owned = std::make_unique<ScriptedBus>();
+    auto* const wire = owned.get();
+    CanNetwork network(std::move(owned), url);
+    wire->arrive("20000040#0000000000000000", 1ms);
+    const auto stepped = network.step(network.now() + 10ms);
+    return stepped ? std::string("none") : stepped.error().hint;
+  };
+  EXPECT_NE(hint_on("socketcan:can9").find("`bus up can9`"), std::string::npos);
+  EXPECT_EQ(hint_on("slcan:/dev/ttyACM0@500k").find("bus up"), std::string::npos);
+  EXPECT_NE(hint_on("slcan:/dev/ttyACM0@500k").find("opens the adapter anew"), std::string::npos);
+}
+
 TEST_F(CanNetworkTest, TellsStatesAndEventsInTheWordsOfEveryNetworkInTheOrderOfTime) {
   bus->arrive("705#00", 1ms);
   bus->arrive("085#1043080000000000", 2ms);
