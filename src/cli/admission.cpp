@@ -46,7 +46,7 @@ Result<void> check_registers(const command::Command& command, session::Session& 
       fmt::format("'{}' does not work over Modbus, which has parameters and readings alone", command.path);
   if (command.effect < Effect::moves)
     return fail(Errc::usage, std::move(what),
-                "what works there: `read`, `write`, `param`, `watch`, `backup`, `restore`, `fault show`");
+                "what works there: read, write, param get, param set, watch, backup, restore, fault show");
   const auto* rules = profile == nullptr ? nullptr : &profile->rules.modbus;
   if (rules == nullptr || rules->motion.empty())
     return fail(Errc::usage, std::move(what), "motion needs the drive's CAN or EtherCAT port");

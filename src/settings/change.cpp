@@ -134,10 +134,6 @@ std::string_view reason_to_ask(const drive::Profile* profile, const Change& chan
   if (profile != nullptr && (is_parameter(*profile, change, profile->rules.nmt.node_id) ||
                              is_parameter(*profile, change, profile->rules.nmt.bitrate)))
     return "After a restart the drive has another node-ID.";
-  if (profile != nullptr && (is_parameter(*profile, change, profile->rules.modbus.node_id) ||
-                             is_parameter(*profile, change, profile->rules.modbus.baud) ||
-                             is_parameter(*profile, change, profile->rules.modbus.framing)))
-    return "After a restart the drive has another Modbus address, speed or form of frames.";
   return {};
 }
 
@@ -224,7 +220,8 @@ Result<void> check_change(const show::Desk& desk, std::uint8_t node, const drive
 
 Result<void> confirm_changes(show::Desk& desk, std::span<const Change> changes) {
   for (const auto& change : changes) {
-    const auto reason = reason_to_ask(desk.profile, change);
+    auto reason = reason_to_ask(desk.profile, change);
+    if (reason.empty()) reason = register_reason(desk, change);
     if (reason.empty()) continue;
     const auto question = fmt::format("Write {} on node {}? {}", name_of(change.target), change.node, reason);
     if (const auto answer = desk.confirm(question); !answer) return answer;

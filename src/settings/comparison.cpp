@@ -88,19 +88,22 @@ void leave_unreachable(show::Desk& desk, const drive::Profile* profile, Side& si
 
 bool is_address(const drive::Profile* profile, ObjectAddress object) {
   if (profile == nullptr) return false;
-  const auto& nmt = profile->rules.nmt;
-  const auto& modbus = profile->rules.modbus;
-  const auto is_place = [&](const std::string& name) { return drive::place_of(*profile, name) == object; };
-  return is_place(nmt.node_id) || is_place(nmt.bitrate) || is_place(modbus.node_id) ||
-         is_place(modbus.baud) || is_place(modbus.framing);
+  const auto& rules = profile->rules.nmt;
+  return drive::place_of(*profile, rules.node_id) == object ||
+         drive::place_of(*profile, rules.bitrate) == object;
+}
+
+bool is_line_address(const drive::Profile& profile, ObjectAddress object) {
+  const auto& rules = profile.rules.modbus;
+  return drive::place_of(profile, rules.node_id) == object ||
+         drive::place_of(profile, rules.baud) == object || drive::place_of(profile, rules.framing) == object;
 }
 
 Bytes for_node(const drive::Profile* profile, ObjectAddress object, const Bytes& bytes, std::uint8_t from,
                std::uint8_t to) {
   if (profile == nullptr || from == to) return bytes;
   const auto number = load_le(bytes);
-  if (drive::place_of(*profile, profile->rules.nmt.node_id) == object ||
-      drive::place_of(*profile, profile->rules.modbus.node_id) == object)
+  if (drive::place_of(*profile, profile->rules.nmt.node_id) == object)
     return number == from ? store_le(to, bytes.size()) : bytes;
   const auto* entry = profile->dictionary.find(object);
   const bool with_node = entry != nullptr && entry->default_value && entry->default_value->plus_node_id;

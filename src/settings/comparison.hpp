@@ -27,9 +27,10 @@ Side factory_side(const drive::Profile& profile, std::uint8_t node);
 /// `profile` may be null.
 void leave_unreachable(show::Desk& desk, const drive::Profile* profile, Side& side);
 
-/// Whether it is the node-ID or the bitrate, or address, speed and framing of Modbus, by the family's rules.
-/// `profile` may be null.
+/// Whether it is the node-ID or the bitrate, by the family's rules. `profile` may be null.
 bool is_address(const drive::Profile* profile, ObjectAddress object);
+/// Whether it is address, speed or framing of Modbus.
+bool is_line_address(const drive::Profile& profile, ObjectAddress object);
 
 /// Bytes read from node `from` as node `to` would hold them: a COB-ID that contains the node-ID, and the
 /// parameter of the node-ID itself, follow the node. `profile` may be null.

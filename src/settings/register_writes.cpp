@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "session/modbus_network.hpp"
+#include "settings/comparison.hpp"
 
 namespace servoctl::settings {
 
@@ -15,6 +16,12 @@ Result<void> check_registers(const show::Desk& desk, std::span<const Change> cha
                               "it has no Modbus register",
                               "nothing was written; `param list` shows what has one"));
   return {};
+}
+
+std::string_view register_reason(const show::Desk& desk, const Change& change) {
+  const bool is_asked = desk.session != nullptr && desk.session->modbus() != nullptr &&
+                        desk.profile != nullptr && is_line_address(*desk.profile, change.target.address);
+  return is_asked ? "After a restart the drive has another Modbus address, speed or form of frames." : "";
 }
 
 void tell_not_at_rest(show::Desk& desk, std::span<const Change> changes,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <string_view>
 
 #include "session/write.hpp"
 #include "settings/change.hpp"
@@ -10,6 +11,9 @@ namespace servoctl::settings {
 
 /// On Modbus: Errc::sdo_abort for a change of what has no register, before anything is written.
 Result<void> check_registers(const show::Desk& desk, std::span<const Change> changes);
+
+/// On Modbus: why to ask before a change of address, speed or framing; empty for any other.
+std::string_view register_reason(const show::Desk& desk, const Change& change);
 
 /// Where no statusword is (Modbus): says in `desk.notices` of which nodes a parameter that is 0 at rest was
 /// written otherwise, because nothing that servoctl does stops or disables them then. `written` is in the

@@ -113,7 +113,9 @@ Result<void> RestoreTarget::choose_values() {
       ++unreachable;
       continue;
     }
-    const bool address = is_address(desk_->profile, entry.object);
+    const bool address =
+        is_address(desk_->profile, entry.object) ||
+        (desk_->session->modbus() != nullptr && is_line_address(*desk_->profile, entry.object));
     if (!entry.bytes || (address && !choice_.with_address)) continue;
     const auto setting = settings.find(entry.object);
     const auto reason =

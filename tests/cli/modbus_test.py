@@ -86,7 +86,7 @@ def everything(what, asks, serves):
 def both_at_once(asks):
     lines = [subprocess.Popen([servoctl, "-b", asks, "param", "get", "Fn_33", "-n", "1", "--json"], env=env, stdout=subprocess.PIPE, text=True)
              for _ in range(4)]
-    return all(json.loads(line.communicate()[0])["result"][0]["value"] == -200 for line in lines)
+    return all(json.loads(line.communicate()[0])["result"][0]["value"] == 0 for line in lines)
 
 
 def refused_at_once(asks):
