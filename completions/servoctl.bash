@@ -258,8 +258,8 @@ _servoctl_words() {
           1) [ -e "$interface/phy80211" ] || printf '%s\n' "coe:${interface##*/}" ;;
         esac
       done
-      find /dev -maxdepth 1 \( -name 'ttyUSB*' -o -name 'ttyACM*' \) 2>/dev/null | sed 's|^|modbus:|'
-      printf '%s\n' sim: local: coe:local: coe:sim: modbus: modbus:sim: ;;
+      find /dev -maxdepth 1 \( -name 'ttyUSB*' -o -name 'ttyACM*' \) 2>/dev/null | sed 's|.*|slcan:&\nmodbus:&|'
+      printf '%s\n' sim: local: slcan:/dev/ socketcand:// coe:local: coe:sim: modbus: modbus:sim: ;;
   esac
 }
 

@@ -52,7 +52,7 @@ function __servoctl_buses
     echo slcan:/dev/
     echo socketcand://
     echo coe:local:
-    find /dev -maxdepth 1 \( -name 'ttyUSB*' -o -name 'ttyACM*' \) 2>/dev/null | sed 's|^|modbus:|'
+    find /dev -maxdepth 1 \( -name 'ttyUSB*' -o -name 'ttyACM*' \) 2>/dev/null | sed 's|.*|slcan:&\nmodbus:&|'
     echo coe:sim:
     echo modbus:
     echo modbus:sim:
