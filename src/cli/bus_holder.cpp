@@ -108,8 +108,10 @@ Result<void> BusHolder::connect(const std::string& url) {
   auto session = std::make_unique<session::Session>(std::move(*network), url, options_);
   session->options().beside = [this] { return serve_beside(); };
   // Boot-ups of drives that are simulated in this process are no news.
-  // Ctrl-C closes no bus that was just opened: a drive that is to be stopped may be behind it.
-  if (auto heard = session->listen(); !heard && heard.error().code != Errc::interrupted) return heard;
+  // Ctrl-C closes no bus that was just opened where a drive is to be stopped behind it.
+  const bool must_stop = left_energised_.count(session::canonical_url(url)) > 0;
+  if (auto heard = session->listen(); !heard && !(must_stop && heard.error().code == Errc::interrupted))
+    return heard;
   (void)session->take_events();
   if (auto left = left_energised_.extract(session::canonical_url(url)))
     session->energised() = std::move(left.mapped());

@@ -53,6 +53,7 @@ class Adapter(threading.Thread):
             if self.gone:
                 return
             self.gone = True
+        self.join()  # Else it would read from whatever has the number of its descriptor next.
         os.close(self.slave)
         os.close(self.master)
 
