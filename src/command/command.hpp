@@ -56,8 +56,8 @@ constexpr bool includes(Needs all, Needs part) {
 }
 
 /// What the command may do to a drive. From `stores` on it asks on a terminal and needs --yes elsewhere; from
-/// `links` on --read-only refuses it. `links`: changes no drive but an interface of this machine, which others
-/// may use, so that a whole bus may stand still; it asks where it stops one.
+/// `links` on --read-only refuses it. `links`: changes no drive but an interface of this machine, which
+/// others may use, so that a whole bus may stand still; it asks where it stops one.
 enum class Effect : std::uint8_t { none, reads, links, writes, stores, resets, moves };
 
 /// When the family that was named is held against what the drives say they are, before anything is sent.
