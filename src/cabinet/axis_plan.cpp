@@ -8,6 +8,7 @@
 #include "cabinet/axis_identity.hpp"
 #include "cabinet/axis_values.hpp"
 #include "drive/bitrate.hpp"
+#include "drive/naming.hpp"
 #include "session/pdo_setup.hpp"
 #include "session/snapshot.hpp"
 #include "session/state_pause.hpp"

@@ -26,7 +26,9 @@ TransferRun::TransferRun(Session& session, std::span<const SdoRequest> requests)
     const auto node = requests[i].node & 0x7FU;
     if (channel_of_node_[node] == kNone) {
       channel_of_node_[node] = static_cast<int>(channels_.size());
-      channels_.push_back({requests[i].node, session.lend_channel(requests[i].node)});
+      auto& lane = channels_.emplace_back();
+      lane.node = requests[i].node;
+      lane.objects = session.lend_channel(requests[i].node);
     }
     channels_[static_cast<std::size_t>(channel_of_node_[node])].requests.push_back(i);
   }
