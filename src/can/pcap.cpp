@@ -59,9 +59,10 @@ Duration time_of_packet(std::uint64_t stamp, std::uint8_t resolution) {
 
 enum class Packet : std::uint8_t { frame, unsuited, malformed };
 
-/// The CAN frame of a packet: identifier with flags, length, flags of CAN FD, two unused bytes, data.
-Packet parse_can(std::string_view bytes, Frame& out) {
-  ByteCursor in(bytes, true);
+/// The CAN frame of a packet: identifier with flags, length, flags of CAN FD, two unused bytes, data. `big`:
+/// the order of the identifier's bytes.
+Packet parse_can(std::string_view bytes, bool big, Frame& out) {
+  ByteCursor in(bytes, big);
   const auto id = in.u32();
   const auto size = in.u8();
   const auto flags = in.u8();
@@ -78,14 +79,16 @@ Packet parse_can(std::string_view bytes, Frame& out) {
   return Packet::frame;
 }
 
-Packet parse_packet(std::uint32_t link, std::string_view bytes, Frame& out) {
-  if (link == kCan) return parse_can(bytes, out);
+/// The identifier is big-endian where the link is CAN, and as the file's own numbers (`big`) in a cooked
+/// capture (libpcap swaps it with them).
+Packet parse_packet(std::uint32_t link, bool big, std::string_view bytes, Frame& out) {
+  if (link == kCan) return parse_can(bytes, true, out);
   if (link != kCooked && link != kCooked2) return Packet::unsuited;
   const std::size_t header = link == kCooked ? 16 : 20;
   if (bytes.size() < header) return Packet::malformed;
   ByteCursor protocol(bytes.substr(link == kCooked ? 14 : 0), true);
   if (protocol.u16() != kEtherCan) return Packet::unsuited;
-  return parse_can(bytes.substr(header), out);
+  return parse_can(bytes.substr(header), big, out);
 }
 
 /// Both forms: counts, and hands on.
@@ -112,7 +115,7 @@ class PcapReader {
   bool take(const Source& source, std::string_view bytes, Duration time) {
     ++number_;
     Frame frame;
-    const auto packet = parse_packet(source.link, bytes, frame);
+    const auto packet = parse_packet(source.link, big_, bytes, frame);
     if (packet == Packet::malformed) out_.add_unknown(number_);
     out_.unsuited += packet == Packet::unsuited;
     return packet != Packet::frame || (*take_)({time, source.name, frame});

@@ -77,8 +77,11 @@ Result<SlcanBus::Answer> SlcanBus::answer_to_frame(TimePoint limit) {
     return answer;
   }
   if (!version_.empty()) {
+    version_came_ = false;
     if (const auto asked = write("V\r", limit); !asked) return fail(asked.error());
-    answer = wait_for_answer(limit);
+    // An acknowledge that comes meanwhile is late, not lost; the version is waited for all the same, or it
+    // would be taken for the answer to the next frame's question.
+    answer = wait_for_version(limit);
     if (!answer || *answer != Answer::none) return answer;
   }
   if (!version_came_ && (frame_was_acknowledged_ || !version_.empty()))
@@ -109,6 +112,16 @@ void SlcanBus::miss_flags() {
 Result<SlcanBus::Answer> SlcanBus::wait_for_answer(TimePoint limit) {
   is_offering_ = true;
   while (answer_ == Answer::none && !version_came_ && now() < limit) {
+    if (wait_for(port_->get(), POLLIN, limit) != Wake::ready) continue;
+    if (const auto filled = fill(); !filled) return fail(filled.error());
+  }
+  is_offering_ = false;
+  return answer_;
+}
+
+Result<SlcanBus::Answer> SlcanBus::wait_for_version(TimePoint limit) {
+  is_offering_ = true;
+  while (!version_came_ && now() < limit) {
     if (wait_for(port_->get(), POLLIN, limit) != Wake::ready) continue;
     if (const auto filled = fill(); !filled) return fail(filled.error());
   }
@@ -209,6 +222,9 @@ std::vector<std::string> SlcanBus::take_notices() {
   return out;
 }
 
-TimePoint SlcanBus::next_event() const { return inbox_.empty() ? flags_due_ : TimePoint::min(); }
+TimePoint SlcanBus::next_event() const {
+  if (!inbox_.empty()) return TimePoint::min();
+  return port_ ? flags_due_ : kNever;
+}
 
 }  // namespace servoctl::can

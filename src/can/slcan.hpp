@@ -62,6 +62,7 @@ class SlcanBus final : public Bus {
   void on_line(const SlcanLine& line, TimePoint time);
   Result<Answer> answer_to_frame(TimePoint limit);
   Result<Answer> wait_for_answer(TimePoint limit);
+  Result<Answer> wait_for_version(TimePoint limit);
   void on_answer(Answer answer);
   void wait_for_flags();
   void miss_flags();

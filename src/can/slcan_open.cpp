@@ -112,8 +112,8 @@ Result<void> SlcanBus::judge(const SlcanOpening& opening) const {
 Result<void> SlcanBus::recover(TimePoint deadline) {
   close();
   for (;;) {
-    // So that an adapter which answers late has a chance.
-    auto opened = open(std::max(deadline, now() + SlcanOpening::kPatience * 2), false);
+    // An adapter that starts anew, or answers late, has all rounds of the opening, as at first.
+    auto opened = open(std::max(deadline, now() + SlcanOpening::kLongest), false);
     if (opened || now() >= deadline) return opened;
     nap(std::min<Duration>(kPortPause, deadline - now()));
   }

@@ -52,7 +52,8 @@ void SlcanOpening::enter(State state, TimePoint now) {
 std::string SlcanOpening::take_text() { return std::exchange(to_send_, {}); }
 
 void SlcanOpening::on_line(const SlcanLine& line, TimePoint now) {
-  if (is_done()) return;
+  // What came in one burst with the line before is no answer to a word that is not sent yet.
+  if (is_done() || !to_send_.empty()) return;
   switch (line.kind) {
     case SlcanLine::Kind::acknowledged: return on_acknowledge(now);
     case SlcanLine::Kind::refused: return on_refusal(now);

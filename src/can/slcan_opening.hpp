@@ -34,6 +34,8 @@ class SlcanOpening {
   static constexpr int kRounds = 3;
   /// For one answer in the first round.
   static constexpr Duration kPatience = std::chrono::milliseconds(300);
+  /// All rounds, whatever the adapter does.
+  static constexpr Duration kLongest = std::chrono::seconds(5);
   /// Between two commands to firmware that acknowledges nothing.
   static constexpr Duration kPause = std::chrono::milliseconds(10);
 

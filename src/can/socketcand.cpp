@@ -187,7 +187,9 @@ Result<std::optional<Frame>> SocketcandBus::receive(TimePoint deadline) {
 
 Result<void> SocketcandBus::recover(TimePoint deadline) {
   for (;;) {
-    auto opened = open(std::max(deadline, now() + SocketcandDialogue::kEchoPatience), false);
+    // A server that knows no echo is found out by waiting for it.
+    auto opened = open(
+        std::max(deadline, now() + SocketcandDialogue::kPatience + SocketcandDialogue::kEchoPatience), false);
     if (opened || now() >= deadline) return opened;
     nap(std::min<Duration>(kServerPause, deadline - now()));
   }

@@ -177,6 +177,8 @@ void BusHolder::let_go() {
 Result<void> BusHolder::connect_again(const std::string& url, const std::set<std::uint8_t>& nodes) {
   const auto end = steady_now() + session::LinkWait::kPatience;
   auto next_line = steady_now();
+  // What matters is to stop them: a trace that cannot be written, or would be begun anew, is none of it.
+  bus_options_.trace.clear();
   for (;;) {
     auto back = connect(url);
     const auto time = steady_now();

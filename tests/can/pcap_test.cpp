@@ -59,16 +59,18 @@ TEST(Pcap, CanFdAndOtherNetworksAreUnsuited) {
 }
 
 TEST(Pcap, ReadsCookedCaptures) {
+  // In the byte order of the file, which is little-endian here.
+  const auto sdo = FileBytes().bytes({1, 6, 0, 0, 8, 0, 0, 0, 0x40, 0x41, 0x60, 0, 0, 0, 0, 0}).str();
   auto cooked = pcap_head(0xA1B2C3D4, false, 113);
   add_packet(cooked, 1, 0,
-             FileBytes().bytes({0, 1, 1, 0x18, 0, 0}).zeros(8).bytes({0, 0x0C}).text(kSdo).str());
+             FileBytes().bytes({0, 1, 1, 0x18, 0, 0}).zeros(8).bytes({0, 0x0C}).text(sdo).str());
   add_packet(cooked, 2, 0,
              FileBytes().bytes({0, 0, 0, 1, 0, 6}).zeros(8).bytes({8, 0}).text("an IP packet").str());
   EXPECT_EQ(frames_of(cooked.str()),
             (Packets{"(0000000001.000000) can0 601#4041600000000000", "unsuited 1"}));
   auto cooked2 = pcap_head(0xA1B2C3D4, false, 276);
   add_packet(cooked2, 1, 0,
-             FileBytes().bytes({0, 0x0C, 0, 0, 0, 0, 0, 3, 1, 0x18, 1, 0}).zeros(8).text(kSdo).str());
+             FileBytes().bytes({0, 0x0C, 0, 0, 0, 0, 0, 3, 1, 0x18, 1, 0}).zeros(8).text(sdo).str());
   EXPECT_EQ(frames_of(cooked2.str()), (Packets{"(0000000001.000000) can0 601#4041600000000000"}));
 }
 
