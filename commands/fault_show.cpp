@@ -5,6 +5,7 @@
 #include "command/command.hpp"
 #include "drive/cia402.hpp"
 #include "drive/standard_objects.hpp"
+#include "session/modbus_network.hpp"
 #include "session/no_register.hpp"
 #include "show/fault_records.hpp"
 #include "show/reading.hpp"
@@ -70,8 +71,10 @@ class FaultReport {
     return std::nullopt;
   }
 
-  std::string missing() const {
-    return std::string(context_->session->modbus() != nullptr ? session::kNoRegister : kMissing);
+  std::string missing(ObjectAddress object) const {
+    const auto* line = context_->session->modbus();
+    return std::string(line != nullptr && !line->has_register(node_, object) ? session::kNoRegister
+                                                                             : kMissing);
   }
 
   std::string words(std::uint16_t code, const std::array<std::uint8_t, 5>& vendor = {}) {
@@ -91,7 +94,7 @@ class FaultReport {
   void add_code() {
     const auto answer = read(objects::kErrorCode);
     if (!answer) {
-      out_.push_back({"code_text", missing(), Show::text, "error code 603Fh"});
+      out_.push_back({"code_text", missing(objects::kErrorCode), Show::text, "error code 603Fh"});
       out_.push_back({"code", Value(), Show::json});
       return;
     }
@@ -106,7 +109,8 @@ class FaultReport {
     const auto answer = read(objects::kErrorRegister);
     const auto bits = answer ? static_cast<std::uint8_t>(load_le(*answer)) : std::uint8_t{0};
     out_.push_back({"register_text",
-                    answer ? fmt::format("0x{:02X} {}", bits, canopen::error_register_text(bits)) : missing(),
+                    answer ? fmt::format("0x{:02X} {}", bits, canopen::error_register_text(bits))
+                           : missing(objects::kErrorRegister),
                     Show::text, "error register 1001h"});
     out_.push_back({"error_register", answer ? Value(bits) : Value(), Show::json});
   }
@@ -119,7 +123,7 @@ class FaultReport {
     const auto answer = read(target->address);
     const auto code = answer ? static_cast<std::uint16_t>(load_le(*answer)) : std::uint16_t{0};
     out_.push_back({"alarm_text",
-                    !answer     ? missing()
+                    !answer     ? missing(target->address)
                     : code == 0 ? std::string("none")
                                 : code_text(code, words(code)),
                     Show::text, context_->chinese ? target->label_zh() : target->label()});
@@ -164,7 +168,7 @@ class FaultReport {
       table.rows.push_back({i, report::Hex{code, 4}, report::Hex{vendor, 4}, text});
     }
     if (!count)
-      out_.push_back({"history_text", missing(), Show::text, "history 1003h"});
+      out_.push_back({"history_text", missing(objects::kErrorHistory), Show::text, "history 1003h"});
     else if (table.rows.empty())
       out_.push_back({"history_text", "empty", Show::text, "history 1003h"});
     else

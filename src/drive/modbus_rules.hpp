@@ -23,6 +23,7 @@ struct ModbusRules {
   std::string framing;               ///< Parameter that chooses RTU or ASCII.
   std::uint32_t silence_ms = 0;      ///< The silence that ends a message; 0: that of the standard.
   std::vector<std::string> at_rest;  ///< Parameters that are 0 while the drive is at rest and not enabled.
+  std::vector<std::string> targets;  ///< Parameters that an enabled drive follows at once: none is restored.
   std::vector<std::string> shows;    ///< Parameters that `info` shows: registers tell no identity.
   std::uint16_t inputs = 0;          ///< Digital inputs, by function 02h from address 0.
   std::uint16_t outputs = 0;         ///< Digital outputs, by function 01h from address 0.

@@ -26,6 +26,7 @@ Result<void> read_modbus(const TableReader& reader, Rules& rules) {
                       {"framing", into(out.framing)},
                       {"silence_ms", into(out.silence_ms)},
                       {"at_rest", into(out.at_rest)},
+                      {"targets", into(out.targets)},
                       {"shows", into(out.shows)},
                       {"inputs", bits(out.inputs)},
                       {"outputs", bits(out.outputs)},

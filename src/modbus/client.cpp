@@ -14,7 +14,8 @@ constexpr Duration kBurst = std::chrono::milliseconds(30);
 Duration Client::gap_length() const { return std::max(silence(), kBurst); }
 
 TimePoint Client::free_at(std::uint8_t unit) const {
-  if (framing_ == Framing::tcp) return TimePoint::min();
+  // The number of a message tells its answer; a write that is late may still be done.
+  if (framing_ == Framing::tcp) return owed_until_[unit];
   const auto quiet = stirred_at_ == TimePoint::min() ? stirred_at_ : stirred_at_ + silence();
   return std::max(quiet, owed_until_[unit]);
 }
@@ -38,8 +39,14 @@ Bytes Client::start(std::uint8_t unit, Bytes pdu, TimePoint now, Duration timeou
 
 void Client::abandon() {
   if (!request_) return;
-  owed_until_[request_->unit] = until_;
+  owe();
   request_.reset();
+}
+
+/// Its answer may come as late again.
+void Client::owe() {
+  const bool writes = request_->pdu.front() == static_cast<std::uint8_t>(Function::write_register);
+  if (framing_ != Framing::tcp || writes) owed_until_[request_->unit] = until_ + timeout_;
 }
 
 /// Whether these bytes, with those before them, may be the request that comes back.
@@ -107,7 +114,7 @@ void Client::on_time(TimePoint now) {
   if (gap || over) close_message(now);
   if (!request_ || !over) return;
   so_far_.kind = Outcome::Kind::silent;
-  owed_until_[request_->unit] = until_ + timeout_;
+  owe();
   outcome_ = so_far_;
   request_.reset();
 }

@@ -73,6 +73,8 @@ class Client {
   TimePoint stirred_at_ = TimePoint::min();  ///< When something last was on the line.
   Duration timeout_ = Duration::zero();
   std::uint16_t transaction_ = 0;
+  void owe();
+
   std::array<TimePoint, 256> owed_until_{};  ///< Of each unit: an answer may come that is late.
   Bytes sent_;                               ///< While the adapter may hand it back.
   Bytes held_;                               ///< What may become that.

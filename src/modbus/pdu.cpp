@@ -34,6 +34,16 @@ std::string_view exception_meaning(std::uint8_t code) {
   return {};
 }
 
+bool is_open(std::uint8_t exception) {
+  switch (static_cast<Exception>(exception)) {
+    case Exception::acknowledge:
+    case Exception::device_busy:
+    case Exception::gateway_path:
+    case Exception::gateway_target: return true;
+    default: return false;
+  }
+}
+
 std::uint16_t load_be16(ByteSpan bytes) {
   return static_cast<std::uint16_t>((unsigned{bytes[0]} << 8U) | bytes[1]);
 }

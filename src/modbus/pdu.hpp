@@ -42,6 +42,10 @@ std::string_view exception_name(std::uint8_t code);
 /// What it means to who asked, in a half sentence; empty where there is nothing to say.
 std::string_view exception_meaning(std::uint8_t code);
 
+/// Whether the exception leaves open what became of a request, as silence does: it is being done, the unit is
+/// busy, or a gateway heard nothing of it.
+bool is_open(std::uint8_t exception);
+
 /// The PDUs of requests. Numbers have their high byte first.
 Bytes read_request(Function function, std::uint16_t address, std::uint16_t count);
 Bytes write_request(std::uint16_t address, std::uint16_t value);

@@ -81,10 +81,13 @@ std::string ModbusObjectChannel::what_text() const {
 
 Error ModbusObjectChannel::refusal(std::uint8_t exception) const {
   const auto meaning = modbus::exception_meaning(exception);
-  return drive_error(Errc::sdo_abort, node_, object_,
-                     fmt::format("{} of {} was refused: Modbus exception {:02X}h, {}{}{}",
-                                 way_ == Way::write ? "the write" : "the read", what_text(), exception,
-                                 modbus::exception_name(exception), meaning.empty() ? "" : ": ", meaning));
+  const auto what = fmt::format("{} of {} was {}: Modbus exception {:02X}h, {}{}{}",
+                                way_ == Way::write ? "the write" : "the read", what_text(),
+                                modbus::is_open(exception) ? "not answered" : "refused", exception,
+                                modbus::exception_name(exception), meaning.empty() ? "" : ": ", meaning);
+  const auto code = modbus::is_open(exception) ? Errc::timeout : Errc::sdo_abort;
+  if (way_ == Way::request) return drive_error(code, node_, what);
+  return drive_error(code, node_, object_, what);
 }
 
 /// What came in instead says more than that nothing did.
@@ -123,6 +126,7 @@ void ModbusObjectChannel::on_outcome(const Outcome& outcome) {
                                                  what_text(), to_hex(outcome.pdu)),
                                      "is this device what -d says?")));
     case Outcome::Kind::refused:
+      if (modbus::is_open(outcome.pdu[1])) return finish(fail(refusal(outcome.pdu[1])));
       if (way_ == Way::presence) break;
       return finish(fail(refusal(outcome.pdu[1])));
     case Outcome::Kind::answered: break;

@@ -266,7 +266,8 @@ Result<Value> write_changes(show::Desk& desk, std::span<const Change> changes, c
   if (const auto opened = keeping.open(options); !opened) return fail(opened.error());
   const bool energises = std::any_of(changes.begin(), changes.end(), enables);
   const auto hold = desk.session->protect(energises ? session::Care::energised : session::Care::none);
-  const auto written = session::write_all(*desk.session, requests, options.read_back || options.keep);
+  const auto written = session::write_all(*desk.session, requests,
+                                          options.read_back || options.keep || is_only_echoed(desk, changes));
   keeping.close(written);
   for (const auto& change : changes)
     if (enables(change)) desk.session->energised().insert(change.node);

@@ -1,6 +1,7 @@
 #include "settings/comparison.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
 
 #include "base/pdo_index.hpp"
 #include "drive/naming.hpp"
@@ -91,6 +92,12 @@ bool is_address(const drive::Profile* profile, ObjectAddress object) {
   const auto& rules = profile->rules.nmt;
   return drive::place_of(*profile, rules.node_id) == object ||
          drive::place_of(*profile, rules.bitrate) == object;
+}
+
+bool is_target(const drive::Profile& profile, ObjectAddress object) {
+  const auto& names = profile.rules.modbus.targets;
+  return std::any_of(names.begin(), names.end(),
+                     [&](const auto& name) { return drive::place_of(profile, name) == object; });
 }
 
 bool is_line_address(const drive::Profile& profile, ObjectAddress object) {

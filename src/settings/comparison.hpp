@@ -29,6 +29,8 @@ void leave_unreachable(show::Desk& desk, const drive::Profile* profile, Side& si
 
 /// Whether it is the node-ID or the bitrate, by the family's rules. `profile` may be null.
 bool is_address(const drive::Profile* profile, ObjectAddress object);
+/// Whether a drive that is enabled follows it at once, by the family's rules of Modbus.
+bool is_target(const drive::Profile& profile, ObjectAddress object);
 /// Whether it is address, speed or framing of Modbus.
 bool is_line_address(const drive::Profile& profile, ObjectAddress object);
 

@@ -101,21 +101,33 @@ Result<void> RestoreTarget::leave_out(const Backup::Entry& entry, std::string_vi
   return {};
 }
 
+/// Whether it stays as it is because of how the drive is reached; what is told of that is noted.
+bool RestoreTarget::is_out_of_reach(const Backup::Entry& entry) {
+  if (!entry.bytes || desk_->session->modbus() == nullptr) return false;
+  if (!desk_->profile->rules.modbus.register_of(entry.object)) {
+    ++unreachable_;
+    return true;
+  }
+  if (!is_target(*desk_->profile, entry.object)) return false;
+  desk_->notices.push_back(
+      fmt::format("node {}: {} stays as it is: a drive that an input enables would follow it at once", node_,
+                  drive::target_at(desk_->profile, entry.object).label()));
+  return true;
+}
+
+/// Two drives on one line must not have one address, whichever way they were told.
+bool RestoreTarget::is_own_address(ObjectAddress object) const {
+  const bool elsewhere = desk_->session->modbus() != nullptr || backup_->identity.node != node_;
+  return is_address(desk_->profile, object) || (elsewhere && is_line_address(*desk_->profile, object));
+}
+
 Result<void> RestoreTarget::choose_values() {
   std::map<ObjectAddress, std::string_view> settings;
   for (const auto& setting : drive::settings_of(*desk_->profile))
     settings.emplace(setting.entry->address, setting.left_out);
-  std::size_t unreachable = 0;
   for (const auto& entry : backup_->entries) {
-    const bool without_register =
-        desk_->session->modbus() != nullptr && !desk_->profile->rules.modbus.register_of(entry.object);
-    if (entry.bytes && without_register) {
-      ++unreachable;
-      continue;
-    }
-    const bool address =
-        is_address(desk_->profile, entry.object) ||
-        (desk_->session->modbus() != nullptr && is_line_address(*desk_->profile, entry.object));
+    if (is_out_of_reach(entry)) continue;
+    const bool address = is_own_address(entry.object);
     if (!entry.bytes || (address && !choice_.with_address)) continue;
     const auto setting = settings.find(entry.object);
     const auto reason =
@@ -127,9 +139,10 @@ Result<void> RestoreTarget::choose_values() {
     else if (const auto left_out = leave_out(entry, reason); !left_out)
       return left_out;
   }
-  if (unreachable > 0)
-    desk_->notices.push_back(fmt::format(
-        "node {}: {} values of {} have no Modbus register and stay as they are", node_, unreachable, title_));
+  if (unreachable_ > 0)
+    desk_->notices.push_back(
+        fmt::format("node {}: {} values of {} have no Modbus register and stay as they are", node_,
+                    unreachable_, title_));
   return {};
 }
 

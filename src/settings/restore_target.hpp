@@ -45,6 +45,8 @@ class RestoreTarget {
   Result<void> check_identity();
   Result<void> check_standstill() const;
   Result<void> check_at_rest() const;
+  bool is_out_of_reach(const Backup::Entry& entry);
+  bool is_own_address(ObjectAddress object) const;
   Result<void> leave_out(const Backup::Entry& entry, std::string_view reason);
   Result<void> choose_values();
   Result<void> read_present();
@@ -64,6 +66,7 @@ class RestoreTarget {
   session::Values wanted_;
   session::Values present_;
   std::vector<Error> left_;
+  std::size_t unreachable_ = 0;  ///< Values without a Modbus register, where it is reached over Modbus.
 };
 
 }  // namespace servoctl::settings

@@ -172,6 +172,7 @@ Value modbus(const Rules& rules, bool chinese) {
                 {"framing", report::text_or_null(r.framing), Show::everywhere, "RTU or ASCII in"},
                 {"silence_ms", r.silence_ms, Show::everywhere, "silence (ms)"},
                 {"at_rest", text_list(r.at_rest), Show::everywhere, "0 at rest"},
+                {"targets", text_list(r.targets), Show::everywhere, "targets"},
                 {"motion", report::text_or_null(chinese && !r.motion_zh.empty() ? r.motion_zh : r.motion)}};
 }
 

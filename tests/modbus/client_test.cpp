@@ -77,7 +77,14 @@ TEST_F(ModbusClient, AfterItsAskerWentAnAnswerMayStillCome) {
   ask(kStart);
   client.abandon();
   EXPECT_FALSE(client.busy());
-  EXPECT_EQ(client.free_at(1), kStart + kTimeout);
+  EXPECT_EQ(client.free_at(1), kStart + 2 * kTimeout);
+}
+
+TEST(ModbusException, SettlesNothingWhereTheUnitIsAtItOrNobodyHeard) {
+  for (const int open : {0x05, 0x06, 0x0A, 0x0B})
+    EXPECT_TRUE(is_open(static_cast<std::uint8_t>(open))) << open;
+  for (const int done : {0x01, 0x02, 0x03, 0x04, 0x08})
+    EXPECT_FALSE(is_open(static_cast<std::uint8_t>(done))) << done;
 }
 
 TEST_F(ModbusClient, CountsWhatIsNoMessage) {
