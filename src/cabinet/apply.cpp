@@ -8,6 +8,7 @@
 #include "cabinet/displaced.hpp"
 #include "session/option_scope.hpp"
 #include "session/state_pause.hpp"
+#include "session/storage.hpp"
 #include "settings/restore_journal.hpp"
 #include "settings/restoring.hpp"
 #include "show/audience.hpp"
@@ -176,7 +177,7 @@ class Applying {
 
   settings::RestoringOptions restoring(const AxisRun& run) const {
     settings::RestoringOptions out;
-    out.keep = options_->keep && can_be_told_to_keep(*run.station.profile);
+    out.keep = options_->keep && session::can_store(*run.station.profile);
     out.unlock = options_->unlock && has_password(*run.station.profile);
     out.resume = options_->resume;
     out.expected = run.look->plan->present;

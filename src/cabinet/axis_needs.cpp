@@ -9,7 +9,6 @@
 #include "drive/standard_objects.hpp"
 #include "session/pdo_change.hpp"
 #include "session/state_pause.hpp"
-#include "session/storage.hpp"
 #include "settings/change.hpp"
 
 namespace servoctl::cabinet {
@@ -25,10 +24,6 @@ void add_need(std::vector<AxisNeed>& needs, AxisNeed::Kind kind, const std::stri
 bool is_locked(const drive::Profile& profile, const od::Parameter* parameter) {
   const auto& locked = profile.rules.store.locked;
   return parameter != nullptr && std::find(locked.begin(), locked.end(), parameter->id) != locked.end();
-}
-
-bool keeps_by_object(const drive::Profile& profile) {
-  return profile.rules.store.objects && profile.dictionary.find({objects::kStoreIndex, 1}) != nullptr;
 }
 
 Result<bool> is_energised(session::Session& session, std::uint8_t node) {
@@ -65,14 +60,6 @@ std::string to_string(const AxisNeed& need) {
 bool has_password(const drive::Profile& profile) {
   const auto& store = profile.rules.store;
   return drive::place_of(profile, store.unlock).has_value() && store.unlock_open.has_value();
-}
-
-bool can_be_told_to_keep(const drive::Profile& profile) { return session::can_store(profile); }
-
-bool is_known_to_keep(const drive::Profile& profile, ObjectAddress object) {
-  if (!can_be_told_to_keep(profile)) return false;
-  const bool of_maker = object.index >= 0x2000 && object.index < 0x6000;
-  return keeps_by_object(profile) || of_maker || profile.parameter(object) != nullptr;
 }
 
 Result<std::vector<AxisNeed>> needs_of(session::Session& session, const drive::Profile& profile,

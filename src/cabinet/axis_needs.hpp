@@ -26,13 +26,6 @@ std::string to_string(const AxisNeed& need);
 /// Whether the family has a password that can be given over the bus.
 bool has_password(const drive::Profile& profile);
 
-/// Whether the drives of the family can be told to keep their values: by 1010h, by settings of their own, or
-/// by a switch between RAM and flash.
-bool can_be_told_to_keep(const drive::Profile& profile);
-/// Whether the value of this object then survives power-off: by 1010h all do (CiA 301, 7.5.2.13); a switch or
-/// a setting of the maker is stated for the maker's own parameters alone.
-bool is_known_to_keep(const drive::Profile& profile, ObjectAddress object);
-
 /// What the change from `present` to `wanted`, both over the same objects, asks for: by the effects of the
 /// parameters, what the family locks, and how the drive is now, which is read. Nothing where nothing differs.
 Result<std::vector<AxisNeed>> needs_of(session::Session& session, const drive::Profile& profile,

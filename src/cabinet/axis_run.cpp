@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "session/storage.hpp"
 #include "show/records.hpp"
 
 namespace servoctl::cabinet {
@@ -82,7 +83,7 @@ std::vector<std::string> unstated(const AxisRun& run) {
   for (const auto& entry : plan.wanted.entries) {
     const auto present = plan.present.find(entry.object);
     const bool written = present != plan.present.end() && present->second != entry.bytes;
-    if (written && !is_known_to_keep(*run.station.profile, entry.object))
+    if (written && !session::is_known_to_keep(*run.station.profile, entry.object))
       out.push_back(to_string(entry.object));
   }
   return out;

@@ -7,6 +7,7 @@
 #include "cabinet/axis_needs.hpp"
 #include "session/family_check.hpp"
 #include "session/scan.hpp"
+#include "session/storage.hpp"
 #include "settings/restoring.hpp"
 #include "show/audience.hpp"
 
@@ -168,7 +169,7 @@ class Swapping {
     const auto backup = settings::read_backup(file);
     if (!backup) return fail(backup.error());
     settings::RestoringOptions how;
-    how.keep = options_->apply.keep && can_be_told_to_keep(*desk_.profile);
+    how.keep = options_->apply.keep && session::can_store(*desk_.profile);
     how.unlock = options_->apply.unlock && has_password(*desk_.profile);
     how.resume = options_->apply.resume;
     auto done =

@@ -38,14 +38,24 @@ void add_to(Error& first, const Error& next) {
   if (first.hint.empty()) first.hint = next.hint;
 }
 
+/// By 1010h:01.
+bool stores_all(const drive::Profile& profile) {
+  return profile.rules.store.objects && profile.dictionary.find(objects::kStoreAll) != nullptr;
+}
+
 bool by_objects(const drive::Profile* profile) { return profile == nullptr || profile->rules.store.objects; }
 
 }  // namespace
 
 bool can_store(const drive::Profile& profile) {
   const auto& store = profile.rules.store;
-  const bool by_object = store.objects && profile.dictionary.find(objects::kStoreAll) != nullptr;
-  return by_object || !store.store.empty() || !store.flash_switch.empty();
+  return stores_all(profile) || !store.store.empty() || !store.flash_switch.empty();
+}
+
+bool is_known_to_keep(const drive::Profile& profile, ObjectAddress object) {
+  if (!can_store(profile)) return false;
+  const bool of_maker = object.index >= 0x2000 && object.index < 0x6000;
+  return stores_all(profile) || of_maker || profile.parameter(object) != nullptr;
 }
 
 Result<std::vector<SdoRequest>> store_writes(const drive::Profile* profile, std::uint8_t node,

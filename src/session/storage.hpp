@@ -20,6 +20,9 @@ enum class Kept : std::uint8_t { no, yes, unknown };
 /// Whether the drives of the family can be told to keep their values: by 1010h, by settings of their own, or
 /// by a switch between RAM and flash.
 bool can_store(const drive::Profile& profile);
+/// Whether the value of this object then survives power-off: by 1010h all do (CiA 301, 7.5.2.13); a switch or
+/// a setting of the maker is stated for the maker's own parameters alone.
+bool is_known_to_keep(const drive::Profile& profile, ObjectAddress object);
 
 /// Longest wait for a drive that writes its flash or EEPROM; manuals name no time.
 inline constexpr Duration kStorePatience = std::chrono::seconds(10);

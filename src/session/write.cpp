@@ -59,6 +59,9 @@ Result<Written> after_answer(const SdoRequest& request, const Result<Bytes>& fou
 WriteEnd write_end(const Result<Written>& written, ObjectAddress object) {
   if (written) return WriteEnd::written;
   if (answer_lost(written.error(), object)) return WriteEnd::unknown;
+  // The line was cut, or Ctrl-C came: it may have been under way.
+  if (written.error().code == Errc::bus || written.error().code == Errc::interrupted)
+    return WriteEnd::unknown;
   return written.error().code == Errc::negative ? WriteEnd::other_value : WriteEnd::not_written;
 }
 

@@ -18,7 +18,7 @@ enum class WriteEnd : std::uint8_t {
   written,
   not_written,  ///< Refused, or never asked for.
   other_value,  ///< Read back: the drive holds something else.
-  unknown,      ///< No answer, and it cannot be read.
+  unknown,      ///< No answer, and it cannot be read; or the bus was lost or Ctrl-C came meanwhile.
 };
 /// `object`: that of the write, because the error of one that was skipped names another one.
 WriteEnd write_end(const Result<Written>& written, ObjectAddress object);

@@ -67,8 +67,10 @@ report::Value KeepingNodes::kept(const Change& change) const {
   const auto index = change.target.address.index;
   const auto* profile = desk_->profile;
   if (change.target.address == objects::kControlword) return false;
-  // A switch of the memory is for the objects that go through it.
-  if (profile != nullptr && !profile->rules.store.flash_switch.empty() && !goes_to_memory(change)) return {};
+  // A switch of the memory is for the objects that go through it, and stated for the maker's own.
+  const bool switched = profile != nullptr && !profile->rules.store.flash_switch.empty();
+  if (switched && (!goes_to_memory(change) || !session::is_known_to_keep(*profile, change.target.address)))
+    return {};
   if (kept != session::Kept::unknown) return kept == session::Kept::yes;
   // CiA 301, 7.5.2.13: what is not stored by 1010h is lost. Manuals leave open whether that holds for panel
   // parameters.

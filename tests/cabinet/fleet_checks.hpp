@@ -6,6 +6,7 @@
 #include <string>
 
 #include "fleet.hpp"
+#include "session/storage.hpp"
 
 /// What tests of plans and applies ask of a fleet.
 namespace servoctl::cabinet {
@@ -43,7 +44,7 @@ inline void expect_kept(Fleet& fleet) {
   for (const auto& look : fleet.look()) {
     for (const auto& [object, data] : wanted_of(look)) {
       const bool differs = look.plan->present.at(object) != data;
-      EXPECT_FALSE(differs && is_known_to_keep(family_of(look.axis->family), object))
+      EXPECT_FALSE(differs && session::is_known_to_keep(family_of(look.axis->family), object))
           << look.axis->family << " " << to_string(object);
     }
   }
