@@ -121,8 +121,9 @@ Result<void> refuse_energised(session::Session& session, std::uint8_t node, std:
   if (!word && word.error().code != Errc::sdo_abort) return fail(word.error());
   if (!word || !drive::is_energised(drive::decode_state(static_cast<std::uint16_t>(load_le(*word)))))
     return {};
-  return fail(drive_error(Errc::refused, node, fmt::format("it is energised: {} cannot be changed now", what),
-                          "`disable` de-energises it; make sure that the load is held"));
+  return fail(
+      drive_error(Errc::refused, node, fmt::format("it is energised: {} cannot be changed now", what),
+                  fmt::format("`disable -n {}` de-energises it; make sure that the load is held", node)));
 }
 
 Result<void> refuse_energised_nodes(session::Session& session, std::string_view what) {
