@@ -45,6 +45,10 @@ std::string to_hex(ByteSpan bytes, std::string_view separator) {
   return out;
 }
 
+std::string_view as_text(ByteSpan bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
 std::optional<Bytes> parse_hex_bytes(std::string_view text) {
   Bytes out;
   for (std::size_t i = 0; i < text.size();) {

@@ -25,6 +25,9 @@ void store_le(std::uint64_t value, std::span<std::uint8_t> out);
 /// `64 00 FF`: two upper-case digits a byte, separated by `separator`.
 std::string to_hex(ByteSpan bytes, std::string_view separator = " ");
 
+/// The same bytes as characters, for what writes text to a port.
+std::string_view as_text(ByteSpan bytes);
+
 /// Reads `6400FF` or `64 00 ff`; empty when a digit is missing or foreign.
 std::optional<Bytes> parse_hex_bytes(std::string_view text);
 

@@ -11,9 +11,10 @@
 #include "base/result.hpp"
 #include "can/bus.hpp"
 #include "can/foreign_clock.hpp"
+#include "can/serial_port.hpp"
 #include "can/slcan_codec.hpp"
 #include "can/slcan_opening.hpp"
-#include "can/slcan_port.hpp"
+#include "can/slcan_place.hpp"
 
 namespace servoctl::can {
 

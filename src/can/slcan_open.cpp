@@ -39,7 +39,7 @@ void SlcanBus::close() {
 }
 
 Result<void> SlcanBus::open(TimePoint limit, bool ends_by_signal) {
-  auto port = SerialPort::open(place_.device, place_.baud);
+  auto port = SerialPort::open({.device = place_.device, .baud = place_.baud});
   if (!port) return fail(port.error());
   port_.emplace(std::move(*port));
   reader_.reset();

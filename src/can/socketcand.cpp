@@ -20,6 +20,12 @@ constexpr Duration kServerPause = std::chrono::milliseconds(50);
 constexpr std::size_t kMostFromServer = 1U << 20U;
 constexpr std::size_t kMostComplaints = 3;
 
+TcpServer server_at(const SocketcandPlace& place) {
+  return {place.host, place.port, place.server(),
+          "is the server started there, for this network and port? `socketcand -i can0 -l eth0`",
+          "did its server end, or its CAN interface go down? Its own log says"};
+}
+
 bool fits_a_frame(const Frame& frame) {
   return !frame.error && frame.size <= 8 && frame.id <= (frame.extended ? 0x1FFF'FFFFU : 0x7FFU);
 }
@@ -41,8 +47,8 @@ Result<void> SocketcandBus::open(TimePoint limit, bool ends_by_signal) {
   reader_ = SocketcandReader();
   stamps_.reset();
   inbox_.clear();
-  auto connection = TcpClient::connect(place_.host, place_.port, place_.server(),
-                                       std::min(limit, now() + kConnectLimit), ends_by_signal);
+  auto connection =
+      TcpClient::connect(server_at(place_), std::min(limit, now() + kConnectLimit), ends_by_signal);
   if (!connection) {
     lost_ = connection.error();
     return fail(connection.error());

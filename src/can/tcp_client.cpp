@@ -23,16 +23,16 @@ struct FreeAddresses {
 };
 using Addresses = std::unique_ptr<addrinfo, FreeAddresses>;
 
-Result<Addresses> addresses_of(const std::string& host, std::uint16_t port) {
+Result<Addresses> addresses_of(const TcpServer& server) {
   addrinfo wanted{};
   wanted.ai_family = AF_UNSPEC;
   wanted.ai_socktype = SOCK_STREAM;
   wanted.ai_flags = AI_NUMERICSERV;
   addrinfo* list = nullptr;
-  const int error = ::getaddrinfo(host.c_str(), std::to_string(port).c_str(), &wanted, &list);
+  const int error = ::getaddrinfo(server.host.c_str(), std::to_string(server.port).c_str(), &wanted, &list);
   if (error == 0) return Addresses(list);
   return fail(Errc::bus,
-              fmt::format("the host {} is not found: {}", host,
+              fmt::format("the host {} is not found: {}", server.host,
                           error == EAI_SYSTEM ? system_text(errno) : std::string(::gai_strerror(error))),
               "check its name, or write its address");
 }
@@ -77,23 +77,21 @@ int try_address(const addrinfo& address, Descriptor& out, TimePoint limit, bool 
   return 0;
 }
 
-tl::unexpected<Error> not_connected(const std::string& server, int error) {
+tl::unexpected<Error> not_connected(const TcpServer& server, int error) {
   if (error == EINTR) return fail(Errc::interrupted, "interrupted");
   if (error == ECONNREFUSED)
-    return fail(Errc::bus, fmt::format("nothing listens at {}", server),
-                "is the server started there, for this network and port? `socketcand -i can0 -l eth0`");
+    return fail(Errc::bus, fmt::format("nothing listens at {}", server.name), server.absent);
   if (error == ETIMEDOUT)
-    return fail(Errc::bus, fmt::format("{} does not answer", server),
+    return fail(Errc::bus, fmt::format("{} does not answer", server.name),
                 "is it switched on, in this network, and does a firewall let this port through?");
-  return fail(Errc::bus, fmt::format("cannot reach {}: {}", server, system_text(error)),
+  return fail(Errc::bus, fmt::format("cannot reach {}: {}", server.name, system_text(error)),
               "check the network: `ip route get ADDRESS`");
 }
 
 }  // namespace
 
-Result<TcpClient> TcpClient::connect(const std::string& host, std::uint16_t port, const std::string& server,
-                                     TimePoint limit, bool ends_by_signal) {
-  const auto addresses = addresses_of(host, port);
+Result<TcpClient> TcpClient::connect(const TcpServer& server, TimePoint limit, bool ends_by_signal) {
+  const auto addresses = addresses_of(server);
   if (!addresses) return fail(addresses.error());
   int error = EADDRNOTAVAIL;
   for (const auto* at = addresses->get(); at != nullptr; at = at->ai_next) {
@@ -107,9 +105,8 @@ Result<TcpClient> TcpClient::connect(const std::string& host, std::uint16_t port
 
 tl::unexpected<Error> TcpClient::lost(int error) const {
   if (error == 0)
-    return fail(Errc::bus, fmt::format("{} closed the connection", server_),
-                "did its server end, or its CAN interface go down? Its own log says");
-  return fail(Errc::bus, fmt::format("the connection to {} is lost: {}", server_, system_text(error)),
+    return fail(Errc::bus, fmt::format("{} closed the connection", server_.name), server_.closed);
+  return fail(Errc::bus, fmt::format("the connection to {} is lost: {}", server_.name, system_text(error)),
               "check cable and network");
 }
 

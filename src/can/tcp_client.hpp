@@ -10,15 +10,23 @@
 
 namespace servoctl::can {
 
+/// Who is called, and what messages say of him.
+struct TcpServer {
+  std::string host;  ///< A name, or an address of IPv4 or IPv6.
+  std::uint16_t port = 0;
+  std::string name;    ///< As messages call it: `host:29536`.
+  std::string absent;  ///< What to look at when nothing listens there.
+  std::string closed;  ///< What to look at when it closed the connection.
+};
+
 /// A connection that does not gather bytes (TCP_NODELAY), and is given up by the kernel when the other end
 /// acknowledges nothing for five seconds.
 class TcpClient {
  public:
-  /// `server` stands in messages. Errc::bus where there is no such host, nothing listens there, or nothing
-  /// answers until `limit`; Errc::interrupted by a signal where `ends_by_signal`. The name of a host is
-  /// looked up first, which takes as long as the system takes for it.
-  static Result<TcpClient> connect(const std::string& host, std::uint16_t port, const std::string& server,
-                                   TimePoint limit, bool ends_by_signal);
+  /// Errc::bus where there is no such host, nothing listens there, or nothing answers until `limit`;
+  /// Errc::interrupted by a signal where `ends_by_signal`. The name of a host is looked up first, which takes
+  /// as long as the system takes for it.
+  static Result<TcpClient> connect(const TcpServer& server, TimePoint limit, bool ends_by_signal);
 
   int get() const { return socket_.get(); }
   /// All of the text; waits for room until `limit`. Errc::bus when the connection is lost, or has no room.
@@ -27,11 +35,11 @@ class TcpClient {
   Result<void> receive(std::string& out);
 
  private:
-  TcpClient(Descriptor socket, std::string server) : socket_(std::move(socket)), server_(std::move(server)) {}
+  TcpClient(Descriptor socket, TcpServer server) : socket_(std::move(socket)), server_(std::move(server)) {}
   tl::unexpected<Error> lost(int error) const;
 
   Descriptor socket_;
-  std::string server_;
+  TcpServer server_;
 };
 
 }  // namespace servoctl::can

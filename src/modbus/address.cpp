@@ -24,19 +24,17 @@ bool read_characters(std::string_view text, SerialSettings& out) {
   if ((text[0] != '7' && text[0] != '8') || (parity != 'N' && parity != 'E' && parity != 'O') ||
       (text[2] != '1' && text[2] != '2'))
     return false;
-  out.data_bits = static_cast<std::uint8_t>(text[0] - '0');
-  out.parity = parity;
-  out.stop_bits = static_cast<std::uint8_t>(text[2] - '0');
+  out.line.data_bits = static_cast<std::uint8_t>(text[0] - '0');
+  out.line.parity = parity;
+  out.line.stop_bits = static_cast<std::uint8_t>(text[2] - '0');
   return true;
 }
 
 Result<void> read_part(std::string_view part, bool first, SerialSettings& out) {
-  constexpr std::uint64_t kFastest = 4'000'000;
   if (first) {
-    const auto baud = parse_digits(part, 10);
-    if (!baud || *baud < 50 || *baud > kFastest)
-      return wrong(fmt::format("'{}' is not a speed in bits per second", part), kSerialForm);
-    out.baud = static_cast<std::uint32_t>(*baud);
+    const auto baud = can::parse_baud(part);
+    if (!baud) return wrong(fmt::format("'{}' is not a speed in bits per second", part), kSerialForm);
+    out.line.baud = *baud;
     return {};
   }
   if (equals_nocase(part, "ascii"))
@@ -51,10 +49,7 @@ Result<void> read_part(std::string_view part, bool first, SerialSettings& out) {
 
 }  // namespace
 
-std::string SerialSettings::text() const {
-  return fmt::format("{},{}{}{}{}", baud, data_bits, parity, stop_bits,
-                     framing == Framing::ascii ? ",ascii" : "");
-}
+std::string SerialSettings::text() const { return line.text() + (framing == Framing::ascii ? ",ascii" : ""); }
 
 std::string TcpAddress::text() const {
   return host.find(':') == std::string::npos ? fmt::format("{}:{}", host, port)
@@ -64,8 +59,8 @@ std::string TcpAddress::text() const {
 Result<SerialSettings> parse_serial(std::string_view text) {
   SerialSettings out;
   const auto at = text.rfind('@');
-  out.device = std::string(text.substr(0, at));
-  if (out.device.empty()) return wrong("no serial port is named", kSerialForm);
+  out.line.device = std::string(text.substr(0, at));
+  if (out.line.device.empty()) return wrong("no serial port is named", kSerialForm);
   auto rest = at == std::string_view::npos ? std::string_view() : text.substr(at + 1);
   if (at != std::string_view::npos && rest.empty()) return wrong("nothing stands behind @", kSerialForm);
   for (bool first = true; !rest.empty(); first = false) {
@@ -73,7 +68,7 @@ Result<SerialSettings> parse_serial(std::string_view text) {
     if (const auto read = read_part(rest.substr(0, comma), first, out); !read) return fail(read.error());
     rest = comma == std::string_view::npos ? std::string_view() : rest.substr(comma + 1);
   }
-  if (out.framing == Framing::rtu && out.data_bits != 8)
+  if (out.framing == Framing::rtu && out.line.data_bits != 8)
     return wrong("RTU frames need 8 data bits", kSerialForm);
   return out;
 }

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "base/result.hpp"
+#include "can/serial_port.hpp"
 #include "modbus/framing.hpp"
 
 namespace servoctl::modbus {
@@ -12,17 +13,15 @@ namespace servoctl::modbus {
 /// How a serial line is set: `19200,8E1`, `115200,8N1,ascii`. By default as MODBUS over Serial Line V1.02,
 /// 2.5.1, asks for.
 struct SerialSettings {
-  std::string device;
-  std::uint32_t baud = 19200;
-  std::uint8_t data_bits = 8;
-  char parity = 'E';  ///< N, E or O.
-  std::uint8_t stop_bits = 1;
+  can::SerialLine line{.device = {}, .baud = 19'200, .parity = 'E'};
   Framing framing = Framing::rtu;
 
   /// `19200,8E1`, with `,ascii` where it is that.
   std::string text() const;
   /// Of one character, with start, parity and stop bits.
-  unsigned bits_per_character() const { return 1U + data_bits + (parity == 'N' ? 0U : 1U) + stop_bits; }
+  unsigned bits_per_character() const {
+    return 1U + line.data_bits + (line.parity == 'N' ? 0U : 1U) + line.stop_bits;
+  }
 };
 
 struct TcpAddress {

@@ -130,7 +130,7 @@ void Deframer::parse_ascii() {
     if (end == buffer_.end()) break;
     // A message that begins anew has no end: the last beginning counts (2.5.2.1).
     const auto last = std::find(std::reverse_iterator(end), buffer_.rend(), ':').base();
-    std::string_view text(reinterpret_cast<const char*>(&*last), static_cast<std::size_t>(end - last));
+    auto text = as_text({&*last, static_cast<std::size_t>(end - last)});
     if (!text.empty() && text.back() == '\r') text.remove_suffix(1);
     const auto body = parse_hex_bytes(text);
     const auto size = static_cast<std::size_t>(end - buffer_.begin()) + 1;

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <memory>
-#include <string>
-#include <vector>
+#include <optional>
+#include <utility>
 
-#include "can/descriptor.hpp"
+#include "can/serial_port.hpp"
 #include "modbus/address.hpp"
 #include "modbus/port.hpp"
 
@@ -13,8 +13,8 @@ namespace servoctl::modbus {
 /// A serial line: an adapter, a port of the machine, or one end of a pseudo-terminal.
 class SerialPort final : public Port {
  public:
-  SerialPort(can::Descriptor fd, SerialSettings settings)
-      : fd_(std::move(fd)), settings_(std::move(settings)) {}
+  SerialPort(can::SerialPort port, SerialSettings settings)
+      : port_(std::move(port)), settings_(std::move(settings)) {}
 
   Framing framing() const override { return settings_.framing; }
   Duration silence() const override;
@@ -22,20 +22,16 @@ class SerialPort final : public Port {
   Result<void> send(ByteSpan bytes) override;
   Result<Bytes> receive(TimePoint deadline) override;
   Result<void> reopen(TimePoint deadline) override;
-  int poll_fd() const override { return fd_.get(); }
+  int poll_fd() const override { return port_ ? port_->get() : -1; }
 
  private:
-  tl::unexpected<Error> lost(int error) const;
+  tl::unexpected<Error> not_open() const;
 
-  can::Descriptor fd_;
+  std::optional<can::SerialPort> port_;  ///< Empty after a reopen() that failed.
   SerialSettings settings_;
 };
 
-/// Opens and sets the line, for this process alone. Errc::bus with what mends it: no such port, no right, in
-/// use, a speed that it does not have.
+/// Opens and sets the line, for this process alone. Errors as can::SerialPort::open().
 Result<std::unique_ptr<Port>> open_serial(const SerialSettings& settings);
-
-/// The serial ports of this machine that adapters have: `/dev/ttyUSB0`.
-std::vector<std::string> serial_adapters();
 
 }  // namespace servoctl::modbus

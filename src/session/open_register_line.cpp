@@ -37,7 +37,7 @@ bool is_modbus(std::string_view url) { return url.starts_with(kModbus); }
 
 std::vector<std::string> modbus_urls() {
   std::vector<std::string> out;
-  for (const auto& port : modbus::serial_adapters()) out.push_back(std::string(kModbus) + port);
+  for (const auto& port : can::serial_adapters()) out.push_back(std::string(kModbus) + port);
   for (const auto form : {kTcp, kSimulated}) out.push_back(std::string(kModbus) + std::string(form));
   return out;
 }

@@ -98,7 +98,7 @@ def refused_at_once(asks):
     answer = run(asks, "param", "get", "Fn_33", "-n", "1")
     first.terminate()
     first.communicate()
-    return answer.returncode == 3 and "another program uses it" in answer.stderr
+    return answer.returncode == 3 and "is in use by another program" in answer.stderr
 
 
 line = JoinedPtys()
@@ -137,9 +137,9 @@ drive.wait()
 out, err = watching.communicate(timeout=10)
 check(f"a connection that is lost ends a watch with exit code 3\n{out[-300:]}{err}", watching.returncode == 3)
 answer = run(f"modbus://127.0.0.1:{port}", "param", "get", "Fn_33", "-n", "1")
-check(f"nobody listens\n{answer.stderr}", answer.returncode == 3 and "nobody listens" in answer.stderr)
+check(f"nobody listens\n{answer.stderr}", answer.returncode == 3 and "nothing listens at" in answer.stderr)
 
-for bus, says in (("modbus:/dev/nosuchtty@9600", "no such port"), ("modbus://no.such.host.invalid", "not found")):
+for bus, says in (("modbus:/dev/nosuchtty@9600", "there is no /dev/nosuchtty"), ("modbus://no.such.host.invalid", "not found")):
     answer = run(bus, "scan")
     check(f"{bus}: {says}\n{answer.stderr}", answer.returncode == 3 and says in answer.stderr)
 

@@ -8,7 +8,7 @@ namespace {
 TEST(ModbusAddress, ASerialLineHasSpeedAndFormOfCharacters) {
   const auto line = parse_serial("/dev/ttyUSB0@115200,8N1");
   ASSERT_TRUE(line);
-  EXPECT_EQ(line->device, "/dev/ttyUSB0");
+  EXPECT_EQ(line->line.device, "/dev/ttyUSB0");
   EXPECT_EQ(line->text(), "115200,8N1");
   EXPECT_EQ(line->bits_per_character(), 10U);
 }

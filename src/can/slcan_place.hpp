@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "base/result.hpp"
+
+namespace servoctl::can {
+
+/// What stands behind `slcan:`.
+struct SlcanPlace {
+  std::string device;            ///< `/dev/ttyACM0`
+  std::uint32_t bitrate = 0;     ///< Of the bus, in bit/s; one of the protocol's nine.
+  std::uint32_t baud = 115'200;  ///< Of the serial line; of no consequence where that is USB itself.
+  bool operator==(const SlcanPlace&) const = default;
+};
+
+/// Reads `/dev/ttyACM0@1M`, `/dev/ttyUSB0@500k,57600`. Errc::usage with the form, and with the bitrates that
+/// there are.
+Result<SlcanPlace> parse_slcan_place(std::string_view text);
+
+}  // namespace servoctl::can
