@@ -115,7 +115,7 @@ TEST_P(NoWire, AMotorTurnsAndIsLeftWithoutPower) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Families, NoWire, testing::Values("cia402", "gsd600"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& family) { return std::string(family.param); });
 
 TEST(NetworkOfNoCan, RefusesWhatSpeaksInFramesAndNothingElse) {
   session::Session session(std::make_unique<MemoryNetwork>(), "memory", {});

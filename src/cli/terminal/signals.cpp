@@ -98,17 +98,21 @@ void install_signal_handlers() {
   for (const int signal :
        {SIGQUIT, SIGABRT, SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF, SIGXCPU, SIGIO, SIGPWR, SIGSTKFLT})
     catch_if_deadly(signal);
-  for (int signal = SIGRTMIN; signal <= SIGRTMAX; ++signal) catch_if_deadly(signal);
   // The write fails instead, and is told.
   for (const int signal : {SIGPIPE, SIGXFSZ}) set_handler(signal, SIG_IGN);
 }
 
 void protect_from_signals(bool energised) {
   static struct sigaction stop, input, output;  // As they were before.
+  static bool catches_all = false;
   const Quiet quiet;
   if (energised == (g_protected != 0)) return;
   g_protected = energised ? 1 : 0;
   if (energised) {
+    // Thirty calls that a one-shot read can do without: nothing but a person's own `kill` sends these.
+    if (!catches_all)
+      for (int signal = SIGRTMIN; signal <= SIGRTMAX; ++signal) catch_if_deadly(signal);
+    catches_all = true;
     stop = set_handler(SIGTSTP, on_signal);
     input = set_handler(SIGTTIN, SIG_IGN);
     output = set_handler(SIGTTOU, SIG_IGN);
