@@ -81,10 +81,15 @@ Bytes frame_of(std::uint8_t command, std::uint16_t where, ByteSpan data) {
   return out;
 }
 
+[[noreturn]] void give_up(const char* why) {
+  std::fprintf(stderr, "bare loop: %s\n", why);
+  std::exit(3);
+}
+
 std::uint8_t ask(ethernet::Port& port, const Bytes& frame, std::size_t at) {
-  if (!port.send(frame)) std::exit(3);
+  if (!port.send(frame)) give_up("a frame was not taken");
   const auto back = port.receive(port.now() + std::chrono::seconds(1));
-  if (!back || !*back) std::exit(3);
+  if (!back || !*back) give_up("a frame did not come back");
   return (**back)[26 + at];
 }
 
@@ -106,7 +111,7 @@ double bare_loop(ethernet::Port& port, int reads) {
     (void)ask(port, write, 0);
     while ((ask(port, look, 0) & 0x08U) == 0) {
     }
-    if (ask(port, read, 8) != 0x4B) std::exit(3);
+    if (ask(port, read, 8) != 0x4B) give_up("another answer than that to its read");
   }
   return std::chrono::duration<double>(port.now() - begin).count();
 }
