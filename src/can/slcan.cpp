@@ -110,22 +110,20 @@ void SlcanBus::miss_flags() {
 }
 
 Result<SlcanBus::Answer> SlcanBus::wait_for_answer(TimePoint limit) {
-  is_offering_ = true;
-  while (answer_ == Answer::none && !version_came_ && now() < limit) {
-    if (wait_for(port_->get(), POLLIN, limit) != Wake::ready) continue;
-    if (const auto filled = fill(); !filled) return fail(filled.error());
-  }
-  is_offering_ = false;
-  return answer_;
+  return wait_while([&] { return answer_ == Answer::none && !version_came_; }, limit);
 }
 
 Result<SlcanBus::Answer> SlcanBus::wait_for_version(TimePoint limit) {
+  return wait_while([&] { return !version_came_; }, limit);
+}
+
+Result<SlcanBus::Answer> SlcanBus::wait_while(const std::function<bool()>& missing, TimePoint limit) {
   is_offering_ = true;
-  while (!version_came_ && now() < limit) {
-    if (wait_for(port_->get(), POLLIN, limit) != Wake::ready) continue;
-    if (const auto filled = fill(); !filled) return fail(filled.error());
-  }
+  Result<void> filled;
+  while (filled && missing() && now() < limit)
+    if (wait_for(port_->get(), POLLIN, limit) == Wake::ready) filled = fill();
   is_offering_ = false;
+  if (!filled) return fail(filled.error());
   return answer_;
 }
 
@@ -146,7 +144,8 @@ void SlcanBus::on_line(const SlcanLine& line, TimePoint time) {
   switch (line.kind) {
     case SlcanLine::Kind::acknowledged:
     case SlcanLine::Kind::refused:
-      return on_answer(line.kind == SlcanLine::Kind::refused ? Answer::refused : Answer::acknowledged);
+      return on_answer(line.kind == SlcanLine::Kind::refused ? Answer::refused : Answer::acknowledged,
+                       !line.text.empty());
     case SlcanLine::Kind::flags:
       flags_asked_.reset();
       flags_missed_ = 0;
@@ -162,15 +161,20 @@ void SlcanBus::on_line(const SlcanLine& line, TimePoint time) {
   }
 }
 
-/// To F from an adapter that does not know it; or to the frame.
-void SlcanBus::on_answer(Answer answer) {
-  if (flags_asked_) {
+/// To F from an adapter that does not know it; or to the frame, which alone is acknowledged by a letter.
+void SlcanBus::on_answer(Answer answer, bool has_letter) {
+  if (flags_asked_ && !has_letter) {
     flags_asked_.reset();
     knows_flags_ = false;
     return;
   }
   answer_ = answer;
   if (answer == Answer::refused && !is_offering_) ++refused_late_;
+  if (acknowledges_frames_ || answer != Answer::acknowledged) return;
+  // It does acknowledge frames: what was missed was lost.
+  acknowledges_frames_ = true;
+  frame_was_acknowledged_ = true;
+  ++unanswered_;
 }
 
 Result<void> SlcanBus::ask_for_flags() {

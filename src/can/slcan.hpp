@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -64,7 +65,8 @@ class SlcanBus final : public Bus {
   Result<Answer> answer_to_frame(TimePoint limit);
   Result<Answer> wait_for_answer(TimePoint limit);
   Result<Answer> wait_for_version(TimePoint limit);
-  void on_answer(Answer answer);
+  Result<Answer> wait_while(const std::function<bool()>& missing, TimePoint limit);
+  void on_answer(Answer answer, bool has_letter);
   void wait_for_flags();
   void miss_flags();
   Result<void> ask_for_flags();
@@ -78,7 +80,7 @@ class SlcanBus final : public Bus {
   SlcanReader reader_;
   ForeignClock stamps_{std::chrono::minutes(1)};
   bool acknowledges_ = false;
-  bool acknowledges_frames_ = true;  ///< Until the first one is not.
+  bool acknowledges_frames_ = true;  ///< Until the first one is not; again when one is.
   bool frame_was_acknowledged_ = false;
   std::string version_;
   bool version_came_ = false;     ///< Since it was set back.

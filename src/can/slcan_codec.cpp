@@ -121,11 +121,11 @@ std::optional<Frame> errors_report(std::string_view line) {
 
 SlcanLine parse_line(std::string_view line) {
   SlcanLine out;
+  out.text = line;
   if (line.empty() || line == "z" || line == "Z") {
     out.kind = LineKind::acknowledged;
     return out;
   }
-  out.text = line;
   const char first = line.front();
   if (first == 't' || first == 'T' || first == 'r' || first == 'R') {
     out.kind = read_frame(line, out) ? LineKind::frame : LineKind::damaged;

@@ -122,6 +122,25 @@ TEST(Slcan, ALostAcknowledgeIsToldAndTheBusGoesOn) {
   EXPECT_NE(notices.front().find("1 frame was not acknowledged by the adapter"), std::string::npos);
 }
 
+TEST(Slcan, AnAdapterWhoseFirstAcknowledgeIsLostIsWaitedForAgain) {
+  ScriptedAdapter adapter;
+  const auto bus = open_at(adapter);
+  int frames = 0;
+  adapter.set_script([&](const std::string& line) {
+    return line.front() == 't' && frames++ == 0 ? std::string() : ScriptedAdapter::good(line);
+  });
+  EXPECT_TRUE(bus->send(slcan_frame("601#00")));
+  EXPECT_TRUE(bus->take_notices().empty()) << "it may have none for frames";
+  EXPECT_TRUE(bus->send(slcan_frame("601#00")));
+  (void)bus->receive(bus->now() + milliseconds(100));
+  const auto notices = bus->take_notices();
+  ASSERT_EQ(notices.size(), 1U);
+  EXPECT_NE(notices.front().find("1 frame was not acknowledged by the adapter"), std::string::npos);
+  adapter.set_script(
+      [](const std::string& line) { return line.front() == 't' ? "\a" : ScriptedAdapter::good(line); });
+  EXPECT_FALSE(bus->send(slcan_frame("601#00"))) << "a refusal is waited for";
+}
+
 TEST(Slcan, AnAdapterThatFallsSilentIsTold) {
   ScriptedAdapter adapter;
   const auto bus = open_at(adapter);
