@@ -7,21 +7,14 @@
 #include "base/object_address.hpp"
 #include "base/text.hpp"
 #include "cli/parse.hpp"
+#include "gateway/request.hpp"
 
 namespace servoctl::cli {
 namespace {
 
+using gateway::Request;
+using gateway::Service;
 using Words = std::vector<std::string>;
-
-bool is_sequence(std::string_view word) {
-  return word.size() > 2 && word.front() == '[' && word.back() == ']' &&
-         parse_digits(word.substr(1, word.size() - 2), 10).has_value();
-}
-
-std::optional<std::uint64_t> unsigned_number(std::string_view word) {
-  const auto number = parse_integer(word);
-  return number && word.find_first_of("hH") == std::string_view::npos ? number->as_unsigned() : std::nullopt;
-}
 
 tl::unexpected<Error> wrong(std::string message) {
   return fail(
@@ -29,55 +22,28 @@ tl::unexpected<Error> wrong(std::string message) {
       "[[NET] NODE] r INDEX SUB [TYPE], w INDEX SUB TYPE VALUE, start, stop, preop, reset node, reset comm");
 }
 
-/// A line without its sequence number, network and node.
-struct GatewayLine {
-  Words words;
-  std::vector<std::uint64_t> numbers;  ///< Network and node, node, or nothing.
-  bool marked = false;                 ///< The beginning can be no line of ours.
+/// The beginning can be no line of ours.
+bool is_marked(const Request& line) { return line.sequence || !line.numbers.empty(); }
 
-  std::string verb() const { return words.empty() ? std::string() : lower(words.front()); }
-};
-
-GatewayLine take_apart(const Words& words) {
-  GatewayLine out;
-  std::size_t at = 0;
-  if (!words.empty() && is_sequence(words.front())) ++at;
-  for (; at < words.size() && out.numbers.size() < 2; ++at) {
-    const auto number = unsigned_number(words[at]);
-    if (!number) break;
-    out.numbers.push_back(*number);
-  }
-  out.marked = at > 0;
-  out.words.assign(words.begin() + static_cast<std::ptrdiff_t>(at), words.end());
-  return out;
-}
-
-bool is_gateway_line(const GatewayLine& line) {
-  if (line.marked) return true;
+bool is_gateway_line(const Request& line) {
+  if (is_marked(line)) return true;
   const auto verb = line.verb();
   if (verb == "r" || verb == "w") return true;
   if (verb == "set") return line.words.size() > 1 && (line.words[1] == "node" || line.words[1] == "network");
-  const bool known = verb == "start" || verb == "stop" || verb == "preop" || verb == "preoperational" ||
+  const auto service = gateway::service_of(line);
+  const bool known = service == Service::start || service == Service::stop || service == Service::preop ||
                      (verb == "reset" && line.words.size() == 2);
   return known && match_command(line.words).command == nullptr;
 }
 
-Result<std::string> address(const GatewayLine& line) {
-  const auto index = unsigned_number(line.words[1]);
-  const auto sub = unsigned_number(line.words[2]);
-  if (!index || *index > 0xFFFF) return wrong(fmt::format("'{}' is not an index", line.words[1]));
-  if (!sub || *sub > 0xFF) return wrong(fmt::format("'{}' is not a sub-index", line.words[2]));
-  return to_string(ObjectAddress{static_cast<std::uint16_t>(*index), static_cast<std::uint8_t>(*sub)});
-}
-
-Result<Words> transfer(const GatewayLine& line) {
+Result<Words> transfer(const Request& line) {
   const auto& words = line.words;
-  const bool reads = line.verb() == "r" || line.verb() == "read";
+  const bool reads = gateway::service_of(line) == Service::read;
   if (reads ? words.size() < 3 || words.size() > 4 : words.size() != 5)
     return wrong(reads ? "a read takes INDEX SUB [TYPE]" : "a write takes INDEX SUB TYPE VALUE");
-  const auto object = address(line);
-  if (!object) return fail(object.error());
-  Words out{reads ? "read" : "write", *object};
+  const auto object = gateway::object_of(line);
+  if (!object) return wrong(object.error().message);
+  Words out{reads ? "read" : "write", to_string(*object)};
   const bool option =
       !reads && words[4].starts_with('-') && !parse_real(words[4]) && !parse_integer(words[4]);
   if (!reads && !option) out.push_back(words[4]);
@@ -86,26 +52,40 @@ Result<Words> transfer(const GatewayLine& line) {
   return out;
 }
 
-Result<Words> command(const GatewayLine& line) {
-  const auto verb = line.verb();
-  const auto what = line.words.size() == 2 ? lower(line.words[1]) : std::string();
-  if (verb == "r" || verb == "read" || verb == "w" || verb == "write") return transfer(line);
-  if (verb == "reset" && what == "node") return Words{"nmt", "reset"};
-  if (verb == "reset" && (what == "comm" || what == "communication")) return Words{"nmt", "reset-comm"};
-  if (line.words.size() == 1 && (verb == "start" || verb == "stop")) return Words{"nmt", verb};
-  if (line.words.size() == 1 && (verb == "preop" || verb == "preoperational")) return Words{"nmt", "preop"};
+Result<Words> command(const Request& line) {
+  const auto count = line.words.size();
+  switch (gateway::service_of(line)) {
+    case Service::read:
+    case Service::write: return transfer(line);
+    case Service::start:
+      if (count == 1) return Words{"nmt", "start"};
+      break;
+    case Service::stop:
+      if (count == 1) return Words{"nmt", "stop"};
+      break;
+    case Service::preop:
+      if (count == 1) return Words{"nmt", "preop"};
+      break;
+    case Service::reset_node:
+      if (count == 2) return Words{"nmt", "reset"};
+      break;
+    case Service::reset_communication:
+      if (count == 2) return Words{"nmt", "reset-comm"};
+      break;
+    default: break;
+  }
   return wrong(fmt::format("'{}' is not understood", fmt::join(line.words, " ")));
 }
 
-Result<Words> set_default(const GatewayLine& line) {
-  const auto number = line.words.size() == 3 ? unsigned_number(line.words[2]) : std::nullopt;
+Result<Words> set_default(const Request& line) {
+  const auto number = line.words.size() == 3 ? gateway::parse_unsigned(line.words[2]) : std::nullopt;
   if (!number) return wrong(fmt::format("'set {}' takes a number", line.words[1]));
   if (line.words[1] == "node") return Words{"use", *number == 0 ? "all" : std::to_string(*number)};
   if (*number != 1) return wrong("servoctl works on one bus: the network can only be 1");
   return Words{};
 }
 
-Result<Words> translate(const GatewayLine& line) {
+Result<Words> translate(const Request& line) {
   if (line.words.empty()) return wrong("a command is missing");
   if (line.numbers.size() == 2 && line.numbers.front() != 1)
     return wrong(fmt::format("network {}: servoctl works on one bus, the network can only be 1",
@@ -121,7 +101,7 @@ Result<Words> translate(const GatewayLine& line) {
 }  // namespace
 
 std::optional<Result<Words>> from_gateway_line(const Words& words) {
-  const auto line = take_apart(words);
+  const auto line = gateway::take_apart(words);
   if (!is_gateway_line(line)) return std::nullopt;
   return translate(line);
 }
