@@ -103,6 +103,7 @@ extern const Command kDrives;
 extern const Command kEdsCheck;
 extern const Command kRun;
 extern const Command kSim;
+extern const Command kGateway;
 extern const Command kHelp;
 extern const Command kCompletion;
 
@@ -212,6 +213,7 @@ constexpr Named kNamed[] = {
     {"eds check", &commands::kEdsCheck},
     {"run", &commands::kRun},
     {"sim", &commands::kSim},
+    {"gateway", &commands::kGateway},
     {"help", &commands::kHelp},
     {"completion", &commands::kCompletion},
 };

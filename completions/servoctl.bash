@@ -9,7 +9,7 @@ _servoctl_scan() {
       continue
     fi
     case $word in
-      --bus|-b|--node|-n|--drive|-d|--cabinet|--timeout|--retries|--output|-o|--lang|--trace|--bitrate|--sample-point|--restart-ms|--txqueuelen|--for|--type|--to|--transfer|--from|--format|--only|--family|--name|--axis|--backup|--wait|--plan|--assign|--patience|--vendor|--product|--revision|--serial|--activate|--turn|--turns|--accel|--csv|--limit|--max-torque|--max-following-error|--window|--master-node|--speed|--search|--offset|--within|--nameplate|--guard|--life|--inhibit|--event|--cob-id|--sync-start|--count|--longest|--junit|--expect|--tolerance|--stop-within|--repeat|--spread|--encoder|--title|--tests|--period|--counter|--every|--svg|--service|--object|--var) skip=$word ;;
+      --bus|-b|--node|-n|--drive|-d|--cabinet|--timeout|--retries|--output|-o|--lang|--trace|--bitrate|--sample-point|--restart-ms|--txqueuelen|--for|--type|--to|--transfer|--from|--format|--only|--family|--name|--axis|--backup|--wait|--plan|--assign|--patience|--vendor|--product|--revision|--serial|--activate|--turn|--turns|--accel|--csv|--limit|--max-torque|--max-following-error|--window|--master-node|--speed|--search|--offset|--within|--nameplate|--guard|--life|--inhibit|--event|--cob-id|--sync-start|--count|--longest|--junit|--expect|--tolerance|--stop-within|--repeat|--spread|--encoder|--title|--tests|--period|--counter|--every|--svg|--service|--object|--var|--listen|--allow) skip=$word ;;
       -*) ;;
       *)
         case $command in
@@ -91,11 +91,13 @@ _servoctl_scan() {
       --service) source='=nmt sync time emcy pdo sdo boot-up heartbeat guarding lss controller other' ;;
       --object) source='objects' ;;
       --var) source='none' ;;
+      --listen) source='none' ;;
+      --allow) source='=write' ;;
     esac
     return
   fi
   case $command in
-    '') source='=scan bus doctor info status read write objects param backup cabinet diff verify restore clone address lss store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion' ;;
+    '') source='=scan bus doctor info status read write objects param backup cabinet diff verify restore clone address lss store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim gateway help completion' ;;
     bus) source='=status up down detect' ;;
     param) source='=list get set search explain' ;;
     cabinet) source='=init check show plan apply backup swap diff' ;;
@@ -165,7 +167,7 @@ _servoctl_scan() {
     'eds check') source='files' ;;
     'run') source='files' ;;
     'sim') source='none' ;;
-    'help') source='=scan bus doctor info status read write objects param backup cabinet diff verify restore clone address lss store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion' ;;
+    'help') source='=scan bus doctor info status read write objects param backup cabinet diff verify restore clone address lss store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim gateway help completion' ;;
     'completion') source='=bash zsh fish objects parameters families' ;;
   esac
   case $command in
@@ -233,6 +235,7 @@ _servoctl_scan() {
     'decode') options+=' --raw --service --object' ;;
     'replay') options+=' --speed --only --master' ;;
     'run') options+=' --var --frames --check' ;;
+    'gateway') options+=' --listen --allow' ;;
   esac
 }
 

@@ -16,7 +16,7 @@ function __servoctl_path # the words that are neither options nor their values
     for word in (commandline -opc)[2..]
         if test $skip = 1
             set skip 0
-        else if contains -- $word --bus -b --node -n --drive -d --cabinet --timeout --retries --output -o --lang --trace --bitrate --sample-point --restart-ms --txqueuelen --for --type --to --transfer --from --format --only --family --name --axis --backup --wait --plan --assign --patience --vendor --product --revision --serial --activate --turn --turns --accel --csv --limit --max-torque --max-following-error --window --master-node --speed --search --offset --within --nameplate --guard --life --inhibit --event --cob-id --sync-start --count --longest --junit --expect --tolerance --stop-within --repeat --spread --encoder --title --tests --period --counter --every --svg --service --object --var
+        else if contains -- $word --bus -b --node -n --drive -d --cabinet --timeout --retries --output -o --lang --trace --bitrate --sample-point --restart-ms --txqueuelen --for --type --to --transfer --from --format --only --family --name --axis --backup --wait --plan --assign --patience --vendor --product --revision --serial --activate --turn --turns --accel --csv --limit --max-torque --max-following-error --window --master-node --speed --search --offset --within --nameplate --guard --life --inhibit --event --cob-id --sync-start --count --longest --junit --expect --tolerance --stop-within --repeat --spread --encoder --title --tests --period --counter --every --svg --service --object --var --listen --allow
             set skip 1
         else if not string match -q -- '-*' $word
             set path $path $word
@@ -473,8 +473,11 @@ complete -c servoctl -n '__servoctl_in run' -l var -x -d 'NAME=VALUE: a variable
 complete -c servoctl -n '__servoctl_in run' -l frames -d 'with --dry-run: the frames of every line, for the present state of the drives'
 complete -c servoctl -n '__servoctl_in run' -l check -d 'check all lines without a bus, run none'
 complete -c servoctl -n __servoctl_at -a sim -d 'Put simulated drives on a bus until Ctrl-C'
+complete -c servoctl -n __servoctl_at -a gateway -d 'Let clients of CiA 309-3, such as cocomm, use the bus until Ctrl-C'
+complete -c servoctl -n '__servoctl_in gateway' -l listen -x -d '127.0.0.1:60000 (default), or a path such as /run/gateway for a local socket'
+complete -c servoctl -n '__servoctl_in gateway' -l allow -x -a 'write' -d 'write: clients may write objects and send NMT commands; without it they only read'
 complete -c servoctl -n __servoctl_at -a help -d 'Show the commands, or how one is used'
-complete -c servoctl -n '__servoctl_in help' -x -a 'scan bus doctor info status read write objects param backup cabinet diff verify restore clone address lss store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim help completion'
+complete -c servoctl -n '__servoctl_in help' -x -a 'scan bus doctor info status read write objects param backup cabinet diff verify restore clone address lss store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim gateway help completion'
 complete -c servoctl -n __servoctl_at -a completion -d 'Print the completion script of a shell'
 complete -c servoctl -n '__servoctl_in completion' -x -a 'bash zsh fish objects parameters families'
 complete -c servoctl -n __servoctl_at -a bus

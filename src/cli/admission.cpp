@@ -44,7 +44,8 @@ Result<void> check_registers(const command::Command& command, session::Session& 
   if (command.on_registers) return {};
   auto what =
       fmt::format("'{}' does not work over Modbus, which has parameters and readings alone", command.path);
-  if (command.effect < Effect::moves)
+  // What moves a drive names it.
+  if (command.effect < Effect::moves || !includes(command.needs, Needs::node))
     return fail(Errc::usage, std::move(what),
                 "what works there: read, write, param get, param set, watch, backup, restore, fault show");
   const auto* rules = profile == nullptr ? nullptr : &profile->rules.modbus;

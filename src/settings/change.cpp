@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <set>
 
-#include "drive/cia402.hpp"
+#include "drive/enabling_write.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/cob_id_check.hpp"
 #include "session/measure.hpp"
@@ -114,12 +114,8 @@ bool is_parameter(const drive::Profile& profile, const Change& change, const std
   return drive::place_of(profile, id) == change.target.address;
 }
 
-/// Whether it is a controlword that enables a drive.
 bool enables(const Change& change) {
-  // Bit 7 is left out: with it set the drive looks at its edge only, and the word may follow another.
-  const auto controlword = static_cast<std::uint16_t>(load_le(change.data) & 0xFF7FU);
-  return change.target.address == objects::kControlword &&
-         drive::decode_command(controlword, 0) == drive::ControlCommand::enable_operation;
+  return drive::is_enabling_write(change.target.address, change.data);
 }
 
 /// What the write does beside changing a value; empty when nothing.

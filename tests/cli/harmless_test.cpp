@@ -118,6 +118,7 @@ const std::map<std::string, std::string> kSamples{
     {"eds check", "eds check EDS"},
     {"run", "run DIR/lines.servoctl"},
     {"sim", "sim FAMILY@3"},
+    {"gateway", "gateway --listen DIR/gateway --allow write -y"},
     {"help", "help jog"},
     {"completion", "completion bash"},
 };

@@ -14,7 +14,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr ObjectAddress kSpeed{0x2033, 0};
-constexpr ObjectAddress kStatus{0x3012, 0};
+constexpr ObjectAddress kDriveStatus{0x3012, 0};
 constexpr std::uint8_t kNodes[] = {1, 2, 3};
 
 Bytes message(std::uint8_t unit, std::string_view pdu) {
@@ -51,7 +51,7 @@ class ModbusNetworkTest : public testing::Test {
 TEST_F(ModbusNetworkTest, AnObjectIsReadFromItsRegister) {
   answer_with("03 02 00 C8");
   EXPECT_EQ(session->upload(1, kSpeed), (Bytes{0xC8, 0x00}));
-  EXPECT_EQ(session->upload(1, kStatus), (Bytes{0xC8, 0x00}));
+  EXPECT_EQ(session->upload(1, kDriveStatus), (Bytes{0xC8, 0x00}));
   EXPECT_EQ(script.sent, (std::vector<std::string>{"01 03 00 33 00 01 74 05", "01 03 10 12 00 01 20 CF"}));
 }
 
@@ -131,7 +131,7 @@ TEST_F(ModbusNetworkTest, ALateAnswerIsNotTheValueOfTheNextRegister) {
   };
   session->options().retries = 0;
   EXPECT_EQ(session->upload(1, kSpeed).error().code, Errc::timeout);
-  EXPECT_EQ(session->upload(1, kStatus), (Bytes{0x22, 0x22}));
+  EXPECT_EQ(session->upload(1, kDriveStatus), (Bytes{0x22, 0x22}));
 }
 
 TEST_F(ModbusNetworkTest, DamagedAnswersAreToldAsSuch) {

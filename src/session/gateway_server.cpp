@@ -1,0 +1,161 @@
+#include "session/gateway_server.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <vector>
+
+#include "drive/enabling_write.hpp"
+
+namespace servoctl::session {
+namespace {
+
+/// Lines of one client that are looked at before the network and the others have their turn.
+constexpr int kLinesAtOnce = 16;
+
+}  // namespace
+
+void GatewayServer::on_bytes(int who, std::string_view bytes) { clients_[who].in.put(bytes); }
+
+void GatewayServer::on_end(int who) {
+  auto& client = clients_[who];
+  client.ended = true;
+  // A last line may have no end.
+  if (client.in.pending() > 0) client.in.put("\n");
+}
+
+void GatewayServer::on_lost(int who) {
+  const auto client = clients_.find(who);
+  if (client == clients_.end()) return;
+  if (client->second.refused > 1)
+    tell(fmt::format("a client went; {} of its requests were refused", client->second.refused));
+  clients_.erase(client);
+}
+
+bool GatewayServer::may_take_lines(const Client& client) const {
+  return !client.order && client.out.size() < kMostOutput && client.in.has_line();
+}
+
+bool GatewayServer::wants_more(int who) const {
+  const auto client = clients_.find(who);
+  return client != clients_.end() && !client->second.ended && !client->second.in.has_line();
+}
+
+bool GatewayServer::is_done(int who) const {
+  const auto client = clients_.find(who);
+  if (client == clients_.end()) return true;
+  const auto& it = client->second;
+  return it.ended && !it.order && it.out.empty() && !it.in.has_line();
+}
+
+std::set<std::uint8_t> GatewayServer::energised() const {
+  std::set<std::uint8_t> out;
+  for (const auto& [node, who] : energised_) out.insert(node);
+  return out;
+}
+
+TimePoint GatewayServer::deadline() const {
+  auto out = kNever;
+  for (const auto& [node, lane] : lanes_) out = std::min(out, lane.channel->deadline());
+  for (const auto& [who, client] : clients_)
+    if (may_take_lines(client)) return session_->now();
+  return out;
+}
+
+Result<void> GatewayServer::serve() {
+  for (auto& [who, client] : clients_) take_lines(client);
+  start_orders();
+  for (auto lane = lanes_.begin(); lane != lanes_.end();) {
+    if (const auto served = serve_lane(lane->first, lane->second); !served) return served;
+    lane = lane->second.channel ? std::next(lane) : lanes_.erase(lane);
+  }
+  return stop_abandoned() ? serve() : Result<void>();
+}
+
+void GatewayServer::take_lines(Client& client) {
+  for (int lines = 0; lines < kLinesAtOnce && may_take_lines(client); ++lines)
+    if (const auto line = client.in.take()) handle(client, *line);
+}
+
+/// Whoever had its turn last waits for those who come behind it.
+void GatewayServer::start_orders() {
+  std::vector<int> order;
+  for (const auto& [who, client] : clients_)
+    if (client.order && !client.order->started) order.push_back(who);
+  std::rotate(order.begin(), std::upper_bound(order.begin(), order.end(), served_last_), order.end());
+  for (const int who : order) start(who, clients_[who]);
+}
+
+void GatewayServer::start(int who, Client& client) {
+  auto& request = client.order->request;
+  if (lanes_.count(request.node) != 0) return;
+  auto channel = session_->lend_channel(request.node);
+  channel->set_timeout(client.timeout);
+  if (request.data) {
+    // Noted before it is sent: from then on no signal ends the process before the drive is let go.
+    if (drive::is_enabling_write(request.object, *request.data)) {
+      session_->energised().insert(request.node);
+      energised_[request.node] = who;
+    }
+    channel->start_download(request.object, *request.data, session_->now(), request.transfer);
+  } else {
+    channel->start_upload(request.object, session_->now(), request.transfer, 0);
+  }
+  client.order->started = true;
+  served_last_ = who;
+  lanes_[request.node] = {std::move(channel), who};
+}
+
+Result<void> GatewayServer::serve_lane(std::uint8_t node, Lane& lane) {
+  if (const auto sent = lane.channel->on_time(session_->now()); !sent) return sent;
+  const auto result = lane.channel->take_result();
+  if (!result) return {};
+  session_->give_back(node, std::move(lane.channel));
+  lane.channel.reset();
+  finish(lane, *result);
+  return {};
+}
+
+void GatewayServer::finish(const Lane& lane, const Result<Bytes>& result) {
+  const auto client = clients_.find(lane.who);
+  if (client == clients_.end() || !client->second.order) return;
+  const auto& order = *client->second.order;
+  auto& out = client->second.out;
+  if (!result)
+    out += gateway::failure_line(order.sequence, result.error());
+  else if (order.request.data)
+    out += gateway::ok_line(order.sequence);
+  else
+    out += gateway::value_line(order.sequence, gateway::value_text(order.type, *result));
+  client->second.order.reset();
+}
+
+/// What another client has under way with a drive that is to be stopped is cut: its power comes first. A read
+/// is begun anew behind it.
+void GatewayServer::cut(std::uint8_t node) {
+  const auto found = lanes_.find(node);
+  if (found == lanes_.end()) return;
+  auto lane = std::move(found->second);
+  lanes_.erase(found);
+  lane.channel.reset();
+  const auto client = clients_.find(lane.who);
+  if (client == clients_.end() || !client->second.order) return;
+  if (client->second.order->request.data)
+    finish(lane, fail(Errc::interrupted, "the client that enabled the drive went, and it is being stopped"));
+  else
+    client->second.order->started = false;
+}
+
+bool GatewayServer::stop_abandoned() {
+  std::set<std::uint8_t> nodes;
+  for (const auto& [node, who] : energised_)
+    if (clients_.count(who) == 0) nodes.insert(node);
+  if (nodes.empty()) return false;
+  for (const auto node : nodes) {
+    energised_.erase(node);
+    cut(node);
+  }
+  if (options_.stop) options_.stop(nodes);
+  return true;
+}
+
+}  // namespace servoctl::session

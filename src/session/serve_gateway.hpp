@@ -1,0 +1,12 @@
+#pragma once
+
+#include "gateway/listener.hpp"
+#include "session/gateway_server.hpp"
+
+namespace servoctl::session {
+
+/// Lets clients ask until the session is cancelled, which is no error. Errc::bus when its network is lost.
+/// A client that does not read its answers for half a minute is dropped.
+Result<void> serve_gateway(Session& session, gateway::Listener& listener, GatewayServer& server);
+
+}  // namespace servoctl::session
