@@ -18,7 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using report::Record;
-using report::Show;
 using report::Value;
 using settings::RestoreEnd;
 
@@ -276,8 +275,8 @@ class Applying {
     for (const auto& run : runs_) {
       const auto& axis = *run.look->axis;
       const auto title = fmt::format("{}, node {}, {}", axis.name, axis.node, axis.family);
-      out.push_back(
-          {axis.name, run.frames.is_null() ? Value(text_of(run.end)) : run.frames, Show::everywhere, title});
+      out.push_back({axis.name, run.frames.is_null() ? Value(text_of(run.end)) : run.frames,
+                     report::Show::everywhere, title});
     }
     return Value(std::move(out));
   }

@@ -11,6 +11,8 @@
 #include "cli/shell.hpp"
 #include "session/identify.hpp"
 #include "session/open_bus.hpp"
+#include "session/open_port.hpp"
+#include "session/open_register_line.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -50,6 +52,23 @@ bool is_side_by_side(const command::Command& command, const command::Arguments& 
   if (asks || begins_cycles || command.opens_bus || !includes(command.needs, Needs::bus)) return false;
   return std::any_of(parts.begin(), parts.end(),
                      [&](const LinePart& part) { return part.settings.bus != first.bus; });
+}
+
+/// What changes drives on one bus and cannot be there on another changes none. A way out goes as far as it
+/// can.
+Result<void> check_wires(const command::Command& command, const std::vector<LinePart>& parts) {
+  if (!includes(command.needs, Needs::can) || command.family == command::FamilyCheck::never) return {};
+  std::string left_out;
+  std::string rest;
+  for (const auto& part : parts) {
+    const auto& bus = part.settings.bus;
+    const bool has_frames = !session::is_ethercat(bus) && !session::is_modbus(bus);
+    for (const auto* axis : part.axes) append(has_frames ? rest : left_out, axis->name, ",");
+  }
+  if (left_out.empty() || rest.empty()) return {};
+  return fail(Errc::usage,
+              fmt::format("'{}' needs CAN, and {} is not on CAN: nothing was done", command.path, left_out),
+              "name the others: -n " + rest);
 }
 
 /// Where nothing but the bus tells rows apart.
@@ -197,7 +216,8 @@ Outcome Shell::perform_parsed(const ParsedLine& line, const Settings& settings) 
 /// What one family does not take is told before another one is written to.
 Result<void> Shell::check_parts(const ParsedLine& line, const std::vector<LinePart>& parts) {
   const auto& command = *line.command;
-  if (parts.size() < 2 || !command.check || command.effect_with(line.arguments) < Effect::writes) return {};
+  if (parts.size() < 2 || command.effect_with(line.arguments) < Effect::writes) return {};
+  if (auto right = check_wires(command, parts); !right || !command.check) return right;
   for (const auto& part : parts) {
     if (part.settings.drive.empty()) continue;
     const auto family = profile(part.settings.drive);

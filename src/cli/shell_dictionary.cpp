@@ -6,6 +6,7 @@
 #include "cli/shell.hpp"
 #include "od/data_sheet.hpp"
 #include "session/online_dictionary.hpp"
+#include "session/open_port.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -14,7 +15,6 @@ using command::Needs;
 
 /// The drive itself, in place of a family.
 constexpr std::string_view kOnline = "online";
-constexpr std::string_view kEtherCat = "coe:";
 
 /// The one node that a line names; 0 when it names none, several or all.
 std::uint8_t one_node(const Settings& settings) {
@@ -26,7 +26,7 @@ std::uint8_t one_node(const Settings& settings) {
 /// A list of objects where nothing is named but the drive: it may know them.
 bool asks_a_drive(const Settings& settings, const command::Command& command) {
   return settings.drive.empty() && !includes(command.needs, Needs::bus) &&
-         settings.bus.starts_with(kEtherCat) && one_node(settings) != 0;
+         session::is_ethercat(settings.bus) && one_node(settings) != 0;
 }
 
 }  // namespace

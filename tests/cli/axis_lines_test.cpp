@@ -56,6 +56,16 @@ TEST_F(AxisLines, SeveralBusesAreWorkedOnAtTheSameTime) {
   EXPECT_EQ(threads.count(std::this_thread::get_id()), threads.size()) << "what asks goes bus by bus";
 }
 
+TEST_F(AxisLines, WhatOneBusCannotDoIsDoneOnNone) {
+  EXPECT_EQ(run("heartbeat set 100ms -n feeders,table"), 2) << all();
+  EXPECT_TRUE(says("'heartbeat set' needs CAN, and table is not on CAN")) << all();
+  EXPECT_TRUE(says("-n feeder1,feeder2")) << all();
+  EXPECT_EQ(run("read 0x1017 -n feeder1 --json"), 0) << all();
+  EXPECT_TRUE(says(R"("raw":0)")) << all();
+  EXPECT_EQ(run("heartbeat show -n feeders,table"), 2) << all();
+  EXPECT_TRUE(says("feeder1")) << "what only reads says what it can" << all();
+}
+
 TEST_F(AxisLines, WhatMovesOrGoesOnIsOfOneBusAndFamily) {
   EXPECT_EQ(run("watch statusword -n all --for 1s"), 2) << all();
   EXPECT_TRUE(says("for axes of one bus and one family at a time")) << all();
