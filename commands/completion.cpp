@@ -1,14 +1,18 @@
+#include <algorithm>
+
+#include "base/text.hpp"
 #include "command/command.hpp"
 #include "command/completion_words.hpp"
 #include "command/shell_completion.hpp"
 #include "drive/naming.hpp"
+#include "drive/topics.hpp"
 
 namespace servoctl::commands {
 namespace {
 
 using namespace command;
 
-constexpr std::string_view kWhat[] = {"bash", "zsh", "fish", "objects", "parameters", "families"};
+constexpr std::string_view kWhat[] = {"bash", "zsh", "fish", "objects", "parameters", "topics", "families"};
 
 constexpr Parameter kParameters[] = {
     {.name = "what",
@@ -25,6 +29,23 @@ std::string lines(const std::vector<std::string>& words) {
   return out;
 }
 
+/// What can be explained: names of topics, of those of several words the first, and of a family its objects
+/// and parameters.
+Result<report::Value> topic_names(const Context& context) {
+  const drive::Profile none;
+  const auto topics =
+      drive::load_topics(context.profile == nullptr ? none : *context.profile, context.drive_folders);
+  if (!topics) return fail(topics.error());
+  std::vector<std::string> names;
+  for (const auto& topic : *topics)
+    if (std::string word(split(topic.name, ' ').front());
+        std::find(names.begin(), names.end(), word) == names.end())
+      names.push_back(std::move(word));
+  if (context.profile != nullptr)
+    for (auto& name : drive::names(*context.profile)) names.push_back(std::move(name));
+  return report::Value(lines(names));
+}
+
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   const auto what = arguments.text("what");
   if (what == "families") {
@@ -32,6 +53,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
     for (const auto& family : drive::find_families(context.drive_folders)) names.push_back(family.name);
     return report::Value(lines(names));
   }
+  if (what == "topics") return topic_names(context);
   if (what == "objects" || what == "parameters") {
     if (context.profile == nullptr)
       return fail(Errc::usage, "a drive family is needed", "add -d FAMILY; `drives` lists them");

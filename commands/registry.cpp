@@ -20,6 +20,7 @@ extern const Command kStatus;
 extern const Command kRead;
 extern const Command kWrite;
 extern const Command kObjects;
+extern const Command kExplain;
 extern const Command kParamList;
 extern const Command kParamGet;
 extern const Command kParamSet;
@@ -129,6 +130,7 @@ constexpr Named kNamed[] = {
     {"status", &commands::kStatus},
     {"read", &commands::kRead},
     {"write", &commands::kWrite},
+    {"explain", &commands::kExplain},
     {"objects", &commands::kObjects},
     {"param list", &commands::kParamList},
     {"param get", &commands::kParamGet},

@@ -29,7 +29,8 @@ enum class Kind : std::uint8_t {
   bus,
   file,
   choice,
-  command
+  command,
+  topic
 };
 
 /// One option or positional word of a command.

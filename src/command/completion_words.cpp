@@ -69,6 +69,7 @@ std::string source_of(const Parameter& p) {
     case Kind::object: return "objects";
     case Kind::parameter: return "parameters";
     case Kind::family: return "families";
+    case Kind::topic: return "topics";
     case Kind::bus: return "buses";
     case Kind::file: return "files";
     case Kind::nodes: return "=all";

@@ -28,8 +28,8 @@ std::string second_words(std::string_view first);
 /// All options of all commands that take a value.
 std::string all_value_options();
 
-/// What the scripts offer for a parameter: `=word word`, or one of `objects parameters families buses files
-/// none`.
+/// What the scripts offer for a parameter: `=word word`, or one of `objects parameters topics families buses
+/// files none`.
 std::string source_of(const Parameter& parameter);
 
 }  // namespace servoctl::command

@@ -18,6 +18,7 @@ std::string fish_arguments(const Parameter& p) {
   if (source == "files") return " -r -F";
   if (source == "families") return " -x -a '(servoctl completion families 2>/dev/null; __servoctl_sheets)'";
   if (source == "buses") return " -x -a '(__servoctl_buses)'";
+  if (source == "topics") return " -x -a '(__servoctl_topics)'";
   if (source == "objects" || source == "parameters") return " -x -a '(__servoctl_names " + source + ")'";
   return " -x";
 }
@@ -67,6 +68,15 @@ end
 function __servoctl_names
     set -l drive (__servoctl_drive)
     test -n "$drive"; and servoctl completion $argv[1] -d $drive 2>/dev/null
+end
+
+function __servoctl_topics
+    set -l drive (__servoctl_drive)
+    if test -n "$drive"
+        servoctl completion topics -d $drive 2>/dev/null
+    else
+        servoctl completion topics 2>/dev/null
+    end
 end
 
 function __servoctl_buses

@@ -103,6 +103,8 @@ _servoctl_words() {{
     '='*) printf '%s\n' "${{source#=}}" | tr ' ' '\n' ;;
     objects|parameters)
       [ -z "$drive" ] || servoctl completion "$source" -d "$drive" 2>/dev/null ;;
+    topics)
+      servoctl completion topics ${{drive:+"--drive=$drive"}} 2>/dev/null ;;
     families)
       servoctl completion families 2>/dev/null
       _servoctl_sheets "${{typed%"${{typed##*/}}"}}" ;;

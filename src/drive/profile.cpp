@@ -72,6 +72,9 @@ Result<void> add_rules(Profile& profile, const fs::path& path) {
   return {};
 }
 
+/// Only `explain` reads them, see load_topics().
+constexpr std::string_view kTopics = ".topics.toml";
+
 constexpr std::string_view kSheetExtensions[] = {".eds", ".dcf", ".xml"};
 
 struct Part {
@@ -122,6 +125,8 @@ Result<Profile> load_parts(const Family& family, std::span<const fs::path> folde
   profile.warnings.clear();
   bool has_sheet = false;
   std::error_code ignored;
+  if (auto topics = with_extension(family.stem, kTopics); fs::exists(topics, ignored))
+    profile.topic_files.insert(profile.topic_files.begin(), std::move(topics));
   for (const auto& part : kParts) {
     const auto path = with_extension(family.stem, part.extension);
     if (!fs::exists(path, ignored)) continue;
@@ -175,6 +180,7 @@ void find_in(const fs::path& folder, std::vector<Family>& out) {
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     const auto extension = it->path().extension();
     if (extension != ".eds" && extension != ".dcf" && extension != ".xml" && extension != ".toml") continue;
+    if (it->path().string().ends_with(kTopics)) continue;
     const auto name = lower(it->path().stem().string());
     if (std::none_of(out.begin(), out.end(), [&](const Family& f) { return f.name == name; }))
       out.push_back({name, folder / it->path().stem()});

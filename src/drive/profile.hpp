@@ -29,6 +29,8 @@ struct Profile {
   bool of_file = false;               ///< A file of the user's own, not a family by its name.
   /// The EDS, DCF or ESI the dictionary comes from, as for od::sheet_name(); empty: none.
   std::filesystem::path data_sheet;
+  /// Its file of topics and those of its parents, the nearest first: load_topics() reads them.
+  std::vector<std::filesystem::path> topic_files;
 
   /// The parameter with this id, in any of the ways people write it (`Pn0202`, `pn202`).
   const od::Parameter* parameter(std::string_view id) const;

@@ -69,6 +69,7 @@ class TableText {
   TableText(const Table& table, std::size_t width) {
     for (std::size_t i = 0; i < table.columns.size(); ++i)
       if (table.columns[i].show != Show::json && !is_empty(table, i)) columns_.push_back(measure(table, i));
+    if (columns_.empty()) return;
     if (width > 0) shrink(width);
     add_line(table, nullptr);
     for (const auto& row : table.rows) add_line(table, &row);
@@ -161,7 +162,7 @@ std::string lines_below(const Table& table, std::size_t width) {
     out +=
         std::string(indent, ' ') + wrapped(printable(line.substr(indent)), indent + kColumnGap, width) + '\n';
   }
-  return out.empty() ? out : '\n' + out;
+  return out.empty() || table.columns.empty() ? out : '\n' + out;
 }
 
 }  // namespace

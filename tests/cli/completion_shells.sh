@@ -8,7 +8,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 ln -s "$servoctl" "$work/servoctl"
 PATH="$work:$PATH"
-export PATH SERVOCTL_DRIVES="$source_dir/eds"
+export PATH SERVOCTL_DRIVES="$source_dir/tests/cli/data/explain:$source_dir/eds"
 unset SERVOCTL_DRIVE SERVOCTL_BUS SERVOCTL_NODE
 failures=0
 contains() {  # contains NAME "WORD WORD" CANDIDATES
@@ -34,6 +34,8 @@ cases() {  # cases SHELL FUNCTION
   contains "$1 second word" "list get set search explain" "$($2 param '')"
   contains "$1 parameter" "Pn0202 Pn0214" "$($2 --bus can0 -d gsd600 param set Pn02)"
   contains "$1 parameter in lower case" "Pn0202" "$($2 -d gsd600 param get pn0202)"
+  contains "$1 topic" "CN3 statusword" "$($2 explain -d x1 '')"
+  contains "$1 topic of the standard" "pp" "$($2 explain '')"
   contains "$1 object" "statusword" "$($2 -n 1 -d gsd600 read stat)"
   contains "$1 option" "--bus" "$($2 --b)"
   contains "$1 option of a command" "--type --timeout" "$($2 read 0x6041 --t)"

@@ -91,6 +91,9 @@ Played play(const Case& c, bool json) {
   options.drive_folders = {kSource / "eds", kSource / "tests/cli/data/drives"};
   options.clock = sim::SimBus::Clock::virtual_time;
   options.defaults.bus = "sim:gsd600@1";
+  // What is explained has families of its own, so that no case changes with what is known of others.
+  if (c.name.starts_with("explain") || c.name.starts_with("bad-explain"))
+    options.drive_folders = {kSource / "tests/cli/data/explain"};
   // Cases of what is kept begin with nothing kept.
   const bool keeps = c.name.starts_with("units-") || c.name.starts_with("bad-units-");
   const auto state = fs::temp_directory_path() / fmt::format("servoctl-golden-{}-{}", ::getpid(), c.name);

@@ -34,6 +34,7 @@ const std::map<std::string, std::string> kSamples{
     {"status", "status -n 1,2"},
     {"read", "read 0x6041 0x1018:1 -n 1"},
     {"write", "write 0x6040 15 -n 1 -y"},
+    {"explain", "explain statusword"},
     {"objects", "objects"},
     {"param list", "param list"},
     {"param get", "param get PARAM -n 1"},

@@ -153,6 +153,18 @@ TEST_F(ShellTest, CompletesCommandsOptionsNamesAndNumbers) {
   EXPECT_TRUE(complete("param get zz", shell).words.empty());
 }
 
+TEST(Completer, OffersTopicsWordByWord) {
+  RecordingConsole console;
+  Shell::Options options;
+  options.drive_folders = {std::filesystem::path(source_dir()) / "tests/cli/data/explain"};
+  Shell shell(console, std::move(options));
+  EXPECT_EQ(complete("explain ", shell).words, (std::vector<std::string>{"pp", "homing", "cable"}));
+  EXPECT_EQ(complete("explain Homing ", shell).words, std::vector<std::string>{"method"});
+  EXPECT_EQ(complete("explain -d x1 DI ", shell).words, std::vector<std::string>{"functions"});
+  EXPECT_EQ(complete("explain -d x1 c", shell).words, (std::vector<std::string>{"CN3", "cable"}));
+  EXPECT_EQ(complete("explain -d x1 stat", shell).words, std::vector<std::string>{"statusword"});
+}
+
 TEST_F(ShellTest, AsksBeforeAResetAndSendsNothingWhenTheAnswerIsNo) {
   console.person = true;
   EXPECT_EQ(shell.run({"nmt", "reset", "-n", "1"}), 8);

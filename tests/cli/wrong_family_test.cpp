@@ -85,7 +85,8 @@ const std::set<std::string_view> kQuiet{"objects",      "param list",    "param 
                                         "fault list",   "decode",        "drives",       "eds check",
                                         "run",          "sim",           "help",         "completion",
                                         "units forget", "cabinet check", "bus status",   "bus up",
-                                        "bus down",     "bus detect",    "doctor", "gateway"};
+                                        "bus down",     "bus detect",    "doctor",       "gateway",
+                                        "explain"};
 
 /// Held against the family that the cabinet file names, see tests/cabinet.
 const std::set<std::string_view> kByFile{"cabinet init",   "cabinet show", "cabinet plan", "cabinet apply",

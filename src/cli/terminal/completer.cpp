@@ -10,6 +10,7 @@
 #include "command/help_text.hpp"
 #include "command/registry.hpp"
 #include "drive/naming.hpp"
+#include "drive/topics.hpp"
 #include "session/open_port.hpp"
 #include "session/open_register_line.hpp"
 
@@ -59,6 +60,7 @@ class Candidates {
       case Kind::family: return add_families();
       case Kind::bus: return add_buses();
       case Kind::nodes: return add_axes();
+      case Kind::topic: return add_topics();
       case Kind::file: out_.files = true; return;
       case Kind::command:
         for (const auto* command : command::registry()) add(split(command->path, ' ').front());
@@ -84,6 +86,9 @@ class Candidates {
     for (const auto& name : (*cabinet)->names()) add_name(name);
   }
 
+  /// What stands before the word, of an argument of several words.
+  void set_before(std::vector<std::string> words) { before_ = std::move(words); }
+
   Completions take() { return std::move(out_); }
 
  private:
@@ -104,10 +109,26 @@ class Candidates {
     if (const auto* known = profile())
       for (const auto& parameter : known->parameters) add_name(parameter.id);
   }
+  /// The next word of the names that begin with those before; first also objects and parameters.
+  void add_topics() {
+    const drive::Profile none;
+    const auto* known = profile();
+    const auto topics = drive::load_topics(known == nullptr ? none : *known, shell_->drive_folders());
+    if (!topics) return;
+    for (const auto& topic : *topics) {
+      const auto words = split(std::string_view(topic.name), ' ');
+      if (words.size() > before_.size() &&
+          std::equal(before_.begin(), before_.end(), words.begin(),
+                     [](const std::string& a, std::string_view b) { return equals_nocase(a, b); }))
+        add_name(words[before_.size()]);
+    }
+    if (before_.empty()) add_objects();
+  }
 
   std::string last_;
   Shell* shell_;
   std::string family_;
+  std::vector<std::string> before_;
   Completions out_;
 };
 
@@ -131,15 +152,17 @@ void add_command_words(Candidates& out, const std::vector<std::string>& words, s
 
 void add_positional(Candidates& out, const Command& command, const std::vector<std::string>& words,
                     std::size_t at) {
-  std::size_t place = 0;
+  std::vector<std::string> before;
   for (; at < words.size(); ++at) {
     const auto* option = find_option(command.parameters, words[at]);
     if (option == nullptr) option = find_option(command::global_options(), words[at]);
     if (option != nullptr && option->kind != Kind::flag)
       ++at;
     else if (option == nullptr)
-      ++place;
+      before.push_back(words[at]);
   }
+  const auto place = before.size();
+  out.set_before(std::move(before));
   std::size_t index = 0;
   for (const auto& parameter : command.parameters) {
     if (parameter.name.starts_with("-")) continue;

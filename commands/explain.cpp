@@ -1,0 +1,166 @@
+#include <fmt/format.h>
+#include <algorithm>
+#include <iterator>
+#include <memory>
+
+#include "base/text.hpp"
+#include "command/command.hpp"
+#include "show/explanation.hpp"
+#include "show/topic_page.hpp"
+
+namespace servoctl::commands {
+namespace {
+
+using namespace command;
+using show::Explanation;
+using show::Found;
+
+constexpr Parameter kParameters[] = {
+    {.name = "word",
+     .help = "a name, a code, or words in English or Chinese; nothing: the topics by kind",
+     .kind = Kind::topic,
+     .many = true},
+};
+
+/// Families that were loaded to look something up, and what they know.
+struct Shelf {
+  std::vector<std::unique_ptr<drive::Profile>> profiles;
+  std::vector<show::Library> libraries;
+};
+
+/// What the program knows of itself it tells itself.
+void leave_out_own(std::vector<drive::Topic>& topics) {
+  const show::TopicQuery own(show::exit_code_topic().name);
+  std::erase_if(topics, [&](const drive::Topic& topic) { return own.names(topic.name); });
+}
+
+/// The family that the line names; else the standard, and of all families what has the very name.
+Result<Shelf> open_shelf(Context& context) {
+  Shelf out;
+  if (context.profile != nullptr) {
+    auto topics = drive::load_topics(*context.profile, context.drive_folders);
+    if (!topics) return fail(topics.error());
+    leave_out_own(*topics);
+    out.libraries.push_back({context.profile, std::move(*topics), false});
+    return out;
+  }
+  for (const auto& family : drive::find_families(context.drive_folders)) {
+    auto profile = drive::load_profile(family.name, context.drive_folders);
+    auto topics = profile ? drive::load_own_topics(*profile) : Result<std::vector<drive::Topic>>();
+    if (!profile || !topics) {
+      context.notices.push_back(fmt::format(
+          "{}; {} is left out", (profile ? topics.error() : profile.error()).message, family.name));
+      continue;
+    }
+    leave_out_own(*topics);
+    const bool standard = profile->is_generic();
+    out.profiles.push_back(std::make_unique<drive::Profile>(std::move(*profile)));
+    show::Library library{out.profiles.back().get(), std::move(*topics), !standard};
+    out.libraries.insert(standard ? out.libraries.begin() : out.libraries.end(), std::move(library));
+  }
+  return out;
+}
+
+/// In text what is laid out, in JSON the records.
+report::Value answer(std::vector<std::string> lines, std::span<const Explanation> all) {
+  report::Table out;
+  out.below = std::move(lines);
+  for (const auto& each : all) out.documents.emplace_back(show::explanation_record(each));
+  return out;
+}
+
+/// Columns that pages are laid out in.
+std::size_t page_width(const Context& context) {
+  constexpr std::size_t kNoTerminal = 80;
+  const auto terminal = context.audience == nullptr ? 0 : context.audience->width();
+  return terminal == 0 ? kNoTerminal : std::clamp<std::size_t>(terminal, 40, 100);
+}
+
+/// So many topics are told in full although only words in them fit; more are listed.
+constexpr std::size_t kFewTopics = 3;
+
+/// What fits is told in full, what only mentions the words is listed behind it.
+report::Value told(const Context& context, std::span<const Explanation> all) {
+  const auto width = page_width(context);
+  const auto mentions = std::find_if(all.begin(), all.end(),
+                                     [](const Explanation& each) { return each.found >= Found::title; });
+  const auto fitting = static_cast<std::size_t>(mentions - all.begin());
+  const auto in_full = fitting == 0 && all.size() <= kFewTopics ? all.size() : fitting;
+  std::vector<std::string> lines;
+  const auto rule = [&] {
+    if (lines.empty()) return;
+    lines.insert(lines.end(), {"", std::string(width, '-'), ""});
+  };
+  for (const auto& each : all.first(in_full)) {
+    rule();
+    auto page = show::topic_page(each, context.chinese, width);
+    lines.insert(lines.end(), std::make_move_iterator(page.begin()), std::make_move_iterator(page.end()));
+  }
+  if (in_full < all.size()) {
+    rule();
+    if (in_full > 0) lines.insert(lines.end(), {"topics that mention it:", ""});
+    auto list = show::topic_list(all.subspan(in_full), context.chinese, width);
+    lines.insert(lines.end(), std::make_move_iterator(list.begin()), std::make_move_iterator(list.end()));
+  }
+  return answer(std::move(lines), all);
+}
+
+/// The topics of the family, or of the standard, by kind.
+Result<report::Value> all_topics(const Context& context, const Shelf& shelf) {
+  std::vector<Explanation> all;
+  for (const auto& library : shelf.libraries)
+    for (const auto& topic : library.topics)
+      if (!library.by_name_only) all.push_back({topic, Found::name});
+  all.push_back({show::exit_code_topic(), Found::name});
+  const auto kinds = drive::topic_kinds();
+  const auto place = [&](const Explanation& each) {
+    return std::find(kinds.begin(), kinds.end(), each.topic.kind) - kinds.begin();
+  };
+  std::stable_sort(all.begin(), all.end(),
+                   [&](const Explanation& a, const Explanation& b) { return place(a) < place(b); });
+  return answer(show::topic_list(all, context.chinese, page_width(context)), all);
+}
+
+tl::unexpected<Error> nothing_found(const Context& context, const Shelf& shelf, std::string_view said) {
+  const auto family = context.profile == nullptr ? std::string() : context.profile->family;
+  auto hint = did_you_mean(said, show::explained_names(shelf.libraries));
+  if (hint.empty() && !family.empty())
+    hint =
+        "`explain` lists the topics; `param search` and `fault list` look for words in parameters and faults";
+  if (family.empty()) append(hint, "-d FAMILY looks for words in what is known of it", " ");
+  return fail(Errc::negative,
+              fmt::format("nothing {}is called '{}' or mentions it",
+                          family.empty() ? "" : "of " + family + " ", said),
+              std::move(hint));
+}
+
+Result<report::Value> run(Context& context, const Arguments& arguments) {
+  std::string said;
+  for (const auto& word : arguments.all("word")) append(said, word, " ");
+  const auto shelf = open_shelf(context);
+  if (!shelf) return fail(shelf.error());
+  if (trim(said).empty()) return all_topics(context, *shelf);
+  const auto all = show::explanations(show::TopicQuery(said), shelf->libraries, context.chinese);
+  if (all.empty()) return nothing_found(context, *shelf, said);
+  return told(context, all);
+}
+
+}  // namespace
+
+extern const Command kExplain;
+const Command kExplain{
+    .path = "explain",
+    .summary = "Say what a word means: object, fault, code, plug, LED, mode, homing method",
+    .details =
+        "Works without a bus. Knows objects, panel parameters, faults, SDO abort codes, exit codes (`explain "
+        "exit 5`), and the topics of the manuals: wiring, plugs, panel, LEDs, states, modes, homing methods "
+        "(`explain homing 7`), bits, inputs and outputs (`explain DI 28`). Words that are no name are looked "
+        "for in titles and texts. Without -d the standard and what has this very name in any family; without a "
+        "word the topics by kind. --lang zh takes the Chinese texts.",
+    .parameters = kParameters,
+    .needs = Needs::nothing,
+    .effect = Effect::none,
+    .run = run,
+};
+
+}  // namespace servoctl::commands

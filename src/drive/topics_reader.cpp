@@ -1,0 +1,188 @@
+// `<family>.topics.toml`, key by key.
+#include <fmt/format.h>
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include "base/folded.hpp"
+#include "base/number.hpp"
+#include "drive/toml_depth.hpp"
+#include "drive/toml_reader.hpp"
+#include "drive/topics.hpp"
+
+namespace servoctl::drive {
+namespace {
+
+constexpr std::array<std::string_view, 15> kTopicKinds{"wiring", "connector", "cable",     "panel",  "led",
+                                                       "state",  "mode",      "homing",    "bits",   "input",
+                                                       "output", "signal",    "procedure", "preset", "term"};
+
+class TopicsReader {
+ public:
+  TopicsReader(std::string_view file, std::string_view family) : file_(file), family_(family) {}
+
+  Result<std::vector<Topic>> read(const toml::table& root) {
+    std::int64_t format = 0;
+    const auto done = TableReader(root, file_)
+                          .read({{"format", [&](const auto& n) { return get_int(n, format) && format == 1; }},
+                                 {"topic", [&](const auto& n) { return topics(n); }}});
+    if (inner_) return fail(*inner_);
+    if (!done) return fail(done.error());
+    if (format == 0)
+      return fail(Errc::file, fmt::format("{}: 'format' is missing", file_),
+                  "begin the file with format = 1");
+    return std::move(topics_);
+  }
+
+ private:
+  /// Remembers the first error of what stands inside: with its own line it goes before "of the wrong kind".
+  bool note(const Result<void>& done) {
+    if (!done && !inner_) inner_ = done.error();
+    return done.has_value();
+  }
+
+  bool topics(const toml::node& node) {
+    const auto* array = node.as_array();
+    if (array == nullptr) return false;
+    for (const auto& element : *array) {
+      const auto* table = element.as_table();
+      if (table == nullptr || !note(topic(*table))) return false;
+    }
+    return true;
+  }
+
+  Result<void> topic(const toml::table& table) {
+    Topic out;
+    out.family = family_;
+    const TableReader reader(table, file_);
+    // Each row is held against them, wherever they stand.
+    if (const auto* columns = table.get("columns")) (void)drive::get(*columns, out.columns);
+    const auto source = [](std::string& line) {
+      return [&line](const toml::node& n) { return drive::get(n, line) && is_source_line(line); };
+    };
+    const auto kind = [&](const toml::node& n) {
+      return drive::get(n, out.kind) &&
+             std::find(kTopicKinds.begin(), kTopicKinds.end(), out.kind) != kTopicKinds.end();
+    };
+    const auto done = reader.read({{"kind", kind},
+                                   {"name", into(out.name)},
+                                   {"also", into(out.also)},
+                                   {"title", into(out.title)},
+                                   {"title_zh", into(out.title_zh)},
+                                   {"text", into(out.text)},
+                                   {"text_zh", into(out.text_zh)},
+                                   {"columns", into(out.columns)},
+                                   {"columns_zh", into(out.columns_zh)},
+                                   {"rows", [&](const auto& n) { return rows(n, out); }},
+                                   {"picture", into(out.picture)},
+                                   {"note", into(out.note)},
+                                   {"note_zh", into(out.note_zh)},
+                                   {"assumed", into(out.assumed)},
+                                   {"figure", into(out.figure)},
+                                   {"object", into(out.object)},
+                                   {"value", into(out.value)},
+                                   {"line", source(out.line)}},
+                                  {{"kind", kKindForm}, {"line", kLineForm}, {"object", R"("0x6098:00")"}});
+    if (!done) return done;
+    if (const auto whole = check(table, out); !whole) return whole;
+    topics_.push_back(std::move(out));
+    return {};
+  }
+
+  bool rows(const toml::node& node, Topic& out) {
+    const auto* array = node.as_array();
+    if (array == nullptr) return false;
+    for (const auto& element : *array) {
+      const auto* table = element.as_table();
+      if (table == nullptr || !note(row(*table, out.columns.size(), out.rows.emplace_back()))) return false;
+    }
+    return true;
+  }
+
+  Result<void> row(const toml::table& table, std::size_t columns, TopicRow& out) const {
+    const TableReader reader(table, file_);
+    const auto line = [&](const toml::node& n) {
+      return drive::get(n, out.line) && is_source_line(out.line);
+    };
+    if (const auto done = reader.read({{"cells", into(out.cells)},
+                                       {"text", into(out.text)},
+                                       {"text_zh", into(out.text_zh)},
+                                       {"line", line}},
+                                      {{"line", kLineForm}});
+        !done)
+      return done;
+    if (out.cells.size() != columns)
+      return reader.fail_at(table,
+                            fmt::format("a row of {} 'cells' under {} 'columns'", out.cells.size(), columns));
+    if (out.line.empty()) return reader.fail_at(table, "a row without 'line'");
+    if (out.text.empty() != out.text_zh.empty())
+      return reader.fail_at(table, "a row has both 'text' and 'text_zh', or neither");
+    return {};
+  }
+
+  Result<void> check(const toml::table& table, const Topic& topic) {
+    const TableReader reader(table, file_);
+    const auto wrong = [&](const std::string& what) {
+      return reader.fail_at(table,
+                            topic.name.empty() ? what : fmt::format("topic '{}': {}", topic.name, what));
+    };
+    for (const auto& [key, value] :
+         {std::pair("kind", &topic.kind), std::pair("name", &topic.name), std::pair("title", &topic.title),
+          std::pair("title_zh", &topic.title_zh), std::pair("line", &topic.line)})
+      if (trim(*value).empty()) return wrong(fmt::format("'{}' is missing", key));
+    for (const auto& [key, one, other] :
+         {std::tuple("text", &topic.text, &topic.text_zh), std::tuple("note", &topic.note, &topic.note_zh)})
+      if (one->empty() != other->empty()) return wrong(fmt::format("'{0}' and '{0}_zh' go together", key));
+    if (topic.text.empty() && topic.rows.empty() && topic.picture.empty())
+      return wrong("it says nothing: 'text', 'rows' or 'picture' is missing");
+    if (topic.value && !topic.object) return wrong("'value' needs 'object'");
+    if (!names_.insert(folded(topic.name)).second) return wrong("its name stands twice in the file");
+    if (topic.columns.empty() != topic.rows.empty()) return wrong("'columns' and 'rows' go together");
+    if (topic.columns_zh.size() != topic.columns.size())
+      return wrong(
+          fmt::format("{} 'columns', but {} 'columns_zh'", topic.columns.size(), topic.columns_zh.size()));
+    return {};
+  }
+
+  static constexpr std::string_view kLineForm = R"(line = "6692-6711 6801", or a clause: "CiA 301, 7.3.2")";
+  static constexpr std::string_view kKindForm =
+      "wiring, connector, cable, panel, led, state, mode, homing, bits, input, output, signal, procedure, preset "
+      "or term";
+
+  std::string_view file_;
+  std::string family_;
+  std::vector<Topic> topics_;
+  std::set<std::string> names_;
+  std::optional<Error> inner_;
+};
+
+}  // namespace
+
+std::span<const std::string_view> topic_kinds() { return kTopicKinds; }
+
+bool is_source_line(std::string_view text) {
+  if (text.empty()) return false;
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  if (!is_digit(text.front())) return (lower(text).front() >= 'a' && lower(text).front() <= 'z');
+  for (const auto part : split(text, ' ')) {
+    const auto dash = part.find('-');
+    const auto first = parse_digits(part.substr(0, dash), 10);
+    const auto last = dash == std::string_view::npos ? first : parse_digits(part.substr(dash + 1), 10);
+    if (!first || !last || *first == 0 || *last < *first) return false;
+  }
+  return true;
+}
+
+Result<std::vector<Topic>> parse_topics(std::string_view toml, std::string_view file,
+                                        std::string_view family) {
+  if (const auto flat = check_toml_depth(toml, file); !flat) return fail(flat.error());
+  const auto parsed = toml::parse(toml, file);
+  if (!parsed) {
+    const auto& problem = parsed.error();
+    const auto at = problem.source().begin;
+    return fail(file_error(file, at.line, at.column, problem.description()));
+  }
+  return TopicsReader(file, family).read(parsed.table());
+}
+
+}  // namespace servoctl::drive

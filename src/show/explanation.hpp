@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "drive/topics.hpp"
+#include "report/value.hpp"
+#include "show/topic_query.hpp"
+
+/// What `explain` tells: objects, parameters, faults and codes in the form of topics.
+namespace servoctl::show {
+
+/// One answer.
+struct Explanation {
+  drive::Topic topic;
+  Found found = Found::text;
+  std::vector<std::size_t> rows = {};  ///< Of the topic's table only these; empty: all.
+  report::Value details = {};  ///< Of an object, parameter or fault: its record, or a table of several.
+};
+
+/// What is looked through for one family.
+struct Library {
+  const drive::Profile* profile = nullptr;
+  std::vector<drive::Topic> topics;
+  bool by_name_only = false;  ///< Nobody named the family: what has the very name, no words in texts.
+};
+
+/// All that the query means, the best first and in the order of the libraries. The codes of servoctl and CiA
+/// 301 are told once, in the words of the first library.
+std::vector<Explanation> explanations(const TopicQuery& query, std::span<const Library> libraries,
+                                      bool chinese);
+
+/// The names that a query may have meant.
+std::vector<std::string> explained_names(std::span<const Library> libraries);
+
+/// `exit 5`, and all of them: what the exit codes of the program mean (README.md, "For scripts").
+drive::Topic exit_code_topic();
+
+/// Its record for scripts (docs/json.md).
+report::Record explanation_record(const Explanation& explanation);
+
+}  // namespace servoctl::show

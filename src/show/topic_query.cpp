@@ -1,0 +1,205 @@
+#include "show/topic_query.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "base/folded.hpp"
+#include "base/number.hpp"
+#include "base/text.hpp"
+
+namespace servoctl::show {
+namespace {
+
+bool is_word_sign(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || static_cast<unsigned char>(c) >= 0x80;
+}
+bool is_ascii_word_sign(char c) { return is_word_sign(c) && static_cast<unsigned char>(c) < 0x80; }
+
+/// What names are compared by.
+std::string key_of(std::string_view text) {
+  auto out = folded(text);
+  std::erase_if(out, [](char c) { return c == ' ' || c == '_'; });
+  return out;
+}
+
+/// With a blank between Chinese and the digits behind it.
+std::string with_numbers_apart(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    const bool digit = c >= '0' && c <= '9';
+    if (digit && !out.empty() && static_cast<unsigned char>(out.back()) >= 0x80) out += ' ';
+    out += c;
+  }
+  return out;
+}
+
+std::optional<std::int64_t> number_in(std::string_view word) {
+  const auto number = parse_integer(word);
+  return number ? number->as_signed() : std::nullopt;
+}
+
+/// `7` at the end of `FunIN.07`, or the whole of `7`; not the last digits of `0x17` or `1-7`.
+std::optional<std::int64_t> number_at_end(std::string_view cell) {
+  auto at = cell.size();
+  while (at > 0 && cell[at - 1] >= '0' && cell[at - 1] <= '9') --at;
+  const auto before = cell.substr(0, at);
+  if (at == cell.size() || before.find_first_of("0123456789") != std::string_view::npos) return std::nullopt;
+  if (before == "-" || before == "+") return number_in(cell);
+  return number_in(cell.substr(at));
+}
+
+/// Whether the cell is this number with a unit: `500 kbit/s` is `500` and `500k`.
+bool is_quantity(std::string_view cell, std::string_view word) {
+  if (word.empty() || word.front() < '0' || word.front() > '9') return false;
+  const auto key = key_of(cell);
+  if (!key.starts_with(word) || key.find_first_of("0123456789", word.size()) != std::string::npos)
+    return false;
+  const bool all_digits = word.find_first_not_of("0123456789") == std::string_view::npos;
+  return !all_digits || cell.substr(word.size()).starts_with(" ");
+}
+
+/// Whether the word begins a word of the text; one of one or two letters has to be all of it. Chinese knows
+/// no such borders.
+bool has_word(std::string_view text, std::string_view word) {
+  if (word.empty()) return false;
+  const bool bounded = is_ascii_word_sign(word.front());
+  for (auto at = text.find(word); at != std::string_view::npos; at = text.find(word, at + 1)) {
+    const auto end = at + word.size();
+    const bool begins = at == 0 || !is_ascii_word_sign(text[at - 1]);
+    const bool ends = end == text.size() || !is_ascii_word_sign(text[end]);
+    if (!bounded || (begins && (ends || word.size() > 2))) return true;
+  }
+  return false;
+}
+
+/// What people call the kinds of topics that are counted.
+struct KindWords {
+  std::string_view kind;
+  std::array<std::string_view, 6> words;
+};
+constexpr std::array kKindWords{
+    KindWords{"homing", {"homing", "homing method", "home", "回零", "回零方式", "回原点方式"}},
+    KindWords{"mode", {"mode", "mode of operation", "操作模式", "模式", "运行模式", "控制模式"}},
+    KindWords{"state", {"state", "状态", {}, {}, {}, {}}},
+};
+
+bool is_called(std::string_view kind, std::string_view words) {
+  if (words == kind) return true;
+  return std::any_of(kKindWords.begin(), kKindWords.end(), [&](const KindWords& row) {
+    return row.kind == kind && std::find(row.words.begin(), row.words.end(), words) != row.words.end();
+  });
+}
+
+/// Whether the words name the object, by its address or by its name in the dictionary.
+bool is_object(std::string_view words, ObjectAddress object, const od::Dictionary* dictionary) {
+  if (const auto address = parse_object_address(words)) return *address == object;
+  const auto* known = dictionary == nullptr ? nullptr : dictionary->object(object.index);
+  return known != nullptr && !words.empty() && od::identifier(known->name) == od::identifier(words);
+}
+
+std::string haystack(const drive::Topic& topic) {
+  auto out = topic.name;
+  for (const auto& name : topic.also) out += "\n" + name;
+  return folded(out + "\n" + topic.title + "\n" + topic.title_zh);
+}
+
+std::string all_text(const drive::Topic& topic) {
+  auto out = haystack(topic);
+  for (const auto* text : {&topic.text, &topic.text_zh, &topic.note, &topic.note_zh}) out += "\n" + *text;
+  for (const auto& row : topic.rows) {
+    for (const auto& cell : row.cells) out += "\n" + cell;
+    out += "\n" + row.text + "\n" + row.text_zh;
+  }
+  return folded(out);
+}
+
+}  // namespace
+
+std::string_view name(Found found) {
+  constexpr std::array<std::string_view, 10> kNames{"object", "parameter", "fault", "abort", "exit",
+                                                    "name",   "value",     "row",   "title", "text"};
+  return kNames.at(static_cast<std::size_t>(found));
+}
+
+TopicQuery::TopicQuery(std::string_view words)
+    : whole_(trim(words)), subject_(trim(whole_.substr(0, whole_.find('=')))), key_(key_of(words)) {
+  auto text = with_numbers_apart(folded(words));
+  if (const auto sign = text.find('='); sign != std::string::npos) {
+    assigned_ = true;
+    counted_ = trim(std::string_view(text).substr(0, sign));
+    number_ = number_in(trim(std::string_view(text).substr(sign + 1)));
+    text[sign] = ' ';
+  }
+  for (const auto word : split(std::string_view(text), ' '))
+    if (!word.empty()) words_.emplace_back(word);
+  if (assigned_ || words_.size() < 2) return;
+  number_ = number_in(words_.back());
+  for (std::size_t i = 0; i + 1 < words_.size(); ++i) append(counted_, words_[i], " ");
+}
+
+bool TopicQuery::names(std::string_view name) const { return !key_.empty() && key_of(name) == key_; }
+
+bool TopicQuery::names_topic(const drive::Topic& topic) const {
+  return names(topic.name) ||
+         std::any_of(topic.also.begin(), topic.also.end(), [&](const auto& name) { return names(name); });
+}
+
+bool TopicQuery::names_value(const drive::Topic& topic, const od::Dictionary* dictionary) const {
+  if (!number_ || !topic.object || topic.value != number_) return false;
+  if (is_object(counted_, *topic.object, dictionary)) return true;
+  if (assigned_) return false;
+  auto words = counted_;
+  for (const std::string_view filler : {" method", " code", " number"})
+    if (words.ends_with(filler)) words.resize(words.size() - filler.size());
+  return is_called(topic.kind, counted_) || is_called(topic.kind, words);
+}
+
+/// Rows with a cell that is all that was typed, or, of a topic that the words before name, the last word.
+std::vector<std::size_t> TopicQuery::rows_of(const drive::Topic& topic, bool counted) const {
+  constexpr std::size_t kTellingDigits = 3;
+  const bool telling = !number_in(key_) || key_.size() >= kTellingDigits;
+  const bool counts = counted && !assigned_ && words_.size() > 1;
+  const auto about = counts ? haystack(topic) + "\n" + topic.kind : std::string();
+  const bool named = counts && std::all_of(words_.begin(), words_.end() - 1,
+                                           [&](const std::string& word) { return has_word(about, word); });
+  const auto is_meant = [&](const drive::TopicRow& row, std::size_t column) {
+    const auto& cell = row.cells[column];
+    if (telling && names(cell)) return true;
+    // What the words count are no steps.
+    if (!named || topic.columns[column] == "step") return false;
+    const auto text = folded(cell);
+    return text == words_.back() || (number_ && number_at_end(text) == number_) ||
+           is_quantity(text, words_.back());
+  };
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < topic.rows.size(); ++i)
+    for (std::size_t column = 0; column < topic.columns.size(); ++column)
+      if (is_meant(topic.rows[i], column)) {
+        out.push_back(i);
+        break;
+      }
+  return out;
+}
+
+bool TopicQuery::is_in(std::string_view text) const {
+  return !words_.empty() && std::all_of(words_.begin(), words_.end(),
+                                        [&](const std::string& word) { return has_word(text, word); });
+}
+
+std::optional<TopicMatch> TopicQuery::match_name(const drive::Topic& topic) const {
+  if (names_topic(topic)) return TopicMatch{Found::name, {}};
+  if (auto rows = rows_of(topic, false); !rows.empty()) return TopicMatch{Found::row, std::move(rows)};
+  return std::nullopt;
+}
+
+std::optional<TopicMatch> TopicQuery::match(const drive::Topic& topic,
+                                            const od::Dictionary* dictionary) const {
+  if (names_topic(topic)) return TopicMatch{Found::name, {}};
+  if (names_value(topic, dictionary)) return TopicMatch{Found::value, {}};
+  if (auto rows = rows_of(topic, true); !rows.empty()) return TopicMatch{Found::row, std::move(rows)};
+  if (is_in(haystack(topic)) || names(topic.kind)) return TopicMatch{Found::title, {}};
+  if (is_in(all_text(topic))) return TopicMatch{Found::text, {}};
+  return std::nullopt;
+}
+
+}  // namespace servoctl::show

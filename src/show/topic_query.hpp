@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "drive/topics.hpp"
+
+namespace servoctl::show {
+
+/// How something was found, the best first.
+enum class Found : std::uint8_t { object, parameter, fault, abort, exit, name, value, row, title, text };
+
+std::string_view name(Found found);  ///< As the enumerators are called.
+
+/// Why a topic is an answer.
+struct TopicMatch {
+  Found found = Found::text;
+  std::vector<std::size_t> rows = {};  ///< Of Found::row: which.
+};
+
+/// What somebody wants explained: a name, words in any language, a number behind the name of what it counts
+/// (`homing 7`, `DI 28`), or an object and its value (`6098h=7`). Case, full-width forms and the number of
+/// blanks make no difference.
+class TopicQuery {
+ public:
+  explicit TopicQuery(std::string_view words);
+
+  const std::string& whole() const { return whole_; }  ///< As it was typed, but for blanks.
+  /// Of an object and its value, the object as it was typed; else all that was typed.
+  const std::string& subject() const { return subject_; }
+  bool has_value() const { return assigned_; }  ///< `6098h=7`.
+  /// Whether the name is what was typed; blanks and `_` in them make no difference.
+  bool names(std::string_view name) const;
+
+  /// Why the topic is an answer, by the best reason; empty where it is none. `dictionary` knows the names of
+  /// objects; null: only their indexes are understood.
+  std::optional<TopicMatch> match(const drive::Topic& topic, const od::Dictionary* dictionary) const;
+  /// The same where only a name, or a cell that is all that was typed, is an answer.
+  std::optional<TopicMatch> match_name(const drive::Topic& topic) const;
+
+ private:
+  bool names_topic(const drive::Topic& topic) const;
+  bool names_value(const drive::Topic& topic, const od::Dictionary* dictionary) const;
+  std::vector<std::size_t> rows_of(const drive::Topic& topic, bool counted) const;
+  bool is_in(std::string_view text) const;
+
+  std::string whole_;
+  std::string subject_;
+  std::string key_;
+  std::vector<std::string> words_;      ///< Folded; a number behind Chinese is a word of its own.
+  std::string counted_;                 ///< What is before the last word, or the `=`.
+  std::optional<std::int64_t> number_;  ///< The last word, or what is behind the `=`.
+  bool assigned_ = false;
+};
+
+}  // namespace servoctl::show

@@ -1,0 +1,122 @@
+#include "show/topic_query.hpp"
+
+#include <gtest/gtest.h>
+
+#include "show/explanation.hpp"
+
+namespace servoctl::show {
+namespace {
+
+drive::Topic inputs() {
+  drive::Topic out;
+  out.kind = "input";
+  out.name = "DI functions";
+  out.also = {"digital inputs", "输入功能"};
+  out.title = "Functions of the digital inputs";
+  out.title_zh = "数字输入功能";
+  out.text = "The motor is disabled where nothing is wired.";
+  out.columns = {"function", "symbol"};
+  out.rows = {
+      {{"FunIN.1", "S-ON"}, "", "", "1"}, {{"FunIN.28", "HOME"}, "", "", "2"}, {{"0x31", "5"}, "", "", "3"}};
+  return out;
+}
+
+drive::Topic homing(std::int64_t method) {
+  drive::Topic out;
+  out.kind = "homing";
+  out.name = "hm" + std::to_string(method);
+  out.title = "Home switch and index";
+  out.object = ObjectAddress{0x6098, 0};
+  out.value = method;
+  return out;
+}
+
+std::string found(std::string_view words, const drive::Topic& topic) {
+  od::Dictionary dictionary;
+  od::Object object;
+  object.index = 0x6098;
+  object.name = "Homing method";
+  dictionary.add(object);
+  const auto match = TopicQuery(words).match(topic, &dictionary);
+  if (!match) return "-";
+  std::string out(name(match->found));
+  for (const auto row : match->rows) out += " " + std::to_string(row);
+  return out;
+}
+
+TEST(TopicQuery, FindsNamesWhateverTheirCaseWidthAndBlanks) {
+  for (const auto* words : {"DI functions", "di  FUNCTIONS", "DIfunctions", "DI_functions", "ＤＩ　functions",
+                            "Digital Inputs", "输入功能"})
+    EXPECT_EQ(found(words, inputs()), "name") << words;
+}
+
+TEST(TopicQuery, FindsValuesOfAnObjectByItsIndexItsNameAndItsKind) {
+  for (const auto* words : {"6098h=7", "0x6098 = 7", "homing_method=7", "6098 7", "homing method 7",
+                            "homing 7", "home method 7", "Homing Method 0x7", "回零方式7", "回零 7"})
+    EXPECT_EQ(found(words, homing(7)), "value") << words;
+  EXPECT_EQ(found("homing -1", homing(-1)), "value");
+  for (const auto* words : {"homing 8", "6098h=17", "6099h=7", "mode 7", "homing=7", "7"})
+    EXPECT_NE(found(words, homing(7)), "value") << words;
+}
+
+TEST(TopicQuery, FindsRowsByACellOrByTheNumberBehindWhatIsCounted) {
+  EXPECT_EQ(found("FunIN.28", inputs()), "row 1");
+  EXPECT_EQ(found("s-on", inputs()), "row 0");
+  EXPECT_EQ(found("DI 28", inputs()), "row 1");
+  EXPECT_EQ(found("input 028", inputs()), "row 1");
+  EXPECT_EQ(found("digital home", inputs()), "row 1");
+  EXPECT_EQ(found("DI 31", inputs()), "-");
+  EXPECT_EQ(found("DO 28", inputs()), "-");
+  EXPECT_EQ(found("5", inputs()), "text") << "a digit alone names no row";
+  auto steps = inputs();
+  steps.columns[0] = "step";
+  EXPECT_EQ(found("DI 28", steps), "text") << "nobody counts the steps of a procedure";
+}
+
+TEST(TopicQuery, TakesOnlyNamesAndWholeCellsWhereNobodyNamedTheFamily) {
+  EXPECT_EQ(TopicQuery("FunIN.28").match_name(inputs())->rows, std::vector<std::size_t>{1});
+  EXPECT_EQ(TopicQuery("DI functions").match_name(inputs())->found, Found::name);
+  for (const auto* words : {"DI 28", "functions", "motor", "input"})
+    EXPECT_FALSE(TopicQuery(words).match_name(inputs())) << words;
+}
+
+TEST(TopicQuery, FindsRowsByAQuantity) {
+  auto lengths = inputs();
+  lengths.name = "cable length";
+  lengths.rows = {{{"1 Mbit/s", "25 m"}, "", "", "1"},
+                  {{"500 kbit/s", "100 m"}, "", "", "2"},
+                  {{"50 kbit/s", "1000 m"}, "", "", "3"}};
+  EXPECT_EQ(found("cable 500", lengths), "row 1");
+  EXPECT_EQ(found("cable length 500k", lengths), "row 1");
+  EXPECT_EQ(found("cable 50k", lengths), "row 2");
+  EXPECT_EQ(found("500 kbit/s", lengths), "row 1");
+  EXPECT_EQ(found("cable 5", lengths), "-");
+}
+
+TEST(TopicQuery, FindsWordsInTitlesBeforeThoseInTexts) {
+  EXPECT_EQ(found("functions digital", inputs()), "title");
+  EXPECT_EQ(found("func", inputs()), "title");
+  EXPECT_EQ(found("数字", inputs()), "title");
+  EXPECT_EQ(found("input", inputs()), "title");
+  EXPECT_EQ(found("wired motor", inputs()), "text");
+  EXPECT_EQ(found("unctions", inputs()), "-") << "English words from their beginning";
+  EXPECT_EQ(found("is di", inputs()), "text");
+  EXPECT_EQ(found("di sab", inputs()), "-");
+  EXPECT_EQ(found("motor encoder", inputs()), "-");
+  EXPECT_EQ(found("", inputs()), "-");
+}
+
+TEST(ExitCodes, TellEveryErrorOnce) {
+  const auto topic = exit_code_topic();
+  std::vector<std::string> told;
+  for (const auto& row : topic.rows) told.push_back(row.cells[0] + " " + row.cells[1]);
+  std::vector<std::string> codes{"0 "};
+  for (int code = 0; code <= static_cast<int>(Errc::interrupted); ++code) {
+    const auto error = static_cast<Errc>(code);
+    codes.push_back(std::to_string(exit_code(error)) + " " + std::string(servoctl::name(error)));
+  }
+  EXPECT_EQ(told, codes);
+}
+
+}  // namespace
+}  // namespace servoctl::show
