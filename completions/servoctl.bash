@@ -97,7 +97,7 @@ _servoctl_scan() {
     return
   fi
   case $command in
-    '') source='=scan bus doctor info status read write objects param backup cabinet diff verify restore clone address lss store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim gateway help completion' ;;
+    '') source='=scan bus doctor info status read write explain objects param backup cabinet diff verify restore clone address lss store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim gateway help completion' ;;
     bus) source='=status up down detect' ;;
     param) source='=list get set search explain' ;;
     cabinet) source='=init check show plan apply backup swap diff' ;;
@@ -118,6 +118,7 @@ _servoctl_scan() {
     'doctor') source='buses' ;;
     'read') source='objects' ;;
     'write') source='objects' ;;
+    'explain') source='topics' ;;
     'objects') source='none' ;;
     'param list') source='none' ;;
     'param get') source='parameters' ;;
@@ -167,8 +168,8 @@ _servoctl_scan() {
     'eds check') source='files' ;;
     'run') source='files' ;;
     'sim') source='none' ;;
-    'help') source='=scan bus doctor info status read write objects param backup cabinet diff verify restore clone address lss store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim gateway help completion' ;;
-    'completion') source='=bash zsh fish objects parameters families' ;;
+    'help') source='=scan bus doctor info status read write explain objects param backup cabinet diff verify restore clone address lss store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim gateway help completion' ;;
+    'completion') source='=bash zsh fish objects parameters topics families' ;;
   esac
   case $command in
     'scan') options+=' --long --all-bitrates' ;;
@@ -250,6 +251,8 @@ _servoctl_words() {
     '='*) printf '%s\n' "${source#=}" | tr ' ' '\n' ;;
     objects|parameters)
       [ -z "$drive" ] || servoctl completion "$source" -d "$drive" 2>/dev/null ;;
+    topics)
+      servoctl completion topics ${drive:+"--drive=$drive"} 2>/dev/null ;;
     families)
       servoctl completion families 2>/dev/null
       _servoctl_sheets "${typed%"${typed##*/}"}" ;;

@@ -41,6 +41,15 @@ function __servoctl_names
     test -n "$drive"; and servoctl completion $argv[1] -d $drive 2>/dev/null
 end
 
+function __servoctl_topics
+    set -l drive (__servoctl_drive)
+    if test -n "$drive"
+        servoctl completion topics -d $drive 2>/dev/null
+    else
+        servoctl completion topics 2>/dev/null
+    end
+end
+
 function __servoctl_buses
     for interface in /sys/class/net/*
         set -l type (cat $interface/type 2>/dev/null; or echo 0)
@@ -118,6 +127,8 @@ complete -c servoctl -n '__servoctl_in write' -l from -r -F -d 'write the bytes 
 complete -c servoctl -n '__servoctl_in write' -l transfer -x -a 'auto expedited segmented block' -d 'SDO transfer type (default: chosen by size)'
 complete -c servoctl -n '__servoctl_in write' -l keep -d 'make the values survive power-off'
 complete -c servoctl -n '__servoctl_in write' -l unlock -d 'unlock by the family'\''s password, lock again after'
+complete -c servoctl -n __servoctl_at -a explain -d 'Say what a word means: object, fault, code, plug, LED, mode, homing method'
+complete -c servoctl -n '__servoctl_in explain' -x -a '(__servoctl_topics)'
 complete -c servoctl -n __servoctl_at -a objects -d 'List the object dictionary of a drive family'
 complete -c servoctl -n '__servoctl_at param' -a list -d 'List the panel parameters of a drive family'
 complete -c servoctl -n '__servoctl_at param' -a get -d 'Read panel parameters of a drive'
@@ -477,9 +488,9 @@ complete -c servoctl -n __servoctl_at -a gateway -d 'Let clients of CiA 309-3, s
 complete -c servoctl -n '__servoctl_in gateway' -l listen -x -d '127.0.0.1:60000 (default), or a path such as /run/gateway for a local socket'
 complete -c servoctl -n '__servoctl_in gateway' -l allow -x -a 'write' -d 'write: clients may write objects and send NMT commands; without it they only read'
 complete -c servoctl -n __servoctl_at -a help -d 'Show the commands, or how one is used'
-complete -c servoctl -n '__servoctl_in help' -x -a 'scan bus doctor info status read write objects param backup cabinet diff verify restore clone address lss store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim gateway help completion'
+complete -c servoctl -n '__servoctl_in help' -x -a 'scan bus doctor info status read write explain objects param backup cabinet diff verify restore clone address lss store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim gateway help completion'
 complete -c servoctl -n __servoctl_at -a completion -d 'Print the completion script of a shell'
-complete -c servoctl -n '__servoctl_in completion' -x -a 'bash zsh fish objects parameters families'
+complete -c servoctl -n '__servoctl_in completion' -x -a 'bash zsh fish objects parameters topics families'
 complete -c servoctl -n __servoctl_at -a bus
 complete -c servoctl -n __servoctl_at -a param
 complete -c servoctl -n __servoctl_at -a cabinet

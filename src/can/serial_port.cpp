@@ -25,7 +25,7 @@ namespace {
 
 std::string serial_ports_text() {
   const auto ports = serial_adapters();
-  if (ports.empty()) return "this machine has no USB serial port: `dmesg | tail` shows what the kernel saw";
+  if (ports.empty()) return "this machine has no USB serial port; the end of dmesg tells what the kernel saw";
   return fmt::format("USB serial ports: {}", fmt::join(ports, ", "));
 }
 

@@ -93,6 +93,9 @@ Outcome followed(const Words& words) {
   RecordingConsole console;
   Shell::Options options;
   options.drive_folders = {fs::path(source_dir()) / "eds", fs::path(source_dir()) / "tests/cli/data/drives"};
+  // As the golden cases: what is explained has families of its own.
+  if (std::find(words.begin(), words.end(), "x1") != words.end())
+    options.drive_folders = {fs::path(source_dir()) / "tests/cli/data/explain"};
   options.clock = sim::SimBus::Clock::virtual_time;
   options.defaults.bus = "sim:gsd600@1";
   options.defaults.yes = true;
