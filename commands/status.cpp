@@ -6,6 +6,7 @@
 #include "command/command.hpp"
 #include "drive/cia402.hpp"
 #include "drive/quantity.hpp"
+#include "drive/standard_mode.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/answer.hpp"
 #include "session/ethercat_network.hpp"
@@ -83,7 +84,10 @@ void add_drive_state(Record& out, const Context& context, std::optional<std::uin
   if (!word) return;
   const auto statusword = static_cast<std::uint16_t>(*word);
   const auto state = drive::decode_state(statusword);
-  const auto mode_number = static_cast<std::int8_t>(mode.value_or(0));
+  const auto shown_mode = static_cast<std::int8_t>(mode.value_or(0));
+  const auto mode_number = context.profile == nullptr
+                               ? shown_mode
+                               : drive::standard_mode(context.profile->rules.motion, shown_mode);
   report::List bits;
   for (auto& bit : drive::statusword_bits(statusword, mode_number)) bits.emplace_back(std::move(bit));
   out.push_back(

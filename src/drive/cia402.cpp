@@ -1,10 +1,11 @@
 #include "drive/cia402.hpp"
 
-#include <iterator>
-#include "base/text.hpp"
-
 #include <fmt/format.h>
+#include <algorithm>
 #include <array>
+#include <iterator>
+
+#include "base/text.hpp"
 
 namespace servoctl::drive {
 namespace {
@@ -65,14 +66,20 @@ struct BitRow {
   std::string_view name;
 };
 constexpr std::array kBits{BitRow{4, "voltage enabled"}, BitRow{7, "warning"}, BitRow{9, "remote"},
-                           BitRow{10, "target reached"}, BitRow{11, "internal limit active"}};
+                           BitRow{11, "internal limit active"}};
 
-std::string_view mode_bit(int bit, std::int8_t mode) {
+/// Bits 10, 12 and 13 (CiA 402-2, the statusword of each mode). Where the mode has no meaning for one, its
+/// number: what is set there is the manufacturer's, or a status toggle.
+std::string_view mode_bit(unsigned bit, std::int8_t mode) {
+  const bool cyclic = mode >= 8 && mode <= 10;
+  if (bit == 10) return cyclic ? "bit 10" : "target reached";
+  if (cyclic && bit == 12) return "drive follows command value";
   switch (mode) {
     case 1: return bit == 12 ? "set-point acknowledge" : "following error";
     case 3: return bit == 12 ? "speed is zero" : "maximum slippage";
     case 6: return bit == 12 ? "homing attained" : "homing error";
     case 7: return bit == 12 ? "ip mode active" : "bit 13";
+    case 8: return "following error";
     default: return bit == 12 ? "bit 12" : "bit 13";
   }
 }
@@ -119,10 +126,13 @@ DriveState next_state(DriveState state, ControlCommand command) {
 
 std::vector<std::string> statusword_bits(std::uint16_t statusword, std::int8_t mode) {
   std::vector<std::string> out;
-  for (const auto& row : kBits)
-    if ((statusword & 1U << row.bit) != 0) out.emplace_back(row.name);
-  for (const int bit : {12, 13})
-    if ((statusword & 1U << static_cast<unsigned>(bit)) != 0) out.emplace_back(mode_bit(bit, mode));
+  for (unsigned bit = 0; bit < 16; ++bit) {
+    if ((statusword & 1U << bit) == 0) continue;
+    const auto* common =
+        std::find_if(kBits.begin(), kBits.end(), [&](const BitRow& row) { return row.bit == bit; });
+    if (common != kBits.end()) out.emplace_back(common->name);
+    if (bit == 10 || bit == 12 || bit == 13) out.emplace_back(mode_bit(bit, mode));
+  }
   return out;
 }
 

@@ -1,4 +1,5 @@
 #include "drive/cia402.hpp"
+#include "drive/standard_mode.hpp"
 
 #include <gtest/gtest.h>
 
@@ -113,6 +114,33 @@ TEST(StatuswordBits, AreNamedByModeWhereTheirMeaningDependsOnIt) {
             (std::vector<std::string>{"voltage enabled", "remote", "speed is zero"}));
   EXPECT_EQ(statusword_bits(0x2000, 6), (std::vector<std::string>{"homing error"}));
   EXPECT_EQ(statusword_bits(0x0000, 1), std::vector<std::string>{});
+  const auto by_mode = [](std::int8_t mode) { return statusword_bits(0x3400, mode); };
+  EXPECT_EQ(by_mode(4), (std::vector<std::string>{"target reached", "bit 12", "bit 13"}));
+  EXPECT_EQ(by_mode(7), (std::vector<std::string>{"target reached", "ip mode active", "bit 13"}));
+  EXPECT_EQ(by_mode(8),
+            (std::vector<std::string>{"bit 10", "drive follows command value", "following error"}));
+  EXPECT_EQ(by_mode(9), (std::vector<std::string>{"bit 10", "drive follows command value", "bit 13"}));
+  EXPECT_EQ(by_mode(10), by_mode(9));
+}
+
+TEST(StandardMode, IsWhatTheFamilyMeansByTheNumber) {
+  MotionRules standard;
+  standard.position = 1;
+  standard.velocity = 3;
+  EXPECT_EQ(standard_mode(standard, 3), 3);
+  EXPECT_EQ(standard_mode(standard, 8), 8);
+  MotionRules own;
+  own.position = 2;
+  own.velocity = 4;
+  own.torque = 6;
+  EXPECT_EQ(standard_mode(own, 2), 1);
+  EXPECT_EQ(standard_mode(own, 4), 3);
+  EXPECT_EQ(standard_mode(own, 6), 4);
+  for (const int mode : {1, 3, 5, 8})
+    EXPECT_EQ(standard_mode(own, static_cast<std::int8_t>(mode)), 0) << mode;
+  own.handshake = false;
+  EXPECT_EQ(standard_mode(own, 2), 0);
+  EXPECT_EQ(standard_mode(MotionRules{}, 6), 6);
 }
 
 }  // namespace

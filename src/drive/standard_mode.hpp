@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstdint>
+
+#include "drive/rules.hpp"
+
+namespace servoctl::drive {
+
+/// The mode of CiA 402-2 that a value of 6060h or 6061h is in a family: its bits in statusword and
+/// controlword mean what the standard says of that mode. 0 where the family counts its modes in a way of its
+/// own and none of its rules says what this one is.
+std::int8_t standard_mode(const MotionRules& rules, std::int8_t mode);
+
+}  // namespace servoctl::drive
