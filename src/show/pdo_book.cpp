@@ -4,8 +4,9 @@
 #include <utility>
 
 #include "canopen/cob_id.hpp"
-#include "drive/cia402.hpp"
+#include "drive/standard_mode.hpp"
 #include "drive/standard_objects.hpp"
+#include "drive/word_bits.hpp"
 #include "show/reading.hpp"
 #include "show/records.hpp"
 
@@ -90,6 +91,7 @@ od::Value PdoField::value(ByteSpan data) const {
 
 PdoView make_view(const drive::Profile* profile, bool chinese, std::uint8_t node, canopen::Pdo pdo) {
   PdoView out{node, std::move(pdo), {}, {}};
+  out.profile = profile;
   out.name = canopen::name(out.pdo.direction, out.pdo.number);
   std::size_t at = 0;
   for (const auto& entry : out.pdo.entries) {
@@ -100,16 +102,16 @@ PdoView make_view(const drive::Profile* profile, bool chinese, std::uint8_t node
   return out;
 }
 
-void append_value(const PdoField& field, const od::Value& value, bool chinese, std::string& out) {
+void append_value(const PdoField& field, const od::Value& value, bool chinese, std::string& out,
+                  std::int8_t mode) {
   const auto& meaning = field.meaning;
   const auto* number = std::get_if<std::uint64_t>(&value);
   const auto& object = field.entry.object;
   if (number != nullptr && (object == objects::kStatusword || object == objects::kControlword)) {
-    fmt::format_to(std::back_inserter(out), "0x{:04X}", *number);
-    if (object == objects::kControlword) return;
-    const auto state = drive::decode_state(static_cast<std::uint16_t>(*number));
-    out += ' ';
-    out += chinese ? drive::name_zh(state) : drive::name(state);
+    fmt::format_to(std::back_inserter(out), "0x{:04X} ", *number);
+    const auto word = static_cast<std::uint16_t>(*number);
+    out += object == objects::kControlword ? drive::controlword_words(word, mode)
+                                           : drive::statusword_words(word, mode, chinese);
     return;
   }
   const bool plain = meaning.encoding == od::Encoding::plain;
@@ -131,7 +133,20 @@ bool shows_values(const PdoView& view, ByteSpan data) {
   return !view.fields.empty() && fits_frame(view, data);
 }
 
-void append_values(const PdoView& view, ByteSpan data, bool chinese, std::string& out) {
+std::int8_t mode_in(const PdoView& view, ByteSpan data) {
+  for (const auto& field : view.fields) {
+    if (field.entry.object != objects::kModeOfOperation && field.entry.object != objects::kModeDisplay)
+      continue;
+    const auto value = field.value(data);
+    const auto* number = std::get_if<std::int64_t>(&value);
+    if (number == nullptr) return 0;
+    const auto mode = static_cast<std::int8_t>(*number);
+    return view.profile == nullptr ? mode : drive::standard_mode(view.profile->rules.motion, mode);
+  }
+  return 0;
+}
+
+void append_values(const PdoView& view, ByteSpan data, bool chinese, std::string& out, std::int8_t mode) {
   if (!shows_values(view, data)) {
     out += to_hex(data);
     out += view.fields.empty() ? " (mapping not known)"
@@ -139,12 +154,13 @@ void append_values(const PdoView& view, ByteSpan data, bool chinese, std::string
                                : " (shorter than its mapping)";
     return;
   }
+  if (const auto told = mode_in(view, data); told != 0) mode = told;
   bool first = true;
   for (const auto& field : view.fields) {
     if (!std::exchange(first, false)) out += ", ";
     out += field.name;
     out += ' ';
-    append_value(field, field.value(data), chinese, out);
+    append_value(field, field.value(data), chinese, out, mode);
   }
 }
 

@@ -37,6 +37,7 @@ struct PdoView {
   std::string name;              ///< `TPDO1`
   std::vector<PdoField> fields;  ///< Without gaps.
   bool assumed = false;          ///< Its mapping is that of the factory; the drive has not told it.
+  const drive::Profile* profile = nullptr;
 
   std::uint32_t can_id() const { return pdo.can_id(); }
 };
@@ -44,15 +45,20 @@ struct PdoView {
 PdoView make_view(const drive::Profile* profile, bool chinese, std::uint8_t node, canopen::Pdo pdo);
 
 /// Appends the value as a person reads it: `1200 inc`, `3 Profile velocity`, `0x0237 operation enabled` for
-/// the statusword.
-void append_value(const PdoField& field, const od::Value& value, bool chinese, std::string& out);
+/// the statusword, `0x000F enable operation` for the controlword. `mode`: of CiA 402-2, for their bits.
+void append_value(const PdoField& field, const od::Value& value, bool chinese, std::string& out,
+                  std::int8_t mode = 0);
+
+/// The mode of CiA 402-2 that stands in the PDO itself (6060h, 6061h); 0 when none does.
+std::int8_t mode_in(const PdoView& view, ByteSpan data);
 
 /// Whether the values can be told from a frame: something is mapped, and it is as long as that.
 bool shows_values(const PdoView& view, ByteSpan data);
 
 /// Appends `Statusword 0x0237 …, Position actual value 1200 inc`; raw bytes where nothing is mapped, the
-/// frame is too short, or the mapping is assumed and has another length.
-void append_values(const PdoView& view, ByteSpan data, bool chinese, std::string& out);
+/// frame is too short, or the mapping is assumed and has another length. `mode`: what the drive is in, where
+/// the PDO does not tell it.
+void append_values(const PdoView& view, ByteSpan data, bool chinese, std::string& out, std::int8_t mode = 0);
 
 /// Writes the values as a list of records; an empty one where append_values() shows raw bytes.
 void write_values(const PdoView& view, ByteSpan data, report::JsonWriter& json);

@@ -10,6 +10,7 @@
 #include "canopen/lss.hpp"
 #include "canopen/nmt.hpp"
 #include "drive/standard_objects.hpp"
+#include "drive/word_bits.hpp"
 #include "show/notice.hpp"
 #include "show/reading.hpp"
 #include "show/records.hpp"
@@ -151,8 +152,11 @@ void FrameDecoder::decode_pdo(const can::Frame& frame, std::uint8_t node, const 
   const bool assumed = view->assumed && shows_values(*view, data);
   if (assumed) out_.text += options_.chinese ? "（出厂映射）" : " (factory mapping)";
   out_.text += ' ';
-  show::append_values(*view, data, options_.chinese, out_.text);
-  for (const auto& field : view->fields) out_.objects.push_back(field.entry.object);
+  show::append_values(*view, data, options_.chinese, out_.text, modes_[node % modes_.size()]);
+  for (const auto& field : view->fields) {
+    out_.objects.push_back(field.entry.object);
+    if (field.entry.object == objects::kModeOfOperation) modes_[node % modes_.size()] = 0;
+  }
   if (!options_.fields) return;
   fields_.member("pdo", view->name);
   if (assumed) fields_.member("mapping", "factory");
@@ -176,6 +180,7 @@ void FrameDecoder::decode_error_control(const can::Frame& frame) {
     out_.service = "boot-up";
     out_.text = "boot-up";
     pdos_.forget(*out_.node);
+    modes_[*out_.node] = 0;
     emergency_ids_.on_boot_up(*out_.node);
     return;
   }
@@ -212,6 +217,7 @@ void FrameDecoder::decode_sdo(const can::Frame& frame) {
   if (step.announced) out_.text += fmt::format(", {} bytes", *step.announced);
   if (options_.fields) end_sdo_fields(step);
   learn(step);
+  learn_mode(step);
 }
 
 std::string FrameDecoder::abort_words_of(const SdoStep& step) const {
@@ -244,6 +250,7 @@ void FrameDecoder::add_sdo_value(const Bytes& data, const drive::Target& target)
   out_.text += " = " + value.text;
   const auto& label = options_.chinese && !value.label_zh.is_null() ? value.label_zh : value.label;
   if (const auto* words = std::get_if<std::string>(&label.data())) out_.text += " " + *words;
+  if (const auto words = words_of(data, target.address); !words.empty()) out_.text += " " + words;
   if (!options_.fields) return;
   fields_.member("value", value.value);
   fields_.text_or_null("unit", value.unit);
@@ -251,23 +258,13 @@ void FrameDecoder::add_sdo_value(const Bytes& data, const drive::Target& target)
   fields_.member("bytes", to_hex(data));
 }
 
-/// A value that was read holds; one that was written holds when the node has taken it.
-void FrameDecoder::learn(const canopen::SdoStep& step) {
-  auto& pending = pending_[*out_.node];
-  const bool emergency = step.object == objects::kEmergencyCobId;
-  if (!step.object || (!emergency && !canopen::pdo_at(step.object->index))) return;
-  const auto keep = [&](const Bytes& data) {
-    if (emergency && data.size() == 4)
-      emergency_ids_.learn(*out_.node, static_cast<std::uint32_t>(load_le(data)));
-    else if (!emergency)
-      pdos_.learn(*out_.node, *step.object, data);
-  };
-  if (step.data && !step.from_client) keep(*step.data);
-  if (step.data && step.from_client) pending = Pending{*step.object, *step.data};
-  if (step.kind == Step::abort) pending.reset();
-  if (step.kind != Step::acknowledge || !pending || pending->object != *step.object) return;
-  keep(pending->data);
-  pending.reset();
+/// What controlword and statusword say; empty for every other object.
+std::string FrameDecoder::words_of(const Bytes& data, ObjectAddress object) const {
+  if (data.size() != 2) return {};
+  const auto word = static_cast<std::uint16_t>(load_le(data));
+  const auto mode = modes_[*out_.node];
+  if (object == objects::kStatusword) return drive::statusword_words(word, mode, options_.chinese);
+  return object == objects::kControlword ? drive::controlword_words(word, mode) : std::string();
 }
 
 }  // namespace servoctl::traffic

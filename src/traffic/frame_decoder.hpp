@@ -64,6 +64,8 @@ class FrameDecoder {
   std::string abort_words_of(const canopen::SdoStep& step) const;
   void end_sdo_fields(const canopen::SdoStep& step);
   void learn(const canopen::SdoStep& step);
+  void learn_mode(const canopen::SdoStep& step);
+  std::string words_of(const Bytes& data, ObjectAddress object) const;
   std::string name_of(const drive::Target& target) const;
 
   /// A write whose acknowledge has not come.
@@ -79,6 +81,7 @@ class FrameDecoder {
   report::JsonWriter fields_{out_.fields};
   std::array<canopen::SdoObserver, 128> channels_;
   std::array<std::optional<Pending>, 128> pending_;
+  std::array<std::int8_t, 128> modes_{};  ///< Of CiA 402-2, as nodes told them last; 0: not known.
 };
 
 }  // namespace servoctl::traffic

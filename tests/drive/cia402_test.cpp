@@ -1,5 +1,6 @@
 #include "drive/cia402.hpp"
 #include "drive/standard_mode.hpp"
+#include "drive/word_bits.hpp"
 
 #include <gtest/gtest.h>
 
@@ -121,6 +122,25 @@ TEST(StatuswordBits, AreNamedByModeWhereTheirMeaningDependsOnIt) {
             (std::vector<std::string>{"bit 10", "drive follows command value", "following error"}));
   EXPECT_EQ(by_mode(9), (std::vector<std::string>{"bit 10", "drive follows command value", "bit 13"}));
   EXPECT_EQ(by_mode(10), by_mode(9));
+}
+
+TEST(WordsOfControlAndStatus, TellStateOrCommandAndTheBitsBeside) {
+  EXPECT_EQ(statusword_words(0x1637, 1, false),
+            "operation enabled (voltage enabled, remote, target reached, set-point acknowledge)");
+  EXPECT_EQ(statusword_words(0x0040, 0, false), "switch on disabled");
+  EXPECT_EQ(statusword_words(0x1027, 0, true),
+            std::string(name_zh(DriveState::operation_enabled)) + " (bit 12)");
+  EXPECT_EQ(controlword_words(0x0006, 1), "shutdown");
+  EXPECT_EQ(controlword_words(0x027F, 1),
+            "enable operation (new set-point, change set immediately, relative, change on set-point)");
+  EXPECT_EQ(controlword_words(0x007F, 2), "enable operation (enable ramp, unlock ramp, reference ramp)");
+  EXPECT_EQ(controlword_words(0x011F, 6), "enable operation (homing operation start, halt)");
+  EXPECT_EQ(controlword_words(0x001F, 7), "enable operation (enable interpolation)");
+  for (const int mode : {0, 3, 4, 8, 9, 10})
+    EXPECT_EQ(controlword_words(0x003F, static_cast<std::int8_t>(mode)), "enable operation (bit 4, bit 5)")
+        << mode;
+  EXPECT_EQ(controlword_words(0x8080, 0), "fault reset (bit 15)");
+  EXPECT_EQ(controlword_words(0x0002, 1), "quick stop");
 }
 
 TEST(StandardMode, IsWhatTheFamilyMeansByTheNumber) {

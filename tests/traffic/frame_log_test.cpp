@@ -144,7 +144,7 @@ TEST(FrameLog, WritesNamesThatNeedCareAsTheyAre) {
       R"("values":[{"index":24641,"sub":0,"name":"Status \"word\" \\ \u0001 {[:,","value":567,"raw":567,"unit":null,"label":null},)"
       "{\"index\":24676,\"sub\":0,\"name\":\"位置 \\u007f "
       "actual\\tvalue\",\"value\":-10000,\"raw\":-10000,\"unit\":null,\"label\":null}],"
-      "\"text\":\"TPDO1 Status \\\"word\\\" \\\\ \\u0001 {[:, 0x0237 operation enabled, 位置 \\u007f "
+      "\"text\":\"TPDO1 Status \\\"word\\\" \\\\ \\u0001 {[:, 0x0237 operation enabled (voltage enabled, remote), 位置 \\u007f "
       "actual\\tvalue -10000\"}");
   EXPECT_EQ(
       logged.lines.back(),

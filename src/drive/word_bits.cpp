@@ -1,0 +1,67 @@
+#include "drive/word_bits.hpp"
+
+#include <fmt/format.h>
+
+#include "base/text.hpp"
+#include "drive/cia402.hpp"
+
+namespace servoctl::drive {
+namespace {
+
+constexpr unsigned kFirstModeBit = 4;
+constexpr unsigned kFaultReset = 7;
+constexpr unsigned kHalt = 8;
+
+std::string_view command_name(ControlCommand command) {
+  switch (command) {
+    case ControlCommand::shutdown: return "shutdown";
+    case ControlCommand::switch_on: return "switch on";
+    case ControlCommand::enable_operation: return "enable operation";
+    case ControlCommand::disable_voltage: return "disable voltage";
+    case ControlCommand::quick_stop: return "quick stop";
+    case ControlCommand::fault_reset: return "fault reset";
+    case ControlCommand::none: break;
+  }
+  return "no command";
+}
+
+/// Bits 4 to 6 and 9 in the modes that give them a meaning; empty for the others.
+std::string_view mode_word(unsigned bit, std::int8_t mode) {
+  switch (mode * 16 + static_cast<int>(bit)) {
+    case 1 * 16 + 4: return "new set-point";
+    case 1 * 16 + 5: return "change set immediately";
+    case 1 * 16 + 6: return "relative";
+    case 1 * 16 + 9: return "change on set-point";
+    case 2 * 16 + 4: return "enable ramp";
+    case 2 * 16 + 5: return "unlock ramp";
+    case 2 * 16 + 6: return "reference ramp";
+    case 6 * 16 + 4: return "homing operation start";
+    case 7 * 16 + 4: return "enable interpolation";
+    default: return {};
+  }
+}
+
+std::string in_brackets(std::string_view head, const std::string& rest) {
+  return rest.empty() ? std::string(head) : fmt::format("{} ({})", head, rest);
+}
+
+}  // namespace
+
+std::string statusword_words(std::uint16_t statusword, std::int8_t mode, bool chinese) {
+  std::string bits;
+  for (const auto& bit : statusword_bits(statusword, mode)) append(bits, bit);
+  const auto state = decode_state(statusword);
+  return in_brackets(chinese ? name_zh(state) : name(state), bits);
+}
+
+std::string controlword_words(std::uint16_t controlword, std::int8_t mode) {
+  std::string bits;
+  for (unsigned bit = kFirstModeBit; bit < 16; ++bit) {
+    if ((controlword & 1U << bit) == 0 || bit == kFaultReset) continue;
+    const auto word = bit == kHalt ? std::string_view("halt") : mode_word(bit, mode);
+    append(bits, word.empty() ? fmt::format("bit {}", bit) : std::string(word));
+  }
+  return in_brackets(command_name(decode_command(controlword, 0)), bits);
+}
+
+}  // namespace servoctl::drive

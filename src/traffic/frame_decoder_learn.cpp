@@ -1,0 +1,39 @@
+// What a FrameDecoder remembers of SDO transfers, for the frames that follow.
+#include "drive/standard_mode.hpp"
+#include "drive/standard_objects.hpp"
+#include "traffic/frame_decoder.hpp"
+
+namespace servoctl::traffic {
+
+/// A mode that was read holds until another is asked for.
+void FrameDecoder::learn_mode(const canopen::SdoStep& step) {
+  const bool shown = step.object == objects::kModeDisplay;
+  if (!step.data || step.data->size() != 1 || (!shown && step.object != objects::kModeOfOperation)) return;
+  const auto mode = static_cast<std::int8_t>(step.data->front());
+  auto& place = modes_[*out_.node];
+  if (step.from_client)
+    place = 0;
+  else if (shown)
+    place = options_.profile == nullptr ? mode : drive::standard_mode(options_.profile->rules.motion, mode);
+}
+
+/// A value that was read holds; one that was written holds when the node has taken it.
+void FrameDecoder::learn(const canopen::SdoStep& step) {
+  auto& pending = pending_[*out_.node];
+  const bool emergency = step.object == objects::kEmergencyCobId;
+  if (!step.object || (!emergency && !canopen::pdo_at(step.object->index))) return;
+  const auto keep = [&](const Bytes& data) {
+    if (emergency && data.size() == 4)
+      emergency_ids_.learn(*out_.node, static_cast<std::uint32_t>(load_le(data)));
+    else if (!emergency)
+      pdos_.learn(*out_.node, *step.object, data);
+  };
+  if (step.data && !step.from_client) keep(*step.data);
+  if (step.data && step.from_client) pending = Pending{*step.object, *step.data};
+  if (step.kind == canopen::SdoStep::Kind::abort) pending.reset();
+  if (step.kind != canopen::SdoStep::Kind::acknowledge || !pending || pending->object != *step.object) return;
+  keep(pending->data);
+  pending.reset();
+}
+
+}  // namespace servoctl::traffic
