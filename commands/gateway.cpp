@@ -92,7 +92,8 @@ const Command kGateway{
         "another address, and asks before that; a script needs --yes. Clients only read unless --allow write "
         "is given, which is asked for too: a write or an NMT command is refused with ERROR:102. A drive that a "
         "client enables by 6040h is stopped and disabled when that client goes, or the gateway ends. PDOs, "
-        "LSS, guarding and events are not part of it. `help` on the line lists what is.",
+        "LSS, guarding and events are not part of it. `help` on the line lists what is. To use the gateway of "
+        "another program, name it as a bus: --bus gateway://HOST:60000.",
     .parameters = kParameters,
     .needs = Needs::bus,
     .effect = Effect::moves,

@@ -6,6 +6,7 @@
 #include "command/command.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/can_network.hpp"
+#include "session/gateway_network.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -88,10 +89,10 @@ report::Table result_table(Context& context, std::span<const Before> before, Nmt
   report::Table table;
   table.columns = {{"node"}, {"command"}, {"confirmed"}, {"state"}};
   for (const auto& entry : before) {
-    const auto state = context.session->can()->watch().state(entry.node);
+    const auto state = waited ? context.session->can()->watch().state(entry.node) : std::nullopt;
     table.rows.push_back({entry.node == 0 ? Value("all") : Value(entry.node), canopen::name(command),
                           waited ? Value(confirmed(*context.session, entry, command)) : Value(),
-                          waited && state ? Value(canopen::name(*state)) : Value()});
+                          state ? Value(canopen::name(*state)) : Value()});
   }
   return table;
 }
@@ -135,30 +136,42 @@ void tell_reset(Context& context, std::span<const Before> before, bool waited) {
 report::Value planned_frames(Context& context, NmtCommand command) {
   report::Table table;
   table.columns = {{"node"}, {"frame"}};
+  auto* gateway = context.session->gateway();
   for (const auto node : context.nodes)
-    table.rows.push_back({node, can::to_string(canopen::nmt_frame(command, node))});
+    table.rows.push_back({node, gateway != nullptr ? gateway->command_line(node, command)
+                                                   : can::to_string(canopen::nmt_frame(command, node))});
   if (command == NmtCommand::reset_communication) context.notices.push_back(communication_goes());
   return report::Value(std::move(table));
 }
 
-Result<report::Value> run(Context& context, const Arguments& arguments, NmtCommand command) {
-  if (context.dry_run) return planned_frames(context, command);
-  const bool all = context.nodes.front() == 0;
-  const bool wait = arguments.has("--wait");
-  if (wait && all)
+Result<void> send(session::Session& session, NmtCommand command, std::uint8_t node) {
+  if (auto* gateway = session.gateway()) return gateway->command(node, command);
+  const auto sent = session.can()->send(canopen::nmt_frame(command, node));
+  if (sent) session.can()->watch().on_command(node);
+  return sent;
+}
+
+Result<void> check_wait(const Context& context, bool wait) {
+  if (wait && context.nodes.front() == 0)
     return fail(Errc::usage, "--wait needs node-IDs: `all` does not say which nodes must answer",
                 "for example -n 1,2,3");
+  if (wait && context.session->gateway() != nullptr)
+    return fail(Errc::usage, "--wait needs heartbeats, and a gateway passes on none", "leave --wait out");
+  return {};
+}
+
+Result<report::Value> run(Context& context, const Arguments& arguments, NmtCommand command) {
+  if (context.dry_run) return planned_frames(context, command);
+  const bool wait = arguments.has("--wait");
+  if (const auto may = check_wait(context, wait); !may) return fail(may.error());
   if (is_reset(command))
     if (const auto answer = context.confirm(question(context.nodes, command)); !answer)
       return fail(answer.error());
   const auto heartbeats = wait && !is_reset(command) ? heartbeats_of(context) : Heartbeats();
   std::vector<Before> before;
   for (const auto node : context.nodes) {
-    before.push_back({node, context.session->can()->watch().boots(node),
-                      context.session->can()->watch().heartbeats(node)});
-    if (const auto sent = context.session->can()->send(canopen::nmt_frame(command, node)); !sent)
-      return fail(sent.error());
-    context.session->can()->watch().on_command(node);
+    before.push_back({node, context.session->watch().boots(node), context.session->watch().heartbeats(node)});
+    if (const auto sent = send(*context.session, command, node); !sent) return fail(sent.error());
   }
   const bool tells = command == NmtCommand::reset_communication;
   if (!wait) {
@@ -212,7 +225,7 @@ const Command kNmtStart{
     .summary = "Set nodes to operational: PDOs active",
     .details = kDetails,
     .parameters = kParameters,
-    .needs = Needs::node | Needs::can,
+    .needs = Needs::node | Needs::nmt,
     .effect = Effect::writes,
     .family = FamilyCheck::never,
     .run = run_command<NmtCommand::start>,
@@ -226,7 +239,7 @@ const Command kNmtStop{
     .summary = "Set nodes to stopped: no PDO, no SDO",
     .details = kDetails,
     .parameters = kParameters,
-    .needs = Needs::node | Needs::can,
+    .needs = Needs::node | Needs::nmt,
     .effect = Effect::writes,
     .family = FamilyCheck::never,
     .run = run_command<NmtCommand::stop>,
@@ -240,7 +253,7 @@ const Command kNmtPreop{
     .summary = "Set nodes to pre-operational: SDO, no PDO",
     .details = kDetails,
     .parameters = kParameters,
-    .needs = Needs::node | Needs::can,
+    .needs = Needs::node | Needs::nmt,
     .effect = Effect::writes,
     .family = FamilyCheck::never,
     .run = run_command<NmtCommand::enter_pre_operational>,
@@ -255,7 +268,7 @@ const Command kNmtReset{
     .summary = "Restart nodes (NMT reset node); asks first",
     .details = kResetDetails,
     .parameters = kParameters,
-    .needs = Needs::node | Needs::can,
+    .needs = Needs::node | Needs::nmt,
     .effect = Effect::resets,
     .family = FamilyCheck::never,
     .run = run_command<NmtCommand::reset_node>,
@@ -269,7 +282,7 @@ const Command kNmtResetComm{
     .summary = "Reset communication of nodes (NMT); asks first",
     .details = kResetCommDetails,
     .parameters = kParameters,
-    .needs = Needs::node | Needs::can,
+    .needs = Needs::node | Needs::nmt,
     .effect = Effect::resets,
     .family = FamilyCheck::never,
     .run = run_command<NmtCommand::reset_communication>,

@@ -168,6 +168,10 @@ Result<void> listen(Context& context, show::SampleWriter& writer, std::span<Watc
 Result<Value> run(Context& context, const Arguments& arguments) {
   const auto length = duration_option(arguments, "--for");
   if (!length) return fail(length.error());
+  if (context.session->gateway() != nullptr)
+    return fail(Errc::usage,
+                fmt::format("'pdo watch' needs CAN or EtherCAT, {} is neither", context.session->url()),
+                "`watch` reads objects there, again and again");
   auto watched = pdos_of(context, arguments);
   if (!watched) return fail(watched.error());
   if (watched->empty())

@@ -265,7 +265,7 @@ _servoctl_words() {
         esac
       done
       find /dev -maxdepth 1 \( -name 'ttyUSB*' -o -name 'ttyACM*' \) 2>/dev/null | sed 's|.*|slcan:&\nmodbus:&|'
-      printf '%s\n' sim: local: slcan:/dev/ socketcand:// coe:local: coe:sim: modbus: modbus:sim: ;;
+      printf '%s\n' sim: local: slcan:/dev/ socketcand:// gateway:// coe:local: coe:sim: modbus: modbus:sim: ;;
   esac
 }
 

@@ -24,14 +24,28 @@ Result<void> check_allowed(const command::Command& command, const command::Argum
 
 Result<void> check_network(const command::Command& command, session::Session& session) {
   const auto refuse = [&](std::string_view kind) {
-    return fail(Errc::usage,
-                fmt::format("'{0}' needs {1}, {2} is not {1}", command.path, kind, session.url()),
-                command.elsewhere.empty()
+    auto hint = command.elsewhere.empty()
                     ? "objects, states and motions work there: `read`, `status`, `backup`, `jog`"
-                    : std::string(command.elsewhere));
+                    : std::string(command.elsewhere);
+    if (session.gateway() != nullptr && kind == "CAN")
+      hint = "objects and NMT commands work there: `read`, `param set`, `backup`, `nmt start`";
+    return fail(Errc::usage,
+                fmt::format("'{0}' needs {1}, {2} is not {1}", command.path, kind, session.url()), hint);
   };
   if (includes(command.needs, Needs::can) && session.can() == nullptr) return refuse("CAN");
+  const bool knows_nmt = session.can() != nullptr || session.gateway() != nullptr;
+  if (includes(command.needs, Needs::nmt) && !knows_nmt) return refuse("CAN");
   if (includes(command.needs, Needs::ethercat) && session.ethercat() == nullptr) return refuse("EtherCAT");
+  return {};
+}
+
+Result<void> admit(const command::Command& command, const command::Arguments& arguments,
+                   session::Session& session) {
+  if (const auto possible = check_network(command, session); !possible) return possible;
+  const auto why = session.network().why_no_power();
+  if (!why.empty() && command.effect_with(arguments) == Effect::moves)
+    return fail(Errc::refused, fmt::format("'{}' is refused over {}: {}", command.path, session.url(), why),
+                "run servoctl where the bus is, or use its CAN interface: socketcand://HOST/can0");
   return {};
 }
 

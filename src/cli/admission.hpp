@@ -11,6 +11,9 @@ Result<void> check_allowed(const command::Command& command, const command::Argum
                            const Settings& settings);
 /// Whether the command can be run on this network: one that speaks in frames needs CAN. Errc::usage.
 Result<void> check_network(const command::Command& command, session::Session& session);
+/// The same, and whether it may give drives power there, if it does so (Errc::refused).
+Result<void> admit(const command::Command& command, const command::Arguments& arguments,
+                   session::Session& session);
 /// Whether it can be run where drives are known by their registers alone (Modbus); any network else takes it.
 /// Errc::usage for a command that needs objects of CiA 301 or CiA 402, and for a family (`profile`, may be
 /// null) without registers.

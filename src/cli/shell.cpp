@@ -164,7 +164,7 @@ Result<void> Shell::prepare(Run& run, const command::Arguments& arguments) {
   run.context.session = *opened;
   if (const auto fits = check_registers(command, **opened, run.context.profile, run.settings.chinese); !fits)
     return fits;
-  if (const auto possible = check_network(command, **opened); !possible) return possible;
+  if (const auto possible = admit(command, arguments, **opened); !possible) return possible;
   if (const auto named = prepare_nodes(run); !named) return named;
   if (run.context.profile != nullptr) learn_family(**opened, run.context.nodes, *run.context.profile);
   const auto weight = weight_of(command, arguments);

@@ -9,6 +9,7 @@
 #include "cabinet/station.hpp"
 #include "can/socketcan.hpp"
 #include "cli/shell.hpp"
+#include "session/gateway_network.hpp"
 #include "session/identify.hpp"
 #include "session/open_bus.hpp"
 #include "session/open_port.hpp"
@@ -57,13 +58,16 @@ bool is_side_by_side(const command::Command& command, const command::Arguments& 
 /// What changes drives on one bus and cannot be there on another changes none. A way out goes as far as it
 /// can.
 Result<void> check_wires(const command::Command& command, const std::vector<LinePart>& parts) {
-  if (!includes(command.needs, Needs::can) || command.family == command::FamilyCheck::never) return {};
+  const bool frames = includes(command.needs, Needs::can);
+  if (command.family == command::FamilyCheck::never || (!frames && !includes(command.needs, Needs::nmt)))
+    return {};
   std::string left_out;
   std::string rest;
   for (const auto& part : parts) {
     const auto& bus = part.settings.bus;
-    const bool has_frames = !session::is_ethercat(bus) && !session::is_modbus(bus);
-    for (const auto* axis : part.axes) append(has_frames ? rest : left_out, axis->name, ",");
+    const bool is_can =
+        !session::is_ethercat(bus) && !session::is_modbus(bus) && (!frames || !session::is_gateway(bus));
+    for (const auto* axis : part.axes) append(is_can ? rest : left_out, axis->name, ",");
   }
   if (left_out.empty() || rest.empty()) return {};
   return fail(Errc::usage,

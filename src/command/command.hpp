@@ -46,8 +46,17 @@ struct Parameter {
 };
 
 /// What must be there before the command runs; the front end sees to it, not the command. Combined with `|`.
-/// A node and a kind of network need a bus; `can`: frames, COB-IDs, NMT or SYNC; `ethercat`: AL states.
-enum class Needs : std::uint8_t { nothing = 0, dictionary = 1, bus = 2, node = 6, can = 10, ethercat = 18 };
+/// A node and a kind of network need a bus; `can`: frames, COB-IDs or SYNC; `nmt`: NMT
+/// commands, by CAN or a gateway of CiA 309-3; `ethercat`: AL states.
+enum class Needs : std::uint8_t {
+  nothing = 0,
+  dictionary = 1,
+  bus = 2,
+  node = 6,
+  can = 10,
+  ethercat = 18,
+  nmt = 34
+};
 constexpr Needs operator|(Needs a, Needs b) {
   return static_cast<Needs>(static_cast<std::uint8_t>(a) | static_cast<std::uint8_t>(b));
 }

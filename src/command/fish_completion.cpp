@@ -89,6 +89,7 @@ function __servoctl_buses
     echo local:
     echo slcan:/dev/
     echo socketcand://
+    echo gateway://
     echo coe:local:
     find /dev -maxdepth 1 \( -name 'ttyUSB*' -o -name 'ttyACM*' \) 2>/dev/null | sed 's|.*|slcan:&\nmodbus:&|'
     echo coe:sim:

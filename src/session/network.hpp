@@ -24,6 +24,7 @@ namespace servoctl::session {
 
 class CanNetwork;
 class EtherCatNetwork;
+class GatewayNetwork;
 class ModbusNetwork;
 
 /// The way to the objects of one node: one transfer at a time, whatever carries it. Lives no longer than its
@@ -196,6 +197,8 @@ class Network {
   virtual bool takes_turns() const { return false; }
   /// A node is a place on a ring, not a number of its own.
   virtual bool is_ring() const { return false; }
+  /// Why no drive may be energised over it; empty: it may.
+  virtual std::string_view why_no_power() const { return {}; }
   /// What to do about a node that does not answer.
   virtual std::string silence_hint(std::uint8_t node) const;
   /// The command that asks for a state of the node: `nmt start -n 3`.
@@ -207,6 +210,8 @@ class Network {
   virtual EtherCatNetwork* ethercat() { return nullptr; }
   /// What only Modbus has; null elsewhere.
   virtual ModbusNetwork* modbus() { return nullptr; }
+  /// What only a gateway of CiA 309-3 has; null elsewhere.
+  virtual GatewayNetwork* gateway() { return nullptr; }
 };
 
 }  // namespace servoctl::session

@@ -11,16 +11,17 @@
 #include "can/socketcan.hpp"
 #include "can/socketcand.hpp"
 #include "can/trace.hpp"
+#include "gateway/address.hpp"
 #include "session/open_port.hpp"
 #include "sim/cell.hpp"
 
 namespace servoctl::session {
 namespace {
 
-constexpr std::array<std::string_view, 8> kSchemes{"socketcan", "slcan",  "socketcand", "local",
+constexpr std::array<std::string_view, 9> kSchemes{"socketcan", "slcan",  "socketcand", "gateway", "local",
                                                    "sim",       "replay", "coe",        "modbus"};
 constexpr std::string_view kForms =
-    "write can0, slcan:/dev/ttyACM0@500k, socketcand://HOST/can0, coe:eth0, modbus:/dev/ttyUSB0@19200,8E1, local:NAME, "
+    "write can0, slcan:/dev/ttyACM0@500k, socketcand://HOST/can0, gateway://HOST, coe:eth0, modbus:/dev/ttyUSB0@19200,8E1, local:NAME, "
     "sim:FAMILY@NODE or replay:FILE";
 
 tl::unexpected<Error> no_bus(std::string_view url) {
@@ -58,6 +59,8 @@ Result<void> check_url(std::string_view url) {
   const auto rest = url.substr(colon + 1);
   if (scheme == "slcan")
     if (const auto place = can::parse_slcan_place(rest); !place) return fail(place.error());
+  if (scheme == "gateway")
+    if (const auto place = gateway::parse_url(rest); !place) return fail(place.error());
   if (scheme == "socketcand")
     if (const auto place = can::parse_socketcand_place(rest); !place) return fail(place.error());
   return {};

@@ -2,6 +2,7 @@
 
 #include "session/can_network.hpp"
 #include "session/ethercat_network.hpp"
+#include "session/gateway_network.hpp"
 #include "session/modbus_network.hpp"
 #include "session/open_port.hpp"
 #include "session/open_register_line.hpp"
@@ -13,6 +14,11 @@ Result<std::unique_ptr<Network>> open_network(const std::string& url, const BusO
     auto port = open_port(url, options);
     if (!port) return fail(port.error());
     return std::make_unique<EtherCatNetwork>(std::move(*port), url);
+  }
+  if (is_gateway(url)) {
+    auto gateway = GatewayNetwork::open(url, options);
+    if (!gateway) return fail(gateway.error());
+    return std::move(*gateway);
   }
   if (is_modbus(url)) {
     auto line = open_register_line(url, options);

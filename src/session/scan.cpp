@@ -10,6 +10,7 @@
 #include "session/can_network.hpp"
 #include "session/ethercat_network.hpp"
 #include "session/family_check.hpp"
+#include "session/gateway_network.hpp"
 #include "session/identify.hpp"
 #include "session/modbus_network.hpp"
 #include "session/option_scope.hpp"
@@ -28,6 +29,12 @@ bool is_away(Session& session, const Error& error) {
   return error.code == Errc::timeout || (session.ethercat() != nullptr && error.code != Errc::sdo_abort);
 }
 
+/// Of one node among many that are asked in turn.
+Duration scan_patience(Session& session) {
+  auto* line = session.modbus();
+  return line != nullptr ? line->scan_patience() : GatewayNetwork::kScanPatience;
+}
+
 /// The first nodes' worth of requests asks who is there.
 Result<std::vector<Identity>> find_nodes(Session& session, std::span<const std::uint8_t> nodes,
                                          std::vector<Error>* away) {
@@ -36,11 +43,10 @@ Result<std::vector<Identity>> find_nodes(Session& session, std::span<const std::
   const auto answers = [&] {
     const OptionScope once(session, &Options::retries, 0U);
     // A whole timeout for each that is not there would take a minute.
-    auto* line = session.modbus();
     const auto timeout = session.options().timeout;
-    const bool many = line != nullptr && nodes.size() > kFewNodes;
+    const bool many = session.network().takes_turns() && nodes.size() > kFewNodes;
     const OptionScope patience(session, &Options::timeout,
-                               many ? std::min(timeout, line->scan_patience()) : timeout);
+                               many ? std::min(timeout, scan_patience(session)) : timeout);
     return session.transfer(requests);
   }();
   std::vector<Identity> found;

@@ -114,6 +114,8 @@ class Session {
   EtherCatNetwork* ethercat() { return network_->ethercat(); }
   /// What only Modbus has; null elsewhere.
   ModbusNetwork* modbus() { return network_->modbus(); }
+  /// What only a gateway of CiA 309-3 has; null elsewhere.
+  GatewayNetwork* gateway() { return network_->gateway(); }
   const std::string& url() const { return url_; }
   Options& options() { return options_; }
 

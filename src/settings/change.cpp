@@ -114,9 +114,7 @@ bool is_parameter(const drive::Profile& profile, const Change& change, const std
   return drive::place_of(profile, id) == change.target.address;
 }
 
-bool enables(const Change& change) {
-  return drive::is_enabling_write(change.target.address, change.data);
-}
+bool enables(const Change& change) { return drive::is_enabling_write(change.target.address, change.data); }
 
 /// What the write does beside changing a value; empty when nothing.
 std::string_view reason_to_ask(const drive::Profile* profile, const Change& change) {
@@ -215,6 +213,13 @@ Result<void> check_change(const show::Desk& desk, std::uint8_t node, const drive
 }
 
 Result<void> confirm_changes(show::Desk& desk, std::span<const Change> changes) {
+  const auto no_power = desk.session->network().why_no_power();
+  for (const auto& change : changes)
+    if (!no_power.empty() && enables(change))
+      return fail(show::located(
+          make_error(Errc::refused, fmt::format("this enables the drive, and {}", no_power),
+                     "run servoctl where the bus is, or use its CAN interface: socketcand://HOST/can0"),
+          change.node, change.target.address));
   for (const auto& change : changes) {
     auto reason = reason_to_ask(desk.profile, change);
     if (reason.empty()) reason = register_reason(desk, change);

@@ -7,6 +7,7 @@
 #include "gateway/address.hpp"
 #include "gateway/answer.hpp"
 #include "gateway/base64.hpp"
+#include "gateway/client.hpp"
 #include "gateway/line_reader.hpp"
 #include "gateway/request.hpp"
 #include "gateway/value.hpp"
@@ -75,6 +76,28 @@ void check_answer(const std::string& line) {
     fuzz::require(gateway::parse_base64(gateway::to_base64(*bytes)) == bytes, "base64 goes both ways");
 }
 
+/// What a client makes of the answers, as one text.
+std::string outcomes_of(std::string_view bytes, std::size_t piece) {
+  gateway::Client client;
+  TimePoint now{};
+  std::string out;
+  (void)client.start("1 1 r 0x1000 0 d", now, std::chrono::seconds(1));
+  for (std::size_t at = 0; at < bytes.size(); at += piece) {
+    client.on_bytes(bytes.substr(at, piece), now);
+    client.on_time(now);
+    while (const auto outcome = client.take_outcome()) {
+      fuzz::require(outcome->answer.sequence == 1 && !outcome->silent, "only its own answer is one");
+      out += outcome->answer.text + "\n";
+    }
+  }
+  for (int steps = 0; client.busy(); ++steps) {
+    fuzz::require(steps < 10, "a gateway that is silent is given up");
+    now = std::max(now, client.deadline());
+    client.on_time(now);
+  }
+  return out;
+}
+
 }  // namespace
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -88,6 +111,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     check_request(lines[i].text);
     check_answer(lines[i].text);
   }
+  fuzz::require(outcomes_of(input, input.size() + 1) == outcomes_of(input, 1), "a cut changes no answer");
   (void)gateway::parse_place(input);
   if (const auto url = gateway::parse_url(input)) (void)url->is_local();
   return 0;

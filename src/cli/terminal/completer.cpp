@@ -74,7 +74,7 @@ class Candidates {
   }
   void add_buses() {
     for (const auto& interface : can::can_interfaces()) add(interface);
-    for (const auto word : {"sim:", "local:", "slcan:/dev/", "socketcand://"}) add(word);
+    for (const auto word : {"sim:", "local:", "slcan:/dev/", "socketcand://", "gateway://"}) add(word);
     for (const auto& url : session::ethercat_urls()) add(url);
     for (const auto& url : session::modbus_urls()) add(url);
   }

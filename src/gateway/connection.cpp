@@ -1,0 +1,83 @@
+#include "gateway/connection.hpp"
+
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+
+#include <fmt/format.h>
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+namespace servoctl::gateway {
+namespace {
+
+constexpr std::string_view kStartOne =
+    "is a gateway started there? `canopend can0 -i 1 -c tcp-60000`, or `servoctl gateway`";
+
+tl::unexpected<Error> lost(const std::string& place, int error) {
+  return fail(Errc::bus,
+              error == 0 ? fmt::format("{} closed the connection", place)
+                         : fmt::format("the connection to {} is lost: {}", place, can::system_text(error)),
+              "did the gateway end? Its own log says");
+}
+
+}  // namespace
+
+Result<Connection> Connection::open_path(const Address& address) {
+  Connection out(address.text());
+  out.local_ = can::Descriptor(::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  sockaddr_un at{};
+  at.sun_family = AF_UNIX;
+  std::memcpy(at.sun_path, address.path.c_str(), address.path.size() + 1);  // parse_url() sees to its length.
+  if (::connect(out.get(), reinterpret_cast<const sockaddr*>(&at), sizeof at) == 0) return out;
+  if (errno == ECONNREFUSED || errno == ENOENT)
+    return fail(Errc::bus, fmt::format("nothing listens at {}", address.path), std::string(kStartOne));
+  return fail(Errc::bus, fmt::format("cannot reach {}: {}", address.path, can::system_text(errno)));
+}
+
+Result<Connection> Connection::open(const Address& address, TimePoint limit, bool ends_by_signal) {
+  if (address.is_path()) return open_path(address);
+  auto tcp = can::TcpClient::connect({address.host, address.port, address.text(), std::string(kStartOne),
+                                      "did the gateway end? Its own log says"},
+                                     limit, ends_by_signal);
+  if (!tcp) return fail(tcp.error());
+  Connection out(address.text());
+  out.tcp_ = std::move(*tcp);
+  return out;
+}
+
+Result<void> Connection::send(std::string_view text, TimePoint limit) {
+  if (tcp_) return tcp_->send(text, limit);
+  while (!text.empty()) {
+    const auto sent = ::send(get(), text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (sent >= 0) {
+      text.remove_prefix(static_cast<std::size_t>(sent));
+      continue;
+    }
+    if (errno == EINTR) continue;
+    if (errno != EAGAIN) return lost(place_, errno);
+    if (steady_now() >= limit) return lost(place_, ETIMEDOUT);
+    can::wait_for(get(), POLLOUT, limit);
+  }
+  return {};
+}
+
+Result<void> Connection::receive(std::string& out) {
+  if (tcp_) return tcp_->receive(out);
+  std::array<char, 8192> bytes;
+  for (;;) {
+    const auto count = ::recv(get(), bytes.data(), bytes.size(), MSG_DONTWAIT);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0 && errno == EAGAIN) return {};
+    if (count <= 0) return lost(place_, count < 0 ? errno : 0);
+    out.append(bytes.data(), static_cast<std::size_t>(count));
+    if (static_cast<std::size_t>(count) < bytes.size()) return {};
+  }
+}
+
+void Connection::send_now(std::string_view text) const noexcept {
+  (void)::send(get(), text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+}
+
+}  // namespace servoctl::gateway
