@@ -63,8 +63,8 @@ Result<std::vector<Topic>> parse_topics(std::string_view toml, std::string_view 
 Result<std::vector<Topic>> load_own_topics(const Profile& profile);
 
 /// All topics of a family: its own, those of its parents, those of the standard. One of the same name, or of
-/// the same value of an object, takes the place of those behind it, unless only they have a picture. Errors as
-/// parse_topics().
+/// the same value of an object, takes the place of those behind it, unless only they have a picture. Errors
+/// as parse_topics().
 Result<std::vector<Topic>> load_topics(const Profile& profile,
                                        std::span<const std::filesystem::path> folders);
 

@@ -13,7 +13,7 @@ namespace servoctl::gateway {
 namespace {
 
 constexpr std::string_view kStartOne =
-    "is a gateway started there? `canopend can0 -i 1 -c tcp-60000`, or `servoctl gateway`";
+    "is a gateway started there? canopend can0 -i 1 -c tcp-60000 is one, servoctl's own is `gateway`";
 
 tl::unexpected<Error> lost(const std::string& place, int error) {
   return fail(Errc::bus,
