@@ -8,6 +8,8 @@ add_library(servoctl_source_dir STATIC source_dir.cpp)
 target_include_directories(servoctl_source_dir PRIVATE ${CMAKE_SOURCE_DIR})
 target_compile_definitions(servoctl_source_dir PRIVATE SERVOCTL_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
 
+set(layers_by_length commands session od sim motion cabinet cli)
+
 # tests/ mirrors src/: one program a layer.
 function(servoctl_tests layer)
   file(GLOB sources CONFIGURE_DEPENDS ${layer}/*_test.cpp ${layer}/*_support.cpp)
@@ -33,7 +35,10 @@ function(servoctl_tests layer)
   math(EXPR last "${SERVOCTL_TEST_SHARDS} - 1")
   foreach(shard RANGE ${last})
     add_test(NAME Units.${layer}.${shard} COMMAND ${layer}_tests --gtest_brief=1)
-    set_tests_properties(Units.${layer}.${shard} PROPERTIES TIMEOUT 900
+    # Those of the later layers take the longest: they begin.
+    list(FIND layers_by_length ${layer} place)
+    math(EXPR cost "${place} + 1")
+    set_tests_properties(Units.${layer}.${shard} PROPERTIES TIMEOUT 900 COST ${cost}
                          ENVIRONMENT "GTEST_TOTAL_SHARDS=${SERVOCTL_TEST_SHARDS};GTEST_SHARD_INDEX=${shard}")
   endforeach()
 endfunction()
