@@ -148,10 +148,11 @@ TEST(CabinetFile, TellsWithLineAndColumnWhatItCannotUse) {
             "50k, 100k, 125k, 250k, 500k, 800k or 1M)");
   EXPECT_TRUE(refused("[bus.main]\nurl = \"can0\"\nbitrate = \"501k\"\n")
                   .starts_with("cabinet.toml:3:11: 'bitrate' cannot be \"501k\""));
-  EXPECT_EQ(refused("[bus.main]\nurl = \"local:\"\n"),
-            "cabinet.toml:2:7: bus main: 'local:' names no bus|write can0, slcan:/dev/ttyACM0@500k, "
-            "socketcand://HOST/can0, coe:eth0, modbus:/dev/ttyUSB0@19200,8E1, local:NAME, sim:FAMILY@NODE or "
-            "replay:FILE");
+  EXPECT_EQ(
+      refused("[bus.main]\nurl = \"local:\"\n"),
+      "cabinet.toml:2:7: bus main: 'local:' names no bus|write can0, slcan:/dev/ttyACM0@500k, "
+      "socketcand://HOST/can0, gateway://HOST, coe:eth0, modbus:/dev/ttyUSB0@19200,8E1, local:NAME, sim:FAMILY@NODE or "
+      "replay:FILE");
   EXPECT_TRUE(
       refused("[bus.main]\nurl = \"modbus:/dev/ttyS0\"\n")
           .starts_with("cabinet.toml:2:7: bus main: drives on Modbus cannot stand in a cabinet file|"));
