@@ -90,7 +90,7 @@ try:
     expect(local + "x", ["scan"], 3, "nothing listens at")
 finally:
     gateway.end()
-expect(local, ["scan"], 3, "nothing listens at", "servoctl gateway")
+expect(local, ["scan"], 3, "nothing listens at", "is a gateway started there")
 gateway = Gateway()
 try:
     expect(local, ["read", "0x1000", "-n", "1"], 0)
