@@ -25,6 +25,7 @@ class Server:
         self.port = self.listener.getsockname()[1]
         self.clients = []
         self.halves = 0
+        self.bus = threading.Lock()  # A bus has one order for all: without it an answer could come before its question.
         threading.Thread(target=self.accept, daemon=True).start()
 
     def accept(self):
@@ -65,15 +66,18 @@ class Server:
         elif words[0] == "send":
             data = "".join(f"{int(word, 16):02X}" for word in words[3:])
             frame = f"< frame {words[1]} {time.time():.6f} {data} >".encode()
-            for other in list(self.clients):
-                if other is client:
-                    continue
-                try:
-                    other.sendall(frame)
-                except OSError:
-                    pass  # It is gone; its own thread finds out.
+            with self.bus:
+                self.forward(client, frame)
         return True
 
+    def forward(self, sender, frame):
+        for other in list(self.clients):
+            if other is sender:
+                continue
+            try:
+                other.sendall(frame)
+            except OSError:
+                pass  # It is gone; its own thread finds out.
 
 
 def run(bus, *words):
