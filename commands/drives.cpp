@@ -1,5 +1,6 @@
 #include "base/text.hpp"
 #include "command/command.hpp"
+#include "drive/shared_profile.hpp"
 #include "show/drive_rules.hpp"
 
 namespace servoctl::commands {
@@ -13,10 +14,11 @@ constexpr Parameter kParameters[] = {
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {
   if (arguments.has("family")) {
-    const auto profile = drive::load_profile(arguments.text("family"), context.drive_folders);
-    if (!profile) return fail(profile.error());
-    for (const auto& warning : profile->warnings) context.notices.push_back(warning);
-    return report::Value(show::rules_record(*profile, context.chinese));
+    const auto loaded = drive::shared_profile(arguments.text("family"), context.drive_folders);
+    if (!loaded) return fail(loaded.error());
+    const auto& profile = **loaded;
+    for (const auto& warning : profile.warnings) context.notices.push_back(warning);
+    return report::Value(show::rules_record(profile, context.chinese));
   }
   report::Table table;
   table.columns = {{"family"},

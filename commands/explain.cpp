@@ -5,6 +5,7 @@
 
 #include "base/text.hpp"
 #include "command/command.hpp"
+#include "drive/shared_profile.hpp"
 #include "show/explanation.hpp"
 #include "show/topic_page.hpp"
 
@@ -24,7 +25,7 @@ constexpr Parameter kParameters[] = {
 
 /// Families that were loaded to look something up, and what they know.
 struct Shelf {
-  std::vector<std::unique_ptr<drive::Profile>> profiles;
+  std::vector<std::shared_ptr<const drive::Profile>> profiles;
   std::vector<show::Library> libraries;
 };
 
@@ -45,16 +46,16 @@ Result<Shelf> open_shelf(Context& context) {
     return out;
   }
   for (const auto& family : drive::find_families(context.drive_folders)) {
-    auto profile = drive::load_profile(family.name, context.drive_folders);
-    auto topics = profile ? drive::load_own_topics(*profile) : Result<std::vector<drive::Topic>>();
+    auto profile = drive::shared_profile(family.name, context.drive_folders);
+    auto topics = profile ? drive::load_own_topics(**profile) : Result<std::vector<drive::Topic>>();
     if (!profile || !topics) {
       context.notices.push_back(fmt::format(
           "{}; {} is left out", (profile ? topics.error() : profile.error()).message, family.name));
       continue;
     }
     leave_out_own(*topics);
-    const bool standard = profile->is_generic();
-    out.profiles.push_back(std::make_unique<drive::Profile>(std::move(*profile)));
+    const bool standard = (*profile)->is_generic();
+    out.profiles.push_back(std::move(*profile));
     show::Library library{out.profiles.back().get(), std::move(*topics), !standard};
     out.libraries.insert(standard ? out.libraries.begin() : out.libraries.end(), std::move(library));
   }

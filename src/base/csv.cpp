@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <utility>
 
 #include "base/number.hpp"
 
@@ -20,45 +21,46 @@ class Splitter {
 
   /// False when a quote is not closed before the end of the text.
   bool next(std::vector<std::string>& cells) {
-    cells.clear();
+    cells.clear();  // Those of the line before, or what a move left.
     cells.emplace_back();
     for (;;) {
       if (at_end()) return true;
-      const char c = text_[at_];
-      if (c == '"' && cells.back().empty()) {
+      if (text_[at_] == '"' && cells.back().empty()) {
         if (!quoted(cells.back())) return false;
         continue;
       }
-      ++at_;
+      plain(cells.back());
+      if (at_end()) return true;
+      const char c = text_[at_++];
       if (c == ',') {
         cells.emplace_back();
       } else if (c == '\n') {
         ++line_;
         return true;
-      } else if (c != '\r' || (!at_end() && text_[at_] != '\n')) {
-        cells.back() += c;
+      } else if (!at_end() && text_[at_] != '\n') {
+        cells.back() += c;  // A carriage return that ends no line.
       }
     }
   }
 
  private:
+  void plain(std::string& cell) {
+    const auto begin = at_;
+    while (at_ < text_.size() && text_[at_] != ',' && text_[at_] != '\n' && text_[at_] != '\r') ++at_;
+    cell.append(text_, begin, at_ - begin);
+  }
+
   bool quoted(std::string& cell) {
-    for (++at_; !at_end(); ++at_) {
-      const char c = text_[at_];
-      if (c == '\n') ++line_;
-      if (c != '"') {
-        cell += c;
-        continue;
-      }
-      if (at_ + 1 < text_.size() && text_[at_ + 1] == '"') {
-        cell += '"';
-        ++at_;
-        continue;
-      }
-      ++at_;
-      return true;
+    for (++at_;;) {
+      const auto end = text_.find('"', at_);
+      if (end == std::string_view::npos) return false;
+      const auto inside = text_.substr(at_, end - at_);
+      line_ += static_cast<std::uint32_t>(std::count(inside.begin(), inside.end(), '\n'));
+      cell += inside;
+      at_ = end + 1;
+      if (at_end() || text_[at_] != '"') return true;
+      cell += text_[at_++];
     }
-    return false;
   }
 
   std::string_view text_;
@@ -122,7 +124,8 @@ Result<CsvTable> parse_csv(std::string_view text, std::string_view file) {
       return fail(file_error(
           file, line,
           fmt::format("{} cells, but the header names {} columns", cells.size(), table.columns.size())));
-    table.rows.push_back({cells, line});
+    table.rows.push_back({std::move(cells), line});
+    cells.reserve(table.columns.size());
   }
   if (table.columns.empty())
     return fail(file_error(file, 1, "the file is empty; a line with column names is expected"));

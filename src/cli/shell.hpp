@@ -169,7 +169,7 @@ class Shell {
   BusHolder bus_;
   bool stays_open_ = false;
   std::optional<Error> incomplete_trace_;  ///< Told as a notice of a line; the exit code comes at the end.
-  std::map<std::string, std::unique_ptr<drive::Profile>> profiles_;
+  std::map<std::string, std::shared_ptr<const drive::Profile>> profiles_;
   std::map<std::string, FoundFamily> families_;  ///< Of drives, by bus, node and restarts.
   CabinetHolder cabinet_;
 };

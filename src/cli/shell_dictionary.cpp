@@ -4,6 +4,7 @@
 
 #include "base/text.hpp"
 #include "cli/shell.hpp"
+#include "drive/shared_profile.hpp"
 #include "od/data_sheet.hpp"
 #include "session/online_dictionary.hpp"
 #include "session/open_port.hpp"
@@ -62,7 +63,7 @@ Result<void> Shell::ask_drive(Run& run) {
   auto asked = session::read_online_dictionary(**opened, node);
   if (!asked) return fail(asked.error());
   auto& place = profiles_[key];
-  place = std::make_unique<drive::Profile>(drive::profile_of_sheet(
+  place = std::make_shared<const drive::Profile>(drive::profile_of_sheet(
       std::move(asked->sheet), fmt::format("{}, node {}", kOnline, node), options_.drive_folders));
   run.context.profile = place.get();
   if (!asked->left_out.empty())
@@ -104,11 +105,9 @@ Result<const drive::Profile*> Shell::profile(const std::string& family) {
   if (equals_nocase(family, kOnline))
     return fail(Errc::usage, "the dictionary of a drive is not known before it was asked",
                 "name the drive in the line itself: -d online --bus coe:… --node 1");
-  auto loaded = drive::load_profile(family, options_.drive_folders);
+  auto loaded = drive::shared_profile(family, options_.drive_folders);
   if (!loaded) return fail(loaded.error());
-  auto& place = profiles_[family];
-  place = std::make_unique<drive::Profile>(std::move(*loaded));
-  return place.get();
+  return profiles_.emplace(family, std::move(*loaded)).first->second.get();
 }
 
 }  // namespace servoctl::cli

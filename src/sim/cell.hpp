@@ -15,7 +15,7 @@ namespace servoctl::sim {
 
 /// Simulated drives with all that belongs to them.
 struct Cell {
-  std::vector<std::unique_ptr<drive::Profile>> profiles;  ///< One a family.
+  std::vector<std::shared_ptr<const drive::Profile>> profiles;  ///< One a family.
   std::unique_ptr<Memory> memory;
   std::vector<std::unique_ptr<SimDrive>> drives;
 };

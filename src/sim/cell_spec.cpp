@@ -9,6 +9,7 @@
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "canopen/node_id.hpp"
+#include "drive/shared_profile.hpp"
 
 namespace servoctl::sim {
 namespace {
@@ -120,14 +121,14 @@ Result<std::unique_ptr<Memory>> open_memory(const CellSpec& spec) {
   return std::make_unique<Memory>();
 }
 
-Result<const drive::Profile*> profile_of(std::vector<std::unique_ptr<drive::Profile>>& known,
+Result<const drive::Profile*> profile_of(std::vector<std::shared_ptr<const drive::Profile>>& known,
                                          const std::string& family,
                                          std::span<const std::filesystem::path> folders) {
   for (const auto& profile : known)
     if (profile->family == family) return profile.get();
-  auto loaded = drive::load_profile(family, folders);
+  auto loaded = drive::shared_profile(family, folders);
   if (!loaded) return fail(loaded.error());
-  known.push_back(std::make_unique<drive::Profile>(std::move(*loaded)));
+  known.push_back(std::move(*loaded));
   return known.back().get();
 }
 

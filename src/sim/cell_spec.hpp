@@ -44,8 +44,8 @@ Result<CellSpec> parse_cell_spec(std::string_view text, std::string_view example
 /// The memory in the file that `state=FILE` names; without it one that is lost with the process.
 Result<std::unique_ptr<Memory>> open_memory(const CellSpec& spec);
 
-/// The data of a family, loaded once. Errors as drive::load_profile().
-Result<const drive::Profile*> profile_of(std::vector<std::unique_ptr<drive::Profile>>& known,
+/// The data of a family; `known` holds it from now on. Errors as drive::load_profile().
+Result<const drive::Profile*> profile_of(std::vector<std::shared_ptr<const drive::Profile>>& known,
                                          const std::string& family,
                                          std::span<const std::filesystem::path> folders);
 

@@ -17,7 +17,7 @@ namespace servoctl::sim {
 
 /// Simulated drives in an EtherCAT ring with all that belongs to them.
 struct EscCell {
-  std::vector<std::unique_ptr<drive::Profile>> profiles;  ///< One a family.
+  std::vector<std::shared_ptr<const drive::Profile>> profiles;  ///< One a family.
   std::unique_ptr<Memory> memory;
   std::vector<std::unique_ptr<EscSlave>> slaves;  ///< In the order of the ring.
   EscRing ring;

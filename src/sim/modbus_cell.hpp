@@ -18,7 +18,7 @@ namespace servoctl::sim {
 
 /// Simulated drives on a Modbus line with all that belongs to them. Performs no I/O and reads no clock.
 struct ModbusCell {
-  std::vector<std::unique_ptr<drive::Profile>> profiles;  ///< One a family.
+  std::vector<std::shared_ptr<const drive::Profile>> profiles;  ///< One a family.
   std::unique_ptr<Memory> memory;
   std::vector<std::unique_ptr<ModbusUnit>> units;
   unsigned damage = 0;  ///< Every so manieth answer has a wrong bit; 0: none.
