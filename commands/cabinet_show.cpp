@@ -39,8 +39,7 @@ std::string state_text(const AxisState& look, bool chinese) {
 
 std::string mode_text(const AxisState& look) {
   if (!look.mode) return "-";
-  const auto word = drive::mode_abbreviation(*look.mode);
-  return word.empty() ? fmt::format("{}", *look.mode) : std::string(word);
+  return look.mode_word.empty() ? fmt::format("{}", *look.mode) : look.mode_word;
 }
 
 std::string fault_text(const AxisState& look) {

@@ -177,11 +177,11 @@ Value fault_cell(const Context& context, const Result<Bytes>& answer) {
   return fmt::format("0x{:04X} {}", *code, clip(words, kWords));
 }
 
-Value mode_cell(const Result<Bytes>& answer) {
+Value mode_cell(const Context& context, const Result<Bytes>& answer) {
   const auto number = session::number_in(answer);
   if (!number) return {};
   const auto mode = static_cast<std::int8_t>(*number);
-  const auto name = drive::mode_abbreviation(mode);
+  const auto name = drive::mode_word(context.profile, mode, context.chinese);
   return name.empty() ? fmt::format("{}", mode) : fmt::format("{} {}", mode, name);
 }
 
@@ -212,7 +212,7 @@ List overview_row(const Context& context, std::uint8_t node, std::span<const Res
     const auto decoded = drive::decode_state(static_cast<std::uint16_t>(*word));
     state = context.chinese ? drive::name_zh(decoded) : drive::name(decoded);
   }
-  return {node, network_cell(context, node), std::move(state), mode_cell(answers[1]),
+  return {node, network_cell(context, node), std::move(state), mode_cell(context, answers[1]),
           fault_cell(context, answers[2])};
 }
 

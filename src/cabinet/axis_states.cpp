@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "drive/standard_mode.hpp"
 #include "drive/standard_objects.hpp"
 #include "motion/kept_turn.hpp"
 #include "session/answer.hpp"
@@ -66,8 +67,11 @@ void AxisStates::take(AxisState& look, session::Session& session, std::span<cons
   }
   look.network = network_of(session, look.axis->node);
   look.state = drive::decode_state(static_cast<std::uint16_t>(load_le(*word)));
-  if (const auto mode = session::number_in(answers[1])) look.mode = static_cast<std::int8_t>(*mode);
   const auto& known = this->known(*look.axis, session);
+  if (const auto mode = session::number_in(answers[1])) {
+    look.mode = static_cast<std::int8_t>(*mode);
+    look.mode_word = drive::mode_word(known.profile, *look.mode, desk_->chinese);
+  }
   if (const auto code = session::number_in(answers[2])) {
     look.fault = static_cast<std::uint16_t>(*code);
     if (*code != 0) look.fault_text = show::fault_words(known.profile, desk_->chinese, *look.fault);

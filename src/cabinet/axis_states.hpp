@@ -21,6 +21,7 @@ struct AxisState {
   std::string network;  ///< NMT or AL state; empty where it was not heard.
   std::optional<drive::DriveState> state;
   std::optional<std::int8_t> mode;
+  std::string mode_word;                     ///< As drive::mode_word().
   std::optional<std::uint16_t> fault;        ///< 603Fh; 0: none.
   std::string fault_text;                    ///< In words; empty without fault.
   std::optional<motion::Physical> position;  ///< Of the load, where the file says what it moves.

@@ -4,6 +4,10 @@
 #include <array>
 #include <utility>
 
+#include "drive/cia402.hpp"
+#include "drive/quantity.hpp"
+#include "drive/standard_objects.hpp"
+
 namespace servoctl::drive {
 
 std::int8_t standard_mode(const MotionRules& rules, std::int8_t mode) {
@@ -20,6 +24,15 @@ std::int8_t standard_mode(const MotionRules& rules, std::int8_t mode) {
   for (const auto& [own, standard] : named)
     if (own == mode) return standard;
   return 0;
+}
+
+std::string mode_word(const Profile* profile, std::int8_t mode, bool chinese) {
+  if (profile == nullptr || standard_mode(profile->rules.motion, mode) == mode)
+    return std::string(mode_abbreviation(mode));
+  const auto meaning = drive::meaning(target_at(profile, objects::kModeDisplay), 0);
+  const auto* label = label_of(meaning, od::Value(std::int64_t{mode}));
+  if (label == nullptr) return {};
+  return chinese && !label->label_zh.empty() ? label->label_zh : label->label;
 }
 
 }  // namespace servoctl::drive

@@ -36,6 +36,7 @@ class Preflight {
 
   Result<std::vector<PreflightItem>> run(const WatchdogPlan& watchdog) {
     if (const auto done = look_at_state(); !done) return fail(done.error());
+    if (const auto done = look_at_needs(); !done) return fail(done.error());
     if (const auto done = look_at_objects(); !done) return fail(done.error());
     if (const auto done = look_at_cautions(); !done) return fail(done.error());
     const bool sure = watchdog.kind != WatchdogPlan::Kind::none && !watchdog.assumed;
@@ -123,7 +124,7 @@ class Preflight {
     add(limit ? Weight::caution : Weight::good, "inputs", fmt::format("60FDh is 0x{:08X}: {}", word, text));
   }
 
-  /// The number a caution depends on; empty where nothing tells it.
+  /// The number a caution or a need depends on; empty where nothing tells it.
   Result<std::optional<std::int64_t>> number(const std::string& name) {
     const auto object = units_->object(name);
     if (!object) return std::optional<std::int64_t>();
@@ -135,6 +136,18 @@ class Preflight {
     if (value && meaning.type_known && meaning.encoding == od::Encoding::plain && od::is_signed(meaning.type))
       return std::optional(static_cast<std::int64_t>(od::to_double(*value)));
     return std::optional(static_cast<std::int64_t>(load_le(*answer)));
+  }
+
+  /// What has to be set before the drive listens to CANopen.
+  Result<void> look_at_needs() {
+    for (const auto& need : units_->profile().rules.nmt.needs) {
+      const auto now = number(need.name);
+      if (!now) return fail(now.error());
+      if (*now && **now != need.value)
+        add(Weight::caution, need.name,
+            fmt::format("it is {}, and {} is needed for CANopen: the drive may not obey", **now, need.value));
+    }
+    return {};
   }
 
   /// What cannot be read may hold.

@@ -10,6 +10,7 @@
 #include "session/measure.hpp"
 #include "settings/keeping_nodes.hpp"
 #include "settings/register_writes.hpp"
+#include "settings/stored_copies.hpp"
 
 namespace servoctl::settings {
 namespace {
@@ -259,7 +260,8 @@ report::Table change_table() {
 
 }  // namespace
 
-Result<Value> write_changes(show::Desk& desk, std::span<const Change> changes, const WriteOptions& options) {
+Result<Value> write_changes(show::Desk& desk, std::span<const Change> wanted, const WriteOptions& options) {
+  const auto changes = changes_with(desk, wanted, options);
   std::vector<session::SdoRequest> requests;
   for (const auto& change : changes)
     requests.push_back({change.node, change.target.address, change.data, change.transfer});

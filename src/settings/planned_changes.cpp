@@ -1,6 +1,7 @@
 // What --dry-run shows of values that would be written.
 #include "settings/change.hpp"
 #include "settings/keeping_nodes.hpp"
+#include "settings/stored_copies.hpp"
 #include "show/planned_messages.hpp"
 
 namespace servoctl::settings {
@@ -28,8 +29,9 @@ Value planned_frames(const show::Desk& desk, std::span<const Change> changes) {
   return table;
 }
 
-Result<Value> planned_changes(show::Desk& desk, std::span<const Change> changes,
+Result<Value> planned_changes(show::Desk& desk, std::span<const Change> wanted,
                               const WriteOptions& options) {
+  const auto changes = changes_with(desk, wanted, options);
   session::Rehearsal rehearsal;
   KeepingNodes keeping(desk, changes);
   keeping.rehearse(rehearsal);

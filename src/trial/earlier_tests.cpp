@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
+#include <iterator>
 
 #include "base/file.hpp"
 #include "base/text.hpp"
@@ -18,6 +19,8 @@ using report::List;
 using report::TestResult;
 using report::Value;
 using report::Verdict;
+
+constexpr std::string_view kTestCommand = "test ";
 
 std::string text(const Value* value) {
   const auto* found = value == nullptr ? nullptr : std::get_if<std::string>(&value->data());
@@ -79,15 +82,45 @@ tl::unexpected<Error> no_tests(std::string_view file) {
               "such a file is written by `test … --json >FILE`");
 }
 
+/// What is said of a test that did not come to its end: it is no test that passed.
+std::optional<TestResult> broken_off(const Value& document, const std::vector<TestResult>& before) {
+  const auto* error = find(document, "error");
+  if (error == nullptr || text(find(*error, "code")) == name(Errc::negative)) return std::nullopt;
+  const auto* node = find(*error, "node");
+  const auto* number = node == nullptr ? nullptr : std::get_if<std::uint64_t>(&node->data());
+  TestResult out;
+  out.test = text(find(document, "command")).substr(kTestCommand.size());
+  if (number != nullptr && *number >= canopen::kFirstNode && *number <= canopen::kLastNode)
+    out.node = static_cast<std::uint8_t>(*number);
+  else if (!before.empty())
+    out.node = before.back().node;
+  if (!before.empty()) out.origin = before.back().origin;
+  out.criteria.push_back({.id = "ended",
+                          .name = "ran to its end",
+                          .verdict = Verdict::failed,
+                          .figure = text(find(*error, "message")),
+                          .relation = {}});
+  return out;
+}
+
 Result<void> add_tests(const Value& document, std::string_view file, std::vector<TestResult>& out) {
   const auto* result = find(document, "result");
   const auto* list = result == nullptr ? nullptr : std::get_if<List>(&result->data());
-  if (list == nullptr || !text(find(document, "command")).starts_with("test ")) return no_tests(file);
+  if (list == nullptr || !text(find(document, "command")).starts_with(kTestCommand)) return no_tests(file);
+  std::vector<TestResult> tests;
   for (const auto& one : *list) {
     auto test = test_of(one);
     if (!test) return no_tests(file);
-    out.push_back(std::move(*test));
+    tests.push_back(std::move(*test));
   }
+  if (auto last = broken_off(document, tests)) {
+    if (last->node == 0)
+      return fail(Errc::file,
+                  fmt::format("{}: the test did not run: {}", file, text(&last->criteria.front().figure)),
+                  "run it again, or leave this --tests out");
+    tests.push_back(std::move(*last));
+  }
+  std::move(tests.begin(), tests.end(), std::back_inserter(out));
   return {};
 }
 

@@ -45,9 +45,9 @@ class Told : public testing::Test {
     return row.substr(at, row.find("  ", at) - at);
   }
 
-  report::Value report_of(const std::string& tests) {
+  report::Value report_of(const std::string& tests, int exit = 0) {
     const auto file = dir_ / "report.json";
-    EXPECT_EQ(run("gsd600", "report " + file.string() + tests + " -n 1"), 0) << console.err_text;
+    EXPECT_EQ(run("gsd600", "report " + file.string() + tests + " -n 1"), exit) << console.err_text;
     std::ostringstream text;
     text << std::ifstream(file).rdbuf();
     return report::parse_json(text.str(), "report").value();
@@ -61,6 +61,24 @@ class Told : public testing::Test {
   fs::path dir_ = fs::temp_directory_path() / ("servoctl-told-" + std::to_string(::getpid()));
   RecordingConsole console;
 };
+
+TEST_F(Told, OfATestThatEndedWithAnErrorThatItDidNotPass) {
+  fs::create_directories(dir_);
+  const auto tests = dir_ / "tests.json";
+  const std::string comm =
+      R"({"test":"comm","node":1,"criteria":[{"id":"lost","name":"lost","verdict":"passed"}]})";
+  const auto write = [&](const std::string& code, const std::string& node, int exit) {
+    std::ofstream(tests) << R"({"servoctl":1,"command":"test all","ok":false,"error":{"code":")" + code +
+                                R"(","exit":8,"message":"no method")" + node + R"(},"result":[)" + comm +
+                                "]}";
+    const auto told = report_of(" --tests " + tests.string(), exit);
+    return tests_in(told);
+  };
+  EXPECT_EQ(write("negative", "", 0), 1U) << "a verdict is one of the tests";
+  EXPECT_EQ(write("refused", R"(,"node":1)", 1), 2U) << "what broke off is told";
+  EXPECT_NE(console.out_text.find("FAILED"), std::string::npos) << console.out_text;
+  EXPECT_EQ(write("interrupted", "", 1), 2U);
+}
 
 TEST_F(Told, OfAValueWhetherItIsKeptOnEveryFamily) {
   const std::map<std::string, std::string> without_order{{"gsd600", "no"},        {"dm", "no"},
