@@ -46,9 +46,9 @@ void find_frames(const Value& value, List node, List& out) {
     auto name = cell(*table, row, "name");
     if (name.is_null()) name = cell(*table, row, "step");
     auto frame = cell(*table, row, "frame");
-    auto value = has_values && frame.is_null() ? cell(*table, row, "value") : Value();
+    auto written = has_values && frame.is_null() ? cell(*table, row, "value") : Value();
     out.push_back(List{number, cell(*table, row, "object"), name, cell(*table, row, "when"), std::move(frame),
-                       std::move(value)});
+                       std::move(written)});
   }
 }
 
