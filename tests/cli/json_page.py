@@ -47,7 +47,7 @@ class Page:
     def link(self, record):
         if record not in self.records:
             self.records.append(record)
-        return f"[{record.replace('_', ' ')}](#{record.replace('_', '-')})"
+        return f"[{record.replace('_', ' ')}](#record-{record.replace('_', '-')})"
 
     def kind(self, file, schema):
         """The type in words: `list of [reading](#reading)`, `text, null`."""
@@ -183,7 +183,7 @@ class Page:
 
     def record(self, name):
         schema = self.defs[name]
-        head = f'### <a id="{name.replace("_", "-")}"></a>{name.replace("_", " ")}\n\n' + wrapped(schema["description"])
+        head = f'### <a id="record-{name.replace("_", "-")}"></a>{name.replace("_", " ")}\n\n' + wrapped(schema["description"])
         if "properties" in schema:
             return head + "\n\n" + self.table("defs.schema.json", schema)
         if "array" in types(schema):

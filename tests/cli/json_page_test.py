@@ -28,8 +28,10 @@ _, end, tail = rest.partition(END)
 if not begin or not end:
     sys.exit(f"{path} has no place for the tables: {BEGIN} … {END}")
 fresh = f"{head}{BEGIN}\n{Page(os.path.join(source, 'docs/schema')).text(commands())}\n{END}{tail}"
-anchors = set(re.findall(r'<a id="([^"]+)">', fresh))
-for link in sorted(set(re.findall(r"\]\(#([^)]+)\)", fresh)) - anchors):
+anchors = re.findall(r'<a id="([^"]+)">', fresh)
+if len(anchors) != len(set(anchors)):
+    sys.exit("docs/json.md: a name stands twice: " + ", ".join(sorted({each for each in anchors if anchors.count(each) > 1})))
+for link in sorted(set(re.findall(r"\]\(#([^)]+)\)", fresh)) - set(anchors)):
     sys.exit(f"docs/json.md: nothing is called #{link}")
 if os.environ.get("SERVOCTL_REWRITE_JSON_PAGE") == "1":
     with open(path, "w", encoding="utf-8") as file:
