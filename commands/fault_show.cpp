@@ -37,12 +37,7 @@ class FaultReport {
   Result<Record> make() {
     const auto statusword = read(objects::kStatusword);
     out_ = {{"node", node_}};
-    if (statusword) {
-      const auto state = drive::decode_state(static_cast<std::uint16_t>(load_le(*statusword)));
-      out_.push_back({"state", context_->chinese ? drive::name_zh(state) : drive::name(state), Show::text,
-                      "drive state"});
-      out_.push_back({"state", drive::name(state), Show::json});
-    }
+    add_state(statusword);
     add_code();
     add_register();
     add_alarm();
@@ -55,9 +50,8 @@ class FaultReport {
       if (few)
         out_.push_back({"alarm_" + fault->panel, show::fault_record(*fault, context_->chinese), Show::text,
                         title_of(*fault)});
-    if (!candidates_.empty())
-      out_.push_back({"alarms", show::fault_table(candidates_, context_->chinese),
-                      few ? Show::json : Show::everywhere, "what it may be"});
+    out_.push_back({"alarms", show::fault_table(candidates_, context_->chinese),
+                    few ? Show::json : Show::everywhere, "what it may be"});
     return std::move(out_);
   }
 
@@ -91,11 +85,19 @@ class FaultReport {
     return fault.code ? fmt::format("0x{:04X}", *fault.code) : "fault";
   }
 
+  void add_state(const std::optional<Bytes>& statusword) {
+    if (!statusword) return out_.push_back({"state", Value(), Show::json});
+    const auto state = drive::decode_state(static_cast<std::uint16_t>(load_le(*statusword)));
+    out_.push_back(
+        {"state", context_->chinese ? drive::name_zh(state) : drive::name(state), Show::text, "drive state"});
+    out_.push_back({"state", drive::name(state), Show::json});
+  }
+
   void add_code() {
     const auto answer = read(objects::kErrorCode);
     if (!answer) {
       out_.push_back({"code_text", missing(objects::kErrorCode), Show::text, "error code 603Fh"});
-      out_.push_back({"code", Value(), Show::json});
+      for (const auto* key : {"code", "text"}) out_.push_back({key, Value(), Show::json});
       return;
     }
     const auto code = static_cast<std::uint16_t>(load_le(*answer));
@@ -115,11 +117,17 @@ class FaultReport {
     out_.push_back({"error_register", answer ? Value(bits) : Value(), Show::json});
   }
 
-  /// The number the family keeps in a parameter of its own.
+  /// The parameter in which the family keeps a number of its own.
+  std::optional<drive::Target> alarm_target() const {
+    const auto* profile = context_->profile;
+    if (profile == nullptr || profile->rules.fault.alarm.empty()) return std::nullopt;
+    auto target = drive::resolve(profile, profile->rules.fault.alarm);
+    return target ? std::optional(std::move(*target)) : std::nullopt;
+  }
+
   void add_alarm() {
-    if (context_->profile == nullptr || context_->profile->rules.fault.alarm.empty()) return;
-    const auto target = drive::resolve(context_->profile, context_->profile->rules.fault.alarm);
-    if (!target) return;
+    const auto target = alarm_target();
+    if (!target) return out_.push_back({"alarm", Value(), Show::json});
     const auto answer = read(target->address);
     const auto code = answer ? static_cast<std::uint16_t>(load_le(*answer)) : std::uint16_t{0};
     out_.push_back({"alarm_text",

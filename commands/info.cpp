@@ -42,9 +42,9 @@ Value modes_text(const Result<Bytes>& bytes) {
 void add_state(Record& out, const session::Identity& node, session::Session& session) {
   if (const auto* ring = session.ethercat()) {
     const auto* al = ring->al_of(node.node);
-    if (al == nullptr) return;
-    out.push_back({"al", show::al_text(*al), report::Show::text, "AL state"});
-    for (auto& field : show::al_fields(*al)) out.push_back(std::move(field));
+    if (al != nullptr) out.push_back({"al", show::al_text(*al), report::Show::text, "AL state"});
+    for (auto& field : al != nullptr ? show::al_fields(*al) : show::no_al_fields())
+      out.push_back(std::move(field));
     return;
   }
   out.push_back({"nmt", node.state ? Value(session::name(*node.state)) : Value()});
@@ -82,6 +82,7 @@ Value one(const session::Identity& node, std::span<const drive::Family> families
         {"family",
          text.empty() ? Value("none matches") : Value(text + "  (a guess, not proof: use -d FAMILY)"),
          report::Show::text});
+    out.push_back({"family", Value(), report::Show::json});
   }
   report::List all;
   for (const auto& guess : guesses)

@@ -194,6 +194,8 @@ Result<Value> run(Context& context, const Arguments& arguments) {
     const auto reset = lss.ask(canopen::lss_switch_all(canopen::LssState::waiting));
     if (!reset) return fail(reset.error());
     if (const auto sent = lss.select_all(); !sent) return fail(sent.error());
+    for (const auto* key : {"vendor_id", "product_code", "revision", "serial"})
+      out.push_back({key, {}, report::Show::json});
   } else {
     const auto slave = lss.select(choice->address);
     if (!slave) return fail(slave.error());

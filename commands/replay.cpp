@@ -53,6 +53,9 @@ Result<double> speed_of(const Arguments& arguments) {
   return *speed;
 }
 
+/// A table without rows is worth no heading.
+report::Show shown(bool any) { return any ? report::Show::everywhere : report::Show::json; }
+
 report::Table kinds_table(const traffic::FrameKinds& kinds) {
   report::Table out;
   out.columns = {{"what"}, {"frames"}};
@@ -139,7 +142,8 @@ Result<void> send(Context& context, const traffic::ReplayPlan& plan, const traff
   answer.push_back({"sent", replay.sent()});
   motion::tell_left_energised(context);
   tell_failures(context, replay);
-  if (!replay.failures().empty()) answer.push_back({"failures", failures_table(context, replay.failures())});
+  answer.push_back(
+      {"failures", failures_table(context, replay.failures()), shown(!replay.failures().empty())});
   return {};
 }
 
@@ -193,15 +197,15 @@ Result<Value> run(Context& context, const Arguments& arguments) {
     if (const auto sure = context.confirm(question(plan, file, context.session->url())); !sure)
       return fail(sure.error());
     if (const auto done = send(context, plan, *drives, *speed, answer); !done) return fail(done.error());
+  } else {
+    for (const auto* key : {"sent", "failures"}) answer.push_back({key, Value(), report::Show::json});
   }
   report::Table services;
   services.columns = {{"service"}, {"frames"}};
   for (const auto& [service, count] : plan.services) services.rows.push_back({service, count});
   answer.push_back({"services", std::move(services)});
-  if (!plan.moving.empty())
-    answer.push_back({"moving", kinds_table(plan.moving), report::Show::everywhere, "can move a motor"});
-  if (!plan.lasting.empty())
-    answer.push_back({"lasting", kinds_table(plan.lasting), report::Show::everywhere, "last or restart"});
+  answer.push_back({"moving", kinds_table(plan.moving), shown(!plan.moving.empty()), "can move a motor"});
+  answer.push_back({"lasting", kinds_table(plan.lasting), shown(!plan.lasting.empty()), "last or restart"});
   return Value(std::move(answer));
 }
 

@@ -210,8 +210,11 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   for (auto& error : traffic::failures_of(scope.last())) context.errors.push_back(std::move(error));
   report::Record out{{"seconds", std::round(scope.seconds() * 1000) / 1000},
                      {"objects", traffic::sampling_table(scope.records())}};
-  for (const auto* option : {"--csv", "--svg"})
-    if (arguments.has(option) && !series.empty()) out.push_back({option + 2, arguments.text(option)});
+  for (const auto* option : {"--csv", "--svg"}) {
+    const bool is_written = arguments.has(option) && !series.empty();
+    out.push_back({option + 2, is_written ? Value(arguments.text(option)) : Value(),
+                   is_written ? report::Show::everywhere : report::Show::json});
+  }
   out.push_back({"plot", report::Plot{series},
                  arguments.has("--plot") ? report::Show::everywhere : report::Show::json});
   return Value(std::move(out));

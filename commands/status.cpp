@@ -81,7 +81,11 @@ std::string mode_text(const Context& context, std::int8_t mode) {
 
 void add_drive_state(Record& out, const Context& context, std::optional<std::uint64_t> word,
                      std::optional<std::uint64_t> mode) {
-  if (!word) return;
+  if (!word) {
+    for (const auto* key : {"state", "energised", "statusword", "bits"})
+      out.push_back({key, Value(), Show::json});
+    return;
+  }
   const auto statusword = static_cast<std::uint16_t>(*word);
   const auto state = drive::decode_state(statusword);
   const auto shown_mode = static_cast<std::int8_t>(mode.value_or(0));
@@ -105,6 +109,8 @@ void add_mode_and_fault(Record& out, const Context& context, std::span<const Res
     out.push_back(
         {"mode", text.empty() ? fmt::format("{}", value) : fmt::format("{} {}", value, text), Show::text});
     out.push_back({"mode", Record{{"value", value}, {"label", report::text_or_null(text)}}, Show::json});
+  } else {
+    out.push_back({"mode", Value(), Show::json});
   }
   if (const auto code = session::number_in(answers[2])) {
     const auto text = show::fault_words(context.profile, context.chinese, static_cast<std::uint16_t>(*code));
@@ -112,11 +118,15 @@ void add_mode_and_fault(Record& out, const Context& context, std::span<const Res
         {"fault", *code == 0 ? std::string("none") : fmt::format("0x{:04X} {}", *code, text), Show::text});
     out.push_back(
         {"fault", *code == 0 ? Value() : Value(Record{{"code", *code}, {"text", text}}), Show::json});
+  } else {
+    out.push_back({"fault", Value(), Show::json});
   }
   if (const auto bits = session::number_in(answers[3])) {
     const auto text = canopen::error_register_text(static_cast<std::uint8_t>(*bits));
     out.push_back({"error_register", fmt::format("0x{:02X} {}", *bits, text), Show::text, "error register"});
     out.push_back({"error_register", *bits, Show::json});
+  } else {
+    out.push_back({"error_register", Value(), Show::json});
   }
 }
 
@@ -153,8 +163,13 @@ void add_al_state(Record& out, const session::EtherCatNetwork& ring, std::uint8_
   if (const auto* al = ring.al_of(node)) {
     out.push_back({"al", show::al_text(*al), Show::text, "AL state"});
     for (auto& field : show::al_fields(*al)) out.push_back(std::move(field));
+  } else {
+    for (auto& field : show::no_al_fields()) out.push_back(std::move(field));
   }
-  if (const auto* image = ring.image_of(node)) add_cycles(out, *image, node);
+  if (const auto* image = ring.image_of(node))
+    add_cycles(out, *image, node);
+  else
+    out.push_back({"process_data", Value(), Show::json});
 }
 
 Record one(Context& context, std::uint8_t node, std::span<const Result<Bytes>> answers) {

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <cmath>
+#include <initializer_list>
 
 #include "base/calendar.hpp"
 #include "base/file.hpp"
@@ -181,10 +182,15 @@ void add_measurement(Value& answer, const motion::LearnReport& done, double gear
   auto* record = std::get_if<Record>(&answer.data());
   if (record == nullptr) return;
   Record found;
+  const auto add_unknown = [&](std::initializer_list<std::string_view> keys) {
+    for (const auto key : keys) found.push_back({std::string(key), Value(), report::Show::json});
+  };
   if (done.counts) {
     found.push_back(
         {"counts", std::llround(done.counts->counts), report::Show::everywhere, "counts per revolution"});
     found.push_back({"why", done.counts->reason});
+  } else {
+    add_unknown({"counts", "why"});
   }
   if (done.measured) {
     const auto& measured = *done.measured;
@@ -195,6 +201,8 @@ void add_measurement(Value& answer, const motion::LearnReport& done, double gear
     found.push_back({"rpm", parse_real(plain_number(measured.rpm, 4)).value_or(0)});
     found.push_back({"turns", parse_real(plain_number(measured.turns, 4)).value_or(0)});
     found.push_back({"looks", std::uint64_t{measured.looks}, report::Show::json});
+  } else {
+    add_unknown({"measured", "uncertainty", "gear", "rpm", "turns", "looks"});
   }
   found.push_back({"kept", kept});
   // Behind what was done, before how the drive was left.

@@ -135,6 +135,7 @@ class Watching {
                        {"sub", address.sub},
                        {"name", report::text_or_null(channel.target.label())}};
     if (!sample.bytes) {
+      for (const auto* key : {"value", "raw", "unit", "si", "label", "by"}) out.push_back({key});
       out.push_back({"error", show::error_record(sample.bytes.error())});
       return out;
     }
@@ -145,6 +146,7 @@ class Watching {
     out.push_back({"si", std::move(value.familiar)});
     out.push_back({"label", std::move(value.label)});
     out.push_back({"by", sample.by_pdo ? "pdo" : "sdo"});
+    out.push_back({"error"});
     return out;
   }
 

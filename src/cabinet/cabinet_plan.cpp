@@ -99,6 +99,7 @@ Record json_of(const PlannedAxis& look) {
              {"node", look.axis->node},
              {"family", look.axis->family}};
   if (!look.plan) {
+    for (const auto* key : {"serial", "compared", "differences", "unlisted", "needs"}) out.push_back({key});
     out.push_back({"error", show::error_record(look.plan.error())});
     return out;
   }

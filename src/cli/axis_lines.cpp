@@ -166,8 +166,10 @@ Result<std::vector<LinePart>> parts_of(const Cabinet& cabinet, const command::Co
   }
   std::vector<LinePart> out;
   for (const auto& bus : cabinet.buses) out.push_back(on_bus(cabinet, settings, bus));
+  // The file it writes is of one bus at a time.
+  const bool makes_file = command.path == "cabinet init";
   const bool looks = command.effect_with(arguments) <= command::Effect::reads && settings.nodes.empty();
-  if (looks) return out;
+  if (looks && !makes_file) return out;
   std::vector<std::string> names;
   for (const auto& bus : cabinet.buses) names.push_back("--bus " + bus.name);
   return fail(Errc::usage,

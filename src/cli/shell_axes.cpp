@@ -22,6 +22,7 @@ using cabinet::Cabinet;
 using command::Effect;
 using command::Needs;
 using report::List;
+using report::Show;
 using report::Table;
 using report::Value;
 
@@ -88,18 +89,23 @@ void put_bus_into(Value& value, const std::string& bus) {
   }
 }
 
+/// Whether both are one column: a key stands once in a record, whatever the text of either shows.
+bool are_one(const Table::Column& a, const Table::Column& b) {
+  return a.key == b.key && (a.show == Show::text) == (b.show == Show::text);
+}
+
 /// The columns of both, those of the first before those that only the second has.
 void add_rows(Table& to, const Table& from) {
   std::vector<std::size_t> places;
   for (const auto& column : from.columns) {
-    auto at = std::find_if(to.columns.begin(), to.columns.end(), [&](const Table::Column& known) {
-      return known.key == column.key && known.show == column.show;
-    });
+    auto at = std::find_if(to.columns.begin(), to.columns.end(),
+                           [&](const Table::Column& known) { return are_one(known, column); });
     if (at == to.columns.end()) {
       for (auto& row : to.rows) row.emplace_back();
       to.columns.push_back(column);
       at = to.columns.end() - 1;
     }
+    if (at->show != column.show) at->show = Show::everywhere;
     places.push_back(static_cast<std::size_t>(at - to.columns.begin()));
   }
   for (const auto& row : from.rows) {

@@ -71,11 +71,7 @@ Result<Value> planned(const show::Desk& desk, Motion& motion, const MotionPlan& 
   if (!messages) return fail(messages.error());
   report::Table steps;
   steps.columns = {{"step"}, {"object"}, {"value"}, {"when"}, {"frame"}};
-  if (!show::is_sent_as_frames(desk)) steps.columns.pop_back();
-  for (const auto& message : *messages) {
-    steps.rows.push_back(planned_step(desk, motion, message));
-    steps.rows.back().resize(steps.columns.size());
-  }
+  for (const auto& message : *messages) steps.rows.push_back(planned_step(desk, motion, message));
   return Value(Record{{"node", motion.node()},
                       {"motion", plan.summary},
                       {"watchdog", to_string(motion.watchdog()), Show::json},
@@ -133,7 +129,11 @@ Result<Value> run_motion(show::Desk& desk, const MotionRequest& request, const M
   if (desk.dry_run && possible) return planned(desk, motion, *plan, *items);
   if (desk.dry_run) {
     desk.errors.push_back(possible.error());
-    return Value(Record{{"node", node}, {"motion", plan->summary}, {"preflight", preflight_table(*items)}});
+    return Value(Record{{"node", node},
+                        {"motion", plan->summary},
+                        {"watchdog", Value(), Show::json},
+                        {"preflight", preflight_table(*items)},
+                        {"steps", Value(), Show::json}});
   }
   if (!possible) return fail(possible.error());
   if (const auto answer = ask(desk, node, *plan, *items, notes); !answer) return fail(answer.error());

@@ -24,7 +24,7 @@ report::Table new_table(bool kept) {
                    {"name"},
                    {"bytes"},
                    {"file"},
-                   {"state", "result", Show::text},
+                   {"state", "result"},
                    {"error", "", Show::json}};
   if (kept) table.columns.push_back({"kept", "", Show::json});
   if (kept) table.columns.push_back({"kept_text", "kept", Show::text});

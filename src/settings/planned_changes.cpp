@@ -21,10 +21,10 @@ Value planned_frames(const show::Desk& desk, std::span<const Change> changes) {
   add_writes(changes, rehearsal);
   if (!show::is_sent_as_frames(desk)) return show::planned_messages(desk, rehearsal.messages());
   report::Table table;
-  table.columns = {{"node"}, {"object"}, {"name"}, {"frame"}};
+  table.columns = {{"node"}, {"object"}, {"name"}, {"when", "", report::Show::json}, {"frame"}};
   for (std::size_t i = 0; i < changes.size(); ++i)
     table.rows.push_back({changes[i].node, to_string(changes[i].target.address),
-                          report::text_or_null(changes[i].target.label()),
+                          report::text_or_null(changes[i].target.label()), Value(),
                           show::frame_text(rehearsal.messages()[i])});
   return table;
 }

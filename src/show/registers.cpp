@@ -35,6 +35,7 @@ Alarm alarm_of(const Desk& desk, const Result<Bytes>& answer) {
 void add_bits(Desk& desk, const Result<std::vector<bool>>& bits, std::string_view name, Record& out) {
   if (!bits) {
     desk.notices.push_back(bits.error().message);
+    out.push_back({std::string(name), Value(), Show::json});
     return;
   }
   List numbers;
@@ -113,6 +114,7 @@ Result<Value> register_info(Desk& desk, std::uint8_t node) {
   if (desk.profile == nullptr) {
     out.push_back(
         {"family", "not known: registers do not say what a device is; -d FAMILY says it", Show::text});
+    for (const auto* key : {"parameters", "inputs", "outputs"}) out.push_back({key, Value(), Show::json});
     return Value(std::move(out));
   }
   const auto& rules = desk.profile->rules;
@@ -125,8 +127,12 @@ Result<Value> register_info(Desk& desk, std::uint8_t node) {
   const auto& modbus = rules.modbus;
   if (modbus.inputs > 0)
     add_bits(desk, session::read_inputs(*desk.session, node, modbus.inputs), "inputs", out);
+  else
+    out.push_back({"inputs", Value(), Show::json});
   if (modbus.outputs > 0)
     add_bits(desk, session::read_outputs(*desk.session, node, modbus.outputs), "outputs", out);
+  else
+    out.push_back({"outputs", Value(), Show::json});
   return Value(std::move(out));
 }
 

@@ -125,6 +125,12 @@ Record al_fields(const ethercat::AlStatus& al) {
           {"al_text", al.error ? Value(ethercat::al_status_text(al.code)) : Value(), Show::json}};
 }
 
+Record no_al_fields() {
+  Record out;
+  for (const auto* key : {"al_state", "al_error", "al_code", "al_text"}) out.push_back({key, {}, Show::json});
+  return out;
+}
+
 report::Table ring_table(const Desk& desk, const session::RingScan& ring, std::span<const std::uint8_t> nodes,
                          std::span<const Condition> conditions, std::span<const drive::Family> families,
                          bool in_full) {

@@ -17,6 +17,8 @@ std::string al_text(const ethercat::AlStatus& al);
 /// Fields of a state for JSON: `al_state`, `al_error`, `al_code` (a number), `al_text` (null without an
 /// error).
 report::Record al_fields(const ethercat::AlStatus& al);
+/// The same fields where the state is not known: all null.
+report::Record no_al_fields();
 
 /// The slaves of a ring, one row each: place, addresses, identity, AL state, ports, families that fit, and
 /// how the drives are. `nodes` are those that are shown, `conditions` is in their order, and empty where it

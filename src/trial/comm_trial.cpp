@@ -82,7 +82,7 @@ class Communication {
     out_.criteria.push_back(std::move(lost));
     out_.criteria.push_back(
         report::at_most("wrong_answers", say("protocol violations", "违反协议的应答"), wrong_, 0));
-    if (round_trips_.empty()) return;
+    if (round_trips_.empty()) return out_.figures.push_back({"round_trip_ms", {}, Show::json});
     std::sort(round_trips_.begin(), round_trips_.end());
     const auto at = [&](double part) {
       const auto last = static_cast<double>(round_trips_.size() - 1);

@@ -79,7 +79,7 @@ report::Record verdict_record(const show::Desk& desk, const TestResult& result, 
   for (const auto& field : result.origin) out.push_back({field.key, field.value, Show::json});
   out.push_back({"criteria", criteria_table(desk, result)});
   for (const auto& figure : result.figures) out.push_back(figure);
-  if (!result.samples.series.empty()) out.push_back({"samples", result.samples, plot});
+  out.push_back({"samples", result.samples, result.samples.series.empty() ? Show::json : plot});
   return out;
 }
 

@@ -38,14 +38,17 @@ void find_frames(const Value& value, List node, List& out) {
   const auto* table = std::get_if<Table>(&value.data());
   if (table == nullptr) return;
   const bool has_frames = has_column(*table, "frame");
-  if (!has_frames && !(has_column(*table, "value") && has_column(*table, "when"))) return;
+  const bool has_values = has_column(*table, "value") && has_column(*table, "when");
+  if (!has_frames && !has_values) return;
   for (const auto& row : table->rows) {
     auto number = cell(*table, row, "node");
     if (number.is_null() && !node.empty()) number = node.front();
     auto name = cell(*table, row, "name");
     if (name.is_null()) name = cell(*table, row, "step");
-    out.push_back(List{number, cell(*table, row, "object"), name, cell(*table, row, "when"),
-                       cell(*table, row, "frame"), has_frames ? Value() : cell(*table, row, "value")});
+    auto frame = cell(*table, row, "frame");
+    auto written = has_values && frame.is_null() ? cell(*table, row, "value") : Value();
+    out.push_back(List{number, cell(*table, row, "object"), name, cell(*table, row, "when"), std::move(frame),
+                       std::move(written)});
   }
 }
 
