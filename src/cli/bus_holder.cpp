@@ -92,6 +92,11 @@ const show::AxisNames& BusHolder::names(const session::Session& session) const {
   return found == names_.end() ? kNone : found->second;
 }
 
+HeardStates::State BusHolder::heard_state(const session::Session& session, std::uint8_t node) const {
+  const auto found = heard_.find(&session);
+  return found == heard_.end() ? HeardStates::State() : found->second->state(node);
+}
+
 Result<std::unique_ptr<session::RingEnd>> BusHolder::open_ring_end(const Settings& settings) {
   bus_options_.trace = settings.trace;
   return session::open_ring_end(settings.bus, bus_options_, options_.cancelled);
@@ -116,6 +121,7 @@ Result<void> BusHolder::connect(const std::string& url) {
   if (auto left = left_energised_.extract(session::canonical_url(url)))
     session->energised() = std::move(left.mapped());
   session_ = session.get();
+  heard_[session_] = std::make_unique<HeardStates>(*session_);
   open_[session::canonical_url(url)] = std::move(session);
   return {};
 }
@@ -143,6 +149,7 @@ void BusHolder::drop(session::Session& session) {
   const auto url = session::canonical_url(session.url());
   if (!session.energised().empty()) left_energised_.insert_or_assign(url, std::move(session.energised()));
   flushing_ = true;  // What the trace could not take to the last is told by who takes its failure.
+  heard_.erase(&session);
   open_.erase(url);
   flushing_ = false;
   session_ = open_.empty() ? nullptr : open_.begin()->second.get();
@@ -257,11 +264,11 @@ Duration BusHolder::serve_beside() {
 
 bool BusHolder::wait_for(pollfd& wanted, Duration longest, const std::function<void(const Error&)>& lost) {
   std::vector<pollfd> fds{wanted};
-  std::optional<Duration> left;
+  auto left = longest;
   for (auto* session : sessions()) {
     fds.push_back({session->network().poll_fd(), POLLIN, 0});
     if (const auto next = session->next_event(); next != kNever)
-      left = std::clamp<Duration>(next - session->now(), Duration::zero(), left.value_or(longest));
+      left = std::clamp<Duration>(next - session->now(), Duration::zero(), left);
   }
   if (wait_or_signal(fds, left) < 0) return false;
   for (auto* session : sessions())

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/heard_states.hpp"
 #include "cli/settings.hpp"
 #include "cli/terminal/console.hpp"
 #include "session/open_bus.hpp"
@@ -61,6 +62,9 @@ class BusHolder {
   /// What the nodes of the session's bus are called.
   const show::AxisNames& names(const session::Session& session) const;
 
+  /// What the node of the session's bus was last heard to say of its state.
+  HeardStates::State heard_state(const session::Session& session, std::uint8_t node) const;
+
   /// Waits for what `wanted` asks of its descriptor, at most so long, while all buses are served. False after
   /// a signal. `lost` is told of each bus that is lost, and gone then.
   bool wait_for(pollfd& wanted, Duration longest, const std::function<void(const Error&)>& lost);
@@ -108,9 +112,10 @@ class BusHolder {
   std::optional<Error> trace_failure_;  ///< Outlives the bus, which may tell of it at its very end.
   bool flushing_ = false;
   bool serving_beside_ = false;
-  std::map<std::string, std::unique_ptr<session::Session>> open_;  ///< By canonical_url().
-  session::Session* session_ = nullptr;                            ///< Of them that was used last.
-  std::map<std::string, show::AxisNames> names_;                   ///< By canonical_url().
+  std::map<std::string, std::unique_ptr<session::Session>> open_;          ///< By canonical_url().
+  session::Session* session_ = nullptr;                                    ///< Of them that was used last.
+  std::map<std::string, show::AxisNames> names_;                           ///< By canonical_url().
+  std::map<const session::Session*, std::unique_ptr<HeardStates>> heard_;  ///< Of those that are open.
   std::map<std::string, session::EnergisedNodes> left_energised_;  ///< By canonical_url() of one not open.
 };
 

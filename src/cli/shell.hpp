@@ -64,6 +64,13 @@ class Shell {
   Settings& defaults() { return options_.defaults; }
   /// The bus as it is open now; null when none is.
   session::Session* session() { return bus_.session(); }
+  /// As BusHolder::heard_state(), on the bus of this URL; nothing where it is not open.
+  HeardStates::State heard_state(std::string_view url, std::uint8_t node) const;
+  /// The family of the lines that name none: that of the defaults, else what their one node was taken for;
+  /// empty where that is open. Nothing is asked.
+  std::string family_in_use() const;
+  /// The same as people read it: `gsd600?` where it is a guess.
+  std::string family_text() const;
   /// As BusHolder::lose(), of the bus that was used last.
   void lose_bus() {
     if (auto* session = bus_.session()) bus_.lose(*session);
@@ -150,6 +157,7 @@ class Shell {
   void hear_second_node(const Run& run);
   static Result<void> name_nodes(Run& run);
   Result<void> find_family(Run& run, bool changes);
+  const FoundFamily* taken_for() const;
   Result<std::string> family_of(Run& run, session::Session& session, std::uint8_t node, bool changes);
   std::optional<show::KnownDrive> said_of(Run& run, session::Session& session,
                                           const session::Identity& identity);

@@ -53,6 +53,36 @@ tl::unexpected<Error> needs_family(const command::Command& command, std::string 
 
 }  // namespace
 
+const Shell::FoundFamily* Shell::taken_for() const {
+  const auto& settings = options_.defaults;
+  const auto nodes =
+      settings.nodes.empty() ? Result<std::vector<std::uint8_t>>() : parse_nodes(settings.nodes);
+  if (!nodes || nodes->size() != 1) return nullptr;
+  for (auto* session : bus_.sessions()) {
+    if (session::canonical_url(session->url()) != session::canonical_url(settings.bus)) continue;
+    const auto found = families_.find(key_of(*session, nodes->front()));
+    return found == families_.end() ? nullptr : &found->second;
+  }
+  return nullptr;
+}
+
+std::string Shell::family_in_use() const {
+  const auto* taken = options_.defaults.drive.empty() ? taken_for() : nullptr;
+  return taken == nullptr ? options_.defaults.drive : taken->family;
+}
+
+std::string Shell::family_text() const {
+  const auto* taken = options_.defaults.drive.empty() ? taken_for() : nullptr;
+  return taken == nullptr ? options_.defaults.drive : taken->family + (taken->guessed ? "?" : "");
+}
+
+HeardStates::State Shell::heard_state(std::string_view url, std::uint8_t node) const {
+  const auto wanted = session::canonical_url(url);
+  for (auto* session : bus_.sessions())
+    if (session::canonical_url(session->url()) == wanted) return bus_.heard_state(*session, node);
+  return {};
+}
+
 /// What was said of the drive, as long as it is that drive.
 std::optional<KnownDrive> Shell::said_of(Run& run, Session& session, const Identity& identity) {
   if (options_.state_folder.empty()) return std::nullopt;

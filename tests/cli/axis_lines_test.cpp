@@ -4,6 +4,12 @@
 namespace servoctl::cli {
 namespace {
 
+std::vector<std::string> offered_axes(std::string_view line, Shell& shell) {
+  std::vector<std::string> out;
+  for (const auto& one : complete(line, shell).candidates) out.push_back(one.word);
+  return out;
+}
+
 TEST_F(AxisLines, ANameStandsForBusNodeAndFamily) {
   EXPECT_EQ(run("param get Pn0202 -n feeder2 --json"), 0) << all();
   EXPECT_TRUE(says(R"("axis":"feeder2","node":2)")) << all();
@@ -197,10 +203,10 @@ TEST_F(AxisLines, ABatchFileIsCheckedByTheFamiliesOfItsAxes) {
 }
 
 TEST_F(AxisLines, AreOfferedWhereNodesAre) {
-  const auto offered = complete("status -n ", *shell).words;
+  const auto offered = offered_axes("status -n ", *shell);
   for (const auto* name : {"all", "feeder1", "feeders", "table", "送料"})
     EXPECT_NE(std::find(offered.begin(), offered.end(), name), offered.end()) << name;
-  EXPECT_EQ(complete("use ta", *shell).words, std::vector<std::string>{"table"});
+  EXPECT_EQ(offered_axes("use ta", *shell), std::vector<std::string>{"table"});
 }
 
 }  // namespace

@@ -31,11 +31,12 @@ class Terminal:
     def type(self, text):
         os.write(self.fd, text.encode())
 
-    def see(self, pattern, seconds=20):
+    def see(self, pattern, seconds=20, colours=False):
         """Waits until the screen text shows the pattern; forgets everything up to its end."""
         end = time.monotonic() + seconds
         while True:
-            plain = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]|\x1b[=>]", "", self.text)
+            marks = r"\x1b\[[0-9;?]*[A-Zln-z]" if colours else r"\x1b\[[0-9;?]*[A-Za-z]|\x1b[=>]"
+            plain = re.sub(marks, "", self.text)
             found = re.search(pattern, plain)
             if found:
                 self.text = plain[found.end():]
@@ -76,9 +77,9 @@ with tempfile.TemporaryDirectory() as state:
     t = Terminal("--bus", "sim:gsd600@1", state=state)
     t.see(r"servoctl sim:gsd600@1> ")
     t.type("use 1\n")
-    t.see(r"node 1> ")
+    t.see(r"node 1 \[pre-operational\]> ")
     t.type("drive gs\t\n")
-    t.see(r"gsd600 ?> ")
+    t.see(r"gsd600 \[pre-operational\]> ")
     t.type("read statusw\t\n")
     t.see(r"0x0270")
     t.type("par\t")
@@ -129,6 +130,47 @@ with tempfile.TemporaryDirectory() as state:
         t.see(r"Pn0214 +速度环增益 1")
         t.type("exit\n")
         expect(f"exit code of exit in {lang}", 0, t.exit_code())
+
+    # Chinese is found in the history, of this run and of the one before; a line is mended in its middle; Tab behind Chinese.
+    t = Terminal("--drive", "gsd600", "--lang", "zh", state=state)
+    t.see(r"> ")
+    t.type("\x12速度环\r")
+    t.see(r"Pn0214 +速度环增益 1")
+    t.see(r"> ")
+    t.type("param search 度环\x1b[D\x1b[D速\r")
+    t.see(r"Pn0214 +速度环增益 1")
+    t.see(r"> ")
+    t.type("param get 速度环 Pn021\t")
+    t.see(r"Pn0214 +速度环增益 1")
+    t.type("\x03")
+    t.see(r"\^C")
+    # What is pasted does not run: it waits for Enter, line by line, and Ctrl-C drops it.
+    t.see(r"> ")
+    t.type("\x1b[200~param explain Pn0214\nnonsense\n\x1b[201~")
+    t.see(r"1 more pasted line waits")
+    t.type("\r")
+    t.see(r"object")
+    t.see(r"> nonsense")
+    t.type("\x03")
+    t.see(r"\^C\s+servoctl gsd600> ")
+    t.type("exit\n")
+    expect("exit code of exit after Chinese", 0, t.exit_code())
+
+    # State and fault stand in the prompt, as they were heard, and nothing is sent for it.
+    trace = os.path.join(state, "trace")
+    t = Terminal("--bus", "sim:gsd600@1?fault=0xFF00@2s", "-n", "1", "-d", "gsd600", "--trace", trace, state=state)
+    t.see(r"\[pre-operational\]> ")
+    t.type("read statusword\n")
+    t.see(r"\[switch on disabled\]> ")
+    t.see(r"\x1b\[1;31mservoctl [^>]*\[EMCY 0xFF00\]> \x1b\[0m", colours=True)
+    t.type("read statusword\n")
+    t.see(r"\[fault[a-z ]*, EMCY 0xFF00\]> ")
+    t.see(r"\[fault[a-z ]*, EMCY 0xFF00\?\]> ")
+    t.type("exit\n")
+    expect("exit code of exit in a fault", 0, t.exit_code())
+    with open(trace, encoding="utf-8") as file:
+        sent = [line for line in file if re.search(r" 601#", line)]
+    expect("requests of two reads", 2, len([line for line in sent if "#404160" in line]))
 
     # History is kept, an emergency is told above the line that is being typed, and the line is kept.
     t = Terminal("--bus", "sim:gsd600@1?fault=0xFF00@1s", state=state)

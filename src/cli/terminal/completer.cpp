@@ -1,18 +1,11 @@
 #include "cli/terminal/completer.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
-#include "base/text.hpp"
-#include "can/socketcan.hpp"
+#include "cli/terminal/candidates.hpp"
 #include "cli/terminal/prompt_words.hpp"
-#include "command/completion_words.hpp"
 #include "command/help_text.hpp"
 #include "command/registry.hpp"
-#include "drive/naming.hpp"
-#include "drive/topics.hpp"
-#include "session/open_port.hpp"
-#include "session/open_register_line.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -21,14 +14,49 @@ using command::Command;
 using command::Kind;
 using command::Parameter;
 
-/// Words typed before the one that is being completed. Quotes are not looked at: no name has a blank in it.
-std::vector<std::string> words_before(std::string_view line, std::string& last) {
-  std::vector<std::string> out;
-  for (const auto part : split(line, ' '))
-    if (!part.empty()) out.emplace_back(part);
-  if (!line.empty() && line.back() != ' ' && !out.empty()) {
-    last = out.back();
-    out.pop_back();
+/// A line of which the last word is not ready.
+struct BegunLine {
+  std::vector<std::string> words;  ///< Those before it.
+  std::string last;
+  std::size_t typed = 0;  ///< Bytes of the last one as it stands there, with quotes.
+};
+
+/// As split_words(), for a line in which a quote may still be open.
+BegunLine begun_line(std::string_view line) {
+  BegunLine out;
+  char quote = 0;
+  bool inside = false;
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (quote == 0 && (c == ' ' || c == '\t')) {
+      if (inside) out.words.push_back(std::move(out.last));
+      out.last.clear();
+      inside = false;
+      continue;
+    }
+    if (!inside) begin = i;
+    inside = true;
+    if (quote != 0 && c == quote)
+      quote = 0;
+    else if (quote == 0 && (c == '"' || c == '\''))
+      quote = c;
+    else if (c == '\\' && quote != '\'' && i + 1 < line.size())
+      out.last += line[++i];
+    else
+      out.last += c;
+  }
+  out.typed = inside ? line.size() - begin : 0;
+  return out;
+}
+
+/// The form in which split_words() reads it as one word.
+std::string as_word(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    if (std::string_view(" \t\"'\\").find(c) != std::string_view::npos || (c == '#' && out.empty()))
+      out += '\\';
+    out += c;
   }
   return out;
 }
@@ -41,178 +69,83 @@ const Parameter* find_option(std::span<const Parameter> parameters, std::string_
   return nullptr;
 }
 
-class Candidates {
- public:
-  Candidates(std::string last, Shell& shell, std::string family)
-      : last_(std::move(last)), shell_(&shell), family_(std::move(family)) {}
-
-  void add(std::string_view word) {
-    if (starts_with_nocase(word, last_) &&
-        std::find(out_.words.begin(), out_.words.end(), word) == out_.words.end())
-      out_.words.emplace_back(word);
-  }
-
-  void add_values(const Parameter& parameter) {
-    for (const auto choice : parameter.choices) add(choice);
-    switch (parameter.kind) {
-      case Kind::object: return add_objects();
-      case Kind::parameter: return add_parameters();
-      case Kind::family: return add_families();
-      case Kind::bus: return add_buses();
-      case Kind::nodes: return add_axes();
-      case Kind::topic: return add_topics();
-      case Kind::file: out_.files = true; return;
-      case Kind::command:
-        for (const auto* command : command::registry()) add(split(command->path, ' ').front());
-        return;
-      default: return;
-    }
-  }
-
-  void add_families() {
-    for (const auto& family : drive::find_families(shell_->drive_folders())) add_name(family.name);
-  }
-  void add_buses() {
-    for (const auto& interface : can::can_interfaces()) add(interface);
-    for (const auto word : {"sim:", "local:", "slcan:/dev/", "socketcand://", "gateway://"}) add(word);
-    for (const auto& url : session::ethercat_urls()) add(url);
-    for (const auto& url : session::modbus_urls()) add(url);
-  }
-
-  void add_axes() {
-    add("all");
-    const auto cabinet = shell_->cabinet(shell_->defaults());
-    if (!cabinet || *cabinet == nullptr) return;
-    for (const auto& name : (*cabinet)->names()) add_name(name);
-  }
-
-  /// What stands before the word, of an argument of several words.
-  void set_before(std::vector<std::string> words) { before_ = std::move(words); }
-
-  Completions take() { return std::move(out_); }
-
- private:
-  /// One that comes from a file.
-  void add_name(std::string_view name) {
-    if (command::can_be_offered(name)) add(name);
-  }
-  const drive::Profile* profile() {
-    if (family_.empty()) return nullptr;
-    const auto loaded = shell_->profile(family_);
-    return loaded ? *loaded : nullptr;
-  }
-  void add_objects() {
-    if (const auto* known = profile())
-      for (const auto& name : drive::names(*known)) add_name(name);
-  }
-  void add_parameters() {
-    if (const auto* known = profile())
-      for (const auto& parameter : known->parameters) add_name(parameter.id);
-  }
-  /// The next word of the names that begin with those before; first also objects and parameters.
-  void add_topics() {
-    const drive::Profile none;
-    const auto* known = profile();
-    const auto topics = drive::load_topics(known == nullptr ? none : *known, shell_->drive_folders());
-    if (!topics) return;
-    for (const auto& topic : *topics) {
-      const auto words = split(std::string_view(topic.name), ' ');
-      if (words.size() > before_.size() &&
-          std::equal(before_.begin(), before_.end(), words.begin(),
-                     [](const std::string& a, std::string_view b) { return equals_nocase(a, b); }))
-        add_name(words[before_.size()]);
-    }
-    if (before_.empty()) add_objects();
-  }
-
-  std::string last_;
-  Shell* shell_;
-  std::string family_;
-  std::vector<std::string> before_;
-  Completions out_;
-};
+const Parameter* find_option(const Command* command, std::string_view word) {
+  const auto* own = command == nullptr ? nullptr : find_option(command->parameters, word);
+  return own != nullptr ? own : find_option(command::global_options(), word);
+}
 
 std::string family_of(const std::vector<std::string>& words, Shell& shell) {
   for (std::size_t i = 0; i + 1 < words.size(); ++i)
     if (words[i] == "-d" || words[i] == "--drive") return words[i + 1];
-  return shell.defaults().drive;
-}
-
-/// First words of the commands, or the second ones when the first is there.
-void add_command_words(Candidates& out, const std::vector<std::string>& words, std::size_t first) {
-  for (const auto* command : command::registry()) {
-    const auto parts = split(command->path, ' ');
-    const auto typed = words.size() - first;
-    if (typed >= parts.size()) continue;
-    bool fits = true;
-    for (std::size_t i = 0; i < typed; ++i) fits = fits && parts[i] == words[first + i];
-    if (fits) out.add(parts[typed]);
-  }
+  return shell.family_in_use();
 }
 
 void add_positional(Candidates& out, const Command& command, const std::vector<std::string>& words,
                     std::size_t at) {
   std::vector<std::string> before;
   for (; at < words.size(); ++at) {
-    const auto* option = find_option(command.parameters, words[at]);
-    if (option == nullptr) option = find_option(command::global_options(), words[at]);
+    const auto* option = find_option(&command, words[at]);
     if (option != nullptr && option->kind != Kind::flag)
       ++at;
     else if (option == nullptr)
       before.push_back(words[at]);
   }
-  const auto place = before.size();
-  out.set_before(std::move(before));
   std::size_t index = 0;
   for (const auto& parameter : command.parameters) {
     if (parameter.name.starts_with("-")) continue;
-    if (index == place || (parameter.many && index <= place)) return out.add_values(parameter);
+    if (index == before.size() || (parameter.many && index <= before.size()))
+      return out.add_values(&command, parameter, before);
     ++index;
   }
 }
 
 bool add_prompt_words(Candidates& out, const std::vector<std::string>& words) {
   if (words.empty()) {
-    for (const auto& word : prompt_words()) out.add(word.name);
+    for (const auto& word : prompt_words()) out.add(word.name, word.help);
     return false;
+  }
+  if (words.size() == 2 && words[0] == "log" && words[1] == "on") {
+    out.add_values(nullptr, {.name = "file", .help = {}, .kind = Kind::file}, {});
+    return true;
   }
   if (words.size() != 1) return false;
   if (words.front() == "drive") out.add_families();
   if (words.front() == "bus") out.add_buses();
-  if (words.front() == "use") out.add_axes();
-  return words.front() == "drive" || words.front() == "use";
+  if (words.front() == "use") out.add_nodes();
+  if (words.front() == "log")
+    for (const auto* word : {"on", "off"}) out.add(word);
+  return words.front() == "drive" || words.front() == "use" || words.front() == "log";
+}
+
+void add_options(Candidates& out, const Command* command) {
+  if (command != nullptr)
+    for (const auto& parameter : command->parameters)
+      if (parameter.name.starts_with("-")) out.add(parameter.name, parameter.help);
+  for (const auto& parameter : command::global_options())
+    if (command == nullptr || !command::has_own(*command, parameter)) out.add(parameter.name, parameter.help);
+}
+
+void add_all(Candidates& out, const std::vector<std::string>& words, const std::string& last) {
+  if (add_prompt_words(out, words)) return;
+  const auto match = match_command(words);
+  const auto* option = words.empty() ? nullptr : find_option(match.command, words.back());
+  if (option != nullptr && option->kind != Kind::flag) return out.add_values(match.command, *option, {});
+  if (!last.empty() && last.front() == '-') add_options(out, match.command);
+  if (match.command == nullptr) return out.add_commands(words, match.first);
+  add_positional(out, *match.command, words, match.first + match.used);
+  // `test` is a command, and the first word of others.
+  if (words.size() == match.first + match.used) out.add_commands(words, match.first);
 }
 
 }  // namespace
 
-Completions complete(std::string_view line, Shell& shell) {
-  std::string last;
-  const auto words = words_before(line, last);
-  Candidates out(last, shell, family_of(words, shell));
-  if (add_prompt_words(out, words)) return out.take();
-  const auto match = match_command(words);
-  const std::span<const Parameter> own =
-      match.command != nullptr ? match.command->parameters : std::span<const Parameter>();
-  if (!words.empty()) {
-    const auto* option = find_option(own, words.back());
-    if (option == nullptr) option = find_option(command::global_options(), words.back());
-    if (option != nullptr && option->kind != Kind::flag) {
-      out.add_values(*option);
-      return out.take();
-    }
-  }
-  if (!last.empty() && last.front() == '-') {
-    for (const auto& parameter : own)
-      if (parameter.name.starts_with("-")) out.add(parameter.name);
-    for (const auto& parameter : command::global_options())
-      if (match.command == nullptr || !command::has_own(*match.command, parameter)) out.add(parameter.name);
-    return out.take();
-  }
-  if (match.command == nullptr)
-    add_command_words(out, words, match.first);
-  else
-    add_positional(out, *match.command, words, match.first + match.used);
-  return out.take();
+Offer complete(std::string_view line, Shell& shell) {
+  const auto begun = begun_line(line);
+  Candidates found(begun.last, shell, family_of(begun.words, shell));
+  add_all(found, begun.words, begun.last);
+  Offer out{.typed = begun.typed, .candidates = found.take(), .note = found.note()};
+  for (auto& one : out.candidates) one.word = as_word(one.word);
+  return out;
 }
 
 }  // namespace servoctl::cli

@@ -126,5 +126,6 @@ Screen::Size StandardConsole::screen_size() const {
 }
 
 std::size_t StandardConsole::width() const { return screen_size().columns; }
+std::size_t StandardConsole::height() const { return screen_size().rows; }
 
 }  // namespace servoctl::cli

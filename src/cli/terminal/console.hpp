@@ -36,16 +36,17 @@ class Console {
   }
   void set_quiet(bool quiet) { quiet_ = quiet; }
   bool is_quiet() const { return quiet_; }
-  /// Empties the line the cursor is in; only where somebody looks.
-  virtual void wipe_line() {}
+  /// Text of the line that is being typed, with what moves the cursor; only where somebody looks.
+  virtual void draw(std::string_view text) { (void)text; }
   /// Shows this line in place of the one shown before; an empty one wipes it. Only where somebody looks.
   virtual void show_progress(std::string_view line) = 0;
   /// Asks a yes-or-no question; false if there is nobody to ask or the answer is no.
   virtual bool ask(std::string_view question) = 0;
   /// Shows the text and waits for Enter; only where can_ask().
   virtual void pause(std::string_view text) = 0;
-  virtual bool can_ask() const = 0;       ///< Whether there is a person at a terminal.
-  virtual std::size_t width() const = 0;  ///< Columns of the terminal text goes to; 0: no terminal.
+  virtual bool can_ask() const = 0;                 ///< Whether there is a person at a terminal.
+  virtual std::size_t width() const = 0;            ///< Columns of the terminal text goes to; 0: no terminal.
+  virtual std::size_t height() const { return 0; }  ///< Rows of it.
   /// The keys of the terminal as they are pressed, until the answer is destroyed; null where there is none.
   virtual std::unique_ptr<command::Keys> open_keys() { return nullptr; }
   /// A table on the terminal, until the answer is destroyed; null where text goes somewhere else.
@@ -79,12 +80,13 @@ class Console {
 /// Standard streams of the process.
 class StandardConsole final : public Console {
  public:
-  void wipe_line() override { write_out("\r\033[K"); }
+  void draw(std::string_view text) override { show(out_, text); }
   void show_progress(std::string_view line) override;
   bool ask(std::string_view question) override;
   void pause(std::string_view text) override;
   bool can_ask() const override;
   std::size_t width() const override;
+  std::size_t height() const override;
   std::unique_ptr<command::Keys> open_keys() override;
   std::unique_ptr<show::LiveView> open_view(const show::LiveView::Layout& layout) override;
   bool output_lost() const override { return write_error() != 0; }

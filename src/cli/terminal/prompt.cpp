@@ -1,121 +1,130 @@
 #include "cli/terminal/prompt.hpp"
 
-#include <editline/readline.h>
-#include <langinfo.h>
 #include <poll.h>
 #include <unistd.h>
 
-#include <fmt/format.h>
-#include <algorithm>
-#include <clocale>
 #include <cstdlib>
-#include <cstring>
+#include <filesystem>
 #include <optional>
+#include <string>
 
-#include "base/file.hpp"
 #include "base/printable.hpp"
-#include "base/signal_wait.hpp"
 #include "cli/line_runner.hpp"
 #include "cli/state_folder.hpp"
 #include "cli/terminal/completer.hpp"
+#include "cli/terminal/line_editor.hpp"
+#include "cli/terminal/line_mode.hpp"
 #include "cli/terminal/prompt_words.hpp"
 #include "cli/terminal/signals.hpp"
 
 namespace servoctl::cli {
 namespace {
 
-constexpr int kHistoryLines = 2000;
-constexpr Duration kLongestWait = std::chrono::minutes(1);
+/// How often what stands in the prompt is looked at, and whose the terminal is.
+constexpr Duration kLook = std::chrono::seconds(1);
+/// Of xterm, DECSET 2004: what is pasted stands between marks.
+constexpr std::string_view kMarkPastes = "\x1B[?2004h";
+constexpr std::string_view kMarkNoPastes = "\x1B[?2004l";
+
+/// Whether the terminal understands more than text.
+bool moves_cursor() {
+  const char* term = std::getenv("TERM");
+  return term != nullptr && *term != '\0' && std::string_view(term) != "dumb";
+}
+
+bool shows_colours() {
+  const char* none = std::getenv("NO_COLOR");
+  return none == nullptr || *none == '\0';
+}
 
 class Prompt {
  public:
-  Prompt(Shell& shell, Console& console) : shell_(&shell), console_(&console), runner_(shell) {
+  Prompt(Shell& shell, Console& console)
+      : shell_(&shell),
+        console_(&console),
+        runner_(shell),
+        editor_(history_,
+                LineEditor::Host{
+                    .size = [this] { return screen_size(); },
+                    .offer = [this](std::string_view before) { return complete(before, *shell_); }}) {
     shell.stay_open(true);
+    if (const auto folder = state_folder(); !folder.empty()) file_ = folder / "history";
+    if (!file_.empty()) history_.load(file_);
   }
   Prompt(const Prompt&) = delete;
   Prompt& operator=(const Prompt&) = delete;
   ~Prompt() {
-    rl_callback_handler_remove();
-    if (!history_.empty()) save_history();
-    active_ = nullptr;
+    rest();
+    // What was typed is worth no word when it cannot be kept.
+    if (!file_.empty()) (void)history_.save(file_);
   }
 
   int run();
 
  private:
-  /// The editor calls back without any argument of ours; only one prompt is active at a time.
-  static Prompt* active_;
-
-  static void on_line(char* line) { active_->take_line(line); }
-  static char** on_complete(const char* text, int start, int end) {
-    return active_->candidates(text, start, end);
-  }
-  static char* next_candidate(const char* text, int state);
-
-  void take_line(char* line);
-  char** candidates(const char* text, int start, int end);
-  void install() {
-    text_ = prompt_text();
-    rl_callback_handler_install(text_.c_str(), on_line);
-  }
-  void save_history() const;
-  std::string prompt_text() const;
+  Screen::Size screen_size() const { return {console_->width(), console_->height()}; }
+  PromptText prompt() const;
+  void begin_line();
+  void rest();
   bool wait_for_key();
-  bool terminal_takes() const;
+  void take_keys();
+  bool key_waits() const;
+  void look();
   void show_notices();
   void drop_line();
+  void run_line();
+  void draw();
 
   Shell* shell_;
   Console* console_;
   LineRunner runner_;
-  std::string text_;
-  std::string history_;
-  Completions completions_;
-  std::size_t next_ = 0;
+  LineHistory history_;
+  LineEditor editor_;
+  LineMode mode_{STDIN_FILENO};
+  std::filesystem::path file_;
+  bool edits_ = moves_cursor();  ///< Else the terminal edits the line, as far as it does.
+  bool colours_ = shows_colours();
+  bool editing_ = false;  ///< A line is being typed.
   bool done_ = false;
-  bool held_ = false;  ///< A key waits, and the terminal takes nothing: the editor would wait for it.
+  bool held_ = false;  ///< A key waits, and the terminal takes nothing: what it shows would be lost.
 };
 
-Prompt* Prompt::active_ = nullptr;
-
-std::string Prompt::prompt_text() const { return printable("servoctl" + place_text(*shell_)) + "> "; }
-
-/// The library writes a file from its beginning: one of ours, which then replaces the other as a whole.
-void Prompt::save_history() const {
-  const auto own = fmt::format("{}.{}", history_, ::getpid());
-  const bool saved = write_history(own.c_str()) == 0;
-  if (const auto lines = saved ? read_file(own) : Result<std::string>(std::string()); saved && lines)
-    // What was typed is worth no word when it cannot be kept.
-    (void)write_file_atomically(history_, *lines);
-  ::unlink(own.c_str());
+/// Red where there are colours.
+PromptText Prompt::prompt() const {
+  auto out = prompt_text(*shell_);
+  out.alarm = out.alarm && colours_;
+  return out;
 }
 
-/// The editor reads characters, not bytes, by the locale; where that knows no UTF-8 (LANG=C), one that does.
-void choose_characters() {
-  const auto* chosen = std::setlocale(LC_CTYPE, "");
-  if (chosen == nullptr || ::nl_langinfo(CODESET) != std::string_view("UTF-8"))
-    (void)std::setlocale(LC_CTYPE, "C.UTF-8");
+void Prompt::draw() {
+  if (edits_) console_->draw(editor_.draw());
+}
+
+void Prompt::begin_line() {
+  editor_.set_prompt(prompt());
+  editor_.begin();
+  editing_ = true;
+  if (!edits_) return console_->out(editor_.prompt().text);
+  mode_.enter();
+  console_->draw(kMarkPastes);
+  draw();
+}
+
+/// The terminal as it was, for whoever uses it next.
+void Prompt::rest() {
+  if (editing_ && edits_) console_->draw(kMarkNoPastes);
+  editing_ = false;
+  mode_.leave();
 }
 
 int Prompt::run() {
-  active_ = this;
-  choose_characters();
-  rl_readline_name = const_cast<char*>("servoctl");  // NOLINT: the library's type is not const.
-  rl_initialize();
-  rl_catch_signals = 0;
-  rl_attempted_completion_function = on_complete;
-  // Names hold points and colons, options dashes: only a blank ends a word.
-  rl_completer_word_break_characters = const_cast<char*>(" \t");  // NOLINT
-  using_history();
-  stifle_history(kHistoryLines);
-  if (const auto folder = state_folder(); !folder.empty()) history_ = (folder / "history").string();
-  if (!history_.empty()) read_history(history_.c_str());
-  install();
+  begin_line();
   while (!done_ && !terminated()) {
     if (interrupted()) drop_line();
-    if (wait_for_key()) rl_callback_read_char();
-    if (!done_) show_notices();
+    if (wait_for_key()) take_keys();
+    if (!done_) look();
   }
+  rest();
   shell_->let_go();
   return terminated() ? exit_code(Errc::interrupted) : 0;
 }
@@ -125,19 +134,53 @@ bool Prompt::wait_for_key() {
   pollfd wanted{STDIN_FILENO, POLLIN, 0};
   if (held_) wanted = {STDOUT_FILENO, POLLOUT, 0};
   const auto lost = [this](const Error& error) {
-    console_->wipe_line();
+    if (edits_) console_->draw(editor_.wipe());
     shell_->report_error(error, false);
-    rl_forced_update_display();
+    draw();
   };
-  if (!shell_->wait_for(wanted, kLongestWait, lost)) return false;
+  if (!shell_->wait_for(wanted, kLook, lost)) return false;
   const bool key = wanted.revents != 0;
-  held_ = key && !terminal_takes();
+  pollfd terminal{STDOUT_FILENO, POLLOUT, 0};
+  held_ = key && ::poll(&terminal, 1, 0) == 0;
   return key && !held_;
 }
 
-bool Prompt::terminal_takes() const {
-  pollfd terminal{STDOUT_FILENO, POLLOUT, 0};
-  return ::poll(&terminal, 1, 0) != 0;
+bool Prompt::key_waits() const {
+  pollfd input{STDIN_FILENO, POLLIN, 0};
+  return ::poll(&input, 1, 0) > 0;
+}
+
+/// All that were typed, but for what comes behind Enter: that is for whoever asks next.
+void Prompt::take_keys() {
+  constexpr int kAtOnce = 4096;
+  for (int i = 0; i < kAtOnce && !done_ && (i == 0 || key_waits()); ++i) {
+    char byte = 0;
+    if (::read(STDIN_FILENO, &byte, 1) != 1) {
+      done_ = !interrupted();
+      break;
+    }
+    const auto step = editor_.take(byte);
+    if (step == LineEditor::Step::end) {
+      if (edits_) console_->draw(editor_.leave());
+      done_ = true;
+    }
+    if (step == LineEditor::Step::line) return run_line();
+  }
+  if (done_) return;
+  draw();
+}
+
+/// What has changed meanwhile.
+void Prompt::look() {
+  if (edits_ && mode_.renew()) {
+    console_->draw(kMarkPastes);
+    draw();
+  }
+  show_notices();
+  if (const auto now = prompt(); edits_ && now != editor_.prompt()) {
+    editor_.set_prompt(now);
+    draw();
+  }
 }
 
 void Prompt::show_notices() {
@@ -146,48 +189,31 @@ void Prompt::show_notices() {
       settings.drive.empty() ? Result<const drive::Profile*>(nullptr) : shell_->profile(settings.drive);
   const auto notices = shell_->take_notices(loaded ? *loaded : nullptr, settings.chinese);
   if (notices.empty()) return;
-  console_->wipe_line();
+  if (edits_) console_->draw(editor_.wipe());
   for (const auto& notice : notices) console_->out("* " + printable(notice) + "\n");
-  rl_forced_update_display();
+  draw();
 }
 
 void Prompt::drop_line() {
   clear_interrupt();
-  rl_callback_handler_remove();
-  console_->out("^C\n");
-  install();
+  if (edits_)
+    console_->draw(editor_.leave("^C"));
+  else
+    console_->out("^C\n");
+  editor_.drop();
+  rest();
+  begin_line();
 }
 
-void Prompt::take_line(char* line) {
-  rl_callback_handler_remove();
-  if (line == nullptr) {
-    console_->out("\n");
-    done_ = true;
-    return;
-  }
-  const std::string text(line);
-  std::free(line);  // NOLINT: allocated by the library.
-  if (text.find_first_not_of(" \t") != std::string::npos) add_history(text.c_str());
+void Prompt::run_line() {
+  const auto text = editor_.text();
+  if (edits_) console_->draw(editor_.leave());
+  rest();
+  if (text.find_first_not_of(' ') != std::string::npos) history_.add(text);
   runner_.run(text);
   clear_interrupt();
   done_ = runner_.wants_exit();
-  if (!done_ && !terminated()) install();
-}
-
-char* Prompt::next_candidate(const char*, int state) {
-  auto& self = *active_;
-  if (state == 0) self.next_ = 0;
-  if (self.next_ >= self.completions_.words.size()) return nullptr;
-  return ::strdup(self.completions_.words[self.next_++].c_str());
-}
-
-char** Prompt::candidates(const char* text, int, int end) {
-  completions_ = complete(std::string_view(rl_line_buffer, static_cast<std::size_t>(end)), *shell_);
-  rl_attempted_completion_over = completions_.files ? 0 : 1;
-  if (completions_.words.empty()) return nullptr;
-  const bool opens = completions_.words.size() == 1 && completions_.words.front().back() == ':';
-  rl_completion_append_character = opens ? 0 : ' ';
-  return rl_completion_matches(text, next_candidate);
+  if (!done_ && !terminated()) begin_line();
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <set>
 #include <span>
 
+#include "base/printable.hpp"
+#include "base/text.hpp"
 #include "command/registry.hpp"
 
 namespace servoctl::cli {
@@ -40,8 +42,15 @@ Result<session::Session*> open_bus(Shell& shell, const Settings& settings) {
   return shell.open(bus == nullptr ? settings : on_bus(**cabinet, settings, *bus).settings);
 }
 
+/// A node, and the bus it is on.
+struct Place {
+  std::string bus;
+  std::uint8_t node = 0;
+  std::string name;
+};
+
 /// Bus and family of the axes, as the file says them; empty where it cannot be used.
-std::string place_of_axes(Shell& shell, const Settings& settings) {
+std::string place_of_axes(Shell& shell, const Settings& settings, std::vector<Place>& places) {
   const auto cabinet = shell.cabinet(settings);
   if (!cabinet || *cabinet == nullptr) return {};
   const auto axes = (*cabinet)->select(settings.nodes);
@@ -49,22 +58,49 @@ std::string place_of_axes(Shell& shell, const Settings& settings) {
   std::set<std::string> buses;
   std::set<std::string> families;
   for (const auto* axis : *axes) {
+    const auto* bus = (*cabinet)->bus(axis->bus);
     buses.insert(axis->bus);
     families.insert(axis->family);
+    if (bus != nullptr) places.push_back({bus->url, axis->node, axis->name});
   }
   return fmt::format(" {} {} {}", fmt::join(buses, ","), settings.nodes, fmt::join(families, ","));
 }
 
+std::string place_of_nodes(Shell& shell, const Settings& settings, std::vector<Place>& places) {
+  std::string out;
+  const auto nodes =
+      settings.nodes.empty() ? Result<std::vector<std::uint8_t>>() : parse_nodes(settings.nodes);
+  if (!settings.bus.empty()) out += " " + settings.bus.substr(0, settings.bus.find('?'));
+  if (!settings.nodes.empty()) out += (nodes ? " node " : " ") + settings.nodes;
+  if (const auto family = shell.family_text(); !family.empty()) out += " " + family;
+  for (const auto node : nodes.value_or(std::vector<std::uint8_t>()))
+    if (node != 0) places.push_back({settings.bus, node, fmt::format("node {}", node)});
+  return out;
+}
+
+/// Of one node its state; of several those that are in fault.
+void add_states(Shell& shell, const std::vector<Place>& places, PromptText& out) {
+  std::string text;
+  for (const auto& place : places) {
+    const auto state = shell.heard_state(place.bus, place.node);
+    out.alarm = out.alarm || state.fault;
+    if (state.text.empty() || (places.size() > 1 && !state.fault)) continue;
+    append(text, (places.size() > 1 ? place.name + " " : "") + state.text + (state.old ? "?" : ""));
+  }
+  if (!text.empty()) out.text += " [" + text + "]";
+}
+
 }  // namespace
 
-std::string place_text(Shell& shell) {
+PromptText prompt_text(Shell& shell) {
   const auto& settings = shell.defaults();
-  if (names_axes(settings.nodes))
-    if (auto text = place_of_axes(shell, settings); !text.empty()) return text;
-  std::string out;
-  if (!settings.bus.empty()) out += " " + settings.bus.substr(0, settings.bus.find('?'));
-  if (!settings.nodes.empty()) out += (parse_nodes(settings.nodes) ? " node " : " ") + settings.nodes;
-  if (!settings.drive.empty()) out += " " + settings.drive;
+  std::vector<Place> places;
+  PromptText out{.text = "servoctl", .alarm = false};
+  std::string place;
+  if (names_axes(settings.nodes)) place = place_of_axes(shell, settings, places);
+  out.text += place.empty() ? place_of_nodes(shell, settings, places) : place;
+  add_states(shell, places, out);
+  out.text = printable(out.text) + "> ";
   return out;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/shell.hpp"
+#include "cli/terminal/line_screen.hpp"
 
 namespace servoctl::cli {
 
@@ -18,9 +19,10 @@ struct PromptWord {
 };
 std::vector<PromptWord> prompt_words();
 
-/// Where lines go that name no place, each word behind a space: bus, node and family; of axes of the cabinet
-/// those of the file.
-std::string place_text(Shell& shell);
+/// Where lines go that name no place, and how it is there: bus, node, family and state; of axes of the
+/// cabinet those of the file. `servoctl can0 node 1 gsd600 [operation enabled]> `. A `?` behind the state:
+/// it was heard some time ago. In red when a node is in fault. Nothing is asked of a drive for it.
+PromptText prompt_text(Shell& shell);
 
 /// Whether the line is `exit` or `quit`.
 bool is_exit(const std::vector<std::string>& words);

@@ -1,0 +1,66 @@
+#include "cli/terminal/candidate_list.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "base/printable.hpp"
+#include "base/text.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+/// Between two columns.
+constexpr std::size_t kGap = 2;
+
+std::size_t widest(std::span<const Candidate> candidates) {
+  std::size_t out = 0;
+  for (const auto& one : candidates) out = std::max(out, display_width(one.word));
+  return out;
+}
+
+std::vector<std::string> rows_with_hints(std::span<const Candidate> candidates, std::size_t columns) {
+  const auto width = std::min(widest(candidates), columns / 2);
+  std::vector<std::string> out;
+  for (const auto& one : candidates)
+    out.push_back(clip(one.hint.empty() ? printable(one.word)
+                                        : pad_right(printable(one.word), width + kGap) + printable(one.hint),
+                       columns - 1));
+  return out;
+}
+
+}  // namespace
+
+std::string common_beginning(std::span<const Candidate> candidates) {
+  if (candidates.empty()) return {};
+  std::string out = candidates.front().word;
+  for (const auto& one : candidates)
+    while (!starts_with_nocase(one.word, out)) out.pop_back();
+  // Not in the middle of a character.
+  const auto& first = candidates.front().word;
+  while (!out.empty() && out.size() < first.size() &&
+         (static_cast<unsigned char>(first[out.size()]) & 0xC0U) == 0x80)
+    out.pop_back();
+  return out;
+}
+
+std::vector<std::string> candidate_rows(std::span<const Candidate> candidates, std::size_t columns,
+                                        std::size_t rows) {
+  if (candidates.empty() || rows == 0 || columns < 4) return {};
+  const bool hints =
+      std::any_of(candidates.begin(), candidates.end(), [](const auto& one) { return !one.hint.empty(); });
+  if (hints && candidates.size() <= rows) return rows_with_hints(candidates, columns);
+  const auto width = std::min(widest(candidates) + kGap, columns - 1);
+  const auto across = std::max<std::size_t>(1, (columns - 1) / width);
+  const bool all = candidates.size() <= across * rows;
+  const auto shown = all ? candidates.size() : across * (rows - 1);
+  const auto down = (shown + across - 1) / across;
+  std::vector<std::string> out(down);
+  for (std::size_t i = 0; i < shown; ++i)
+    out[i % down] += pad_right(clip(printable(candidates[i].word), width), width);
+  if (!all)
+    out.push_back(
+        clip(fmt::format("... {} more: type another letter", candidates.size() - shown), columns - 1));
+  return out;
+}
+
+}  // namespace servoctl::cli

@@ -1,0 +1,159 @@
+// Names and values of objects and panel parameters, as the data of the family has them.
+#include <fmt/format.h>
+#include <algorithm>
+#include <array>
+
+#include "base/text.hpp"
+#include "cli/terminal/candidates.hpp"
+#include "drive/naming.hpp"
+#include "drive/quantity.hpp"
+#include "drive/standard_objects.hpp"
+#include "drive/unit.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+/// Which object a value of a command goes to.
+struct ValueOfCommand {
+  std::string_view path;
+  std::string_view parameter;
+  std::string_view object;
+};
+constexpr std::array kValuesOfCommands{
+    ValueOfCommand{"mode", "mode", "6060h"},        ValueOfCommand{"home", "method", "6098h"},
+    ValueOfCommand{"test home", "method", "6098h"}, ValueOfCommand{"home", "--speed", "6099h.1"},
+    ValueOfCommand{"home", "--search", "6099h.2"},  ValueOfCommand{"home", "--offset", "607Ch"},
+    ValueOfCommand{"jog", "speed", "60FFh"},        ValueOfCommand{"test jog", "speed", "60FFh"},
+    ValueOfCommand{"test all", "speed", "60FFh"},   ValueOfCommand{"move", "target", "607Ah"},
+    ValueOfCommand{"move", "--speed", "6081h"},     ValueOfCommand{"torque", "torque", "6071h"}};
+
+constexpr std::array kUnitNames{"us",    "ms",    "s",     "min",   "deg",    "rad",    "rev", "rpm",
+                                "rev/s", "rad/s", "deg/s", "rpm/s", "rev/s2", "rad/s2", "%",   "Hz",
+                                "kHz",   "V",     "mV",    "A",     "mA",     "Nm",     "mNm"};
+/// Of axes whose units the drive's own gear tells.
+constexpr std::array kPositionUnits{"rev", "deg", "rad"};
+constexpr std::array kSpeedUnits{"rpm", "rev/s", "deg/s", "rad/s"};
+
+const std::string& name_in(bool chinese, const std::string& name, const std::string& name_zh) {
+  return chinese && !name_zh.empty() ? name_zh : name;
+}
+
+std::string address_of(ObjectAddress address, bool plain) {
+  return plain ? fmt::format("0x{:04X}", address.index) : to_string(address);
+}
+
+bool begins_as_number(std::string_view text) {
+  return !text.empty() &&
+         (text.front() == '-' || text.front() == '.' || (text.front() >= '0' && text.front() <= '9'));
+}
+
+std::string range_of(const drive::Meaning& meaning) {
+  auto out = drive::range_text(meaning);
+  if (!meaning.unit.empty()) out += (out.empty() ? "" : " ") + std::string(meaning.unit);
+  return out;
+}
+
+}  // namespace
+
+void Candidates::add_objects() {
+  const auto* known = profile();
+  if (known == nullptr) return;
+  if (begins_as_number(begun_)) return add_addresses();
+  add_panel_parameters();
+  for (const auto& object : known->dictionary.objects())
+    for (const auto& entry : object.entries)
+      if (known->parameter(entry.address) == nullptr)
+        add(drive::entry_name(object, entry),
+            address_of(entry.address, object.entries.size() == 1) + (chinese_ ? " " + entry.name_zh : ""));
+}
+
+void Candidates::add_addresses() {
+  for (const auto& object : profile()->dictionary.objects())
+    for (const auto& entry : object.entries)
+      add(address_of(entry.address, object.entries.size() == 1),
+          name_in(chinese_, object.entries.size() == 1 ? object.name : object.name + ": " + entry.name,
+                  entry.name_zh));
+}
+
+void Candidates::add_panel_parameters() {
+  const auto* known = profile();
+  if (known == nullptr) return;
+  for (const auto& parameter : known->parameters)
+    add(parameter.id, name_in(chinese_, parameter.name, parameter.name_zh));
+}
+
+/// `ID VALUE`, or `ID=VALUE` as often as one likes.
+void Candidates::add_assignment(const std::vector<std::string>& before) {
+  if (before.size() == 1 && before.front().find('=') == std::string::npos)
+    return add_values_of(before.front());
+  const auto equals = begun_.find('=');
+  if (equals == std::string::npos) return add_panel_parameters();
+  const auto id = begun_.substr(0, equals);
+  Candidates value(begun_.substr(equals + 1), *shell_, family_);
+  value.add_values_of(id);
+  for (const auto& one : value.take()) add(id + "=" + one.word, one.hint);
+}
+
+void Candidates::add_values_of(std::string_view object) {
+  const auto* known = profile();
+  const auto target = drive::resolve(known, object);
+  if (known == nullptr || !target) return;
+  const auto meaning = drive::meaning(*target, 0);
+  if (begins_as_number(begun_)) {
+    if (meaning.labels != nullptr)
+      for (const auto& label : *meaning.labels)
+        add(std::to_string(label.value), name_in(chinese_, label.label, label.label_zh));
+    return add_units(meaning.unit);
+  }
+  if (meaning.labels != nullptr) {
+    for (const auto& label : *meaning.labels) {
+      const auto words = drive::label_words(label.label);
+      // The shortest stands for all, as in `pv`.
+      const auto word =
+          *std::min_element(words.begin(), words.end(), [](auto a, auto b) { return a.size() < b.size(); });
+      const bool first = drive::find_label(meaning, word) == &label;
+      add(chinese_ && !label.label_zh.empty() ? std::string_view(label.label_zh)
+          : first                             ? word
+                                              : label.label,
+          fmt::format("{} {}", label.value, name_in(chinese_, label.label, label.label_zh)));
+      add(std::to_string(label.value), name_in(chinese_, label.label, label.label_zh));
+    }
+    return;
+  }
+  // A number is up to the user.
+  note_ = range_of(meaning);
+  const auto* parameter = target->parameter;
+  if (parameter != nullptr && parameter->default_value)
+    append(note_, "default " + od::to_string(*parameter->default_value));
+}
+
+/// The number that was begun, in the units that it may be written in.
+void Candidates::add_units(std::string_view of) {
+  const auto digits = begun_.find_first_not_of("-+.0123456789");
+  const auto number = begun_.substr(0, digits);
+  if (number.empty() || begun_.starts_with("0x")) return;
+  for (const auto* unit : kUnitNames)
+    if (of == unit || drive::conversion(unit, of)) add(number + unit);
+}
+
+/// Words that no kind tells: those of modes, methods, units, PDOs, bitrates.
+void Candidates::add_known_word(const command::Command& command, const command::Parameter& parameter) {
+  if (parameter.name == "pdo")
+    for (const auto* side : {"RPDO", "TPDO"})
+      for (int i = 1; i <= 4; ++i) add(fmt::format("{}{}", side, i));
+  if (parameter.name == "--bitrate")
+    for (const auto* rate : {"125k", "250k", "500k", "1M"}) add(rate);
+  for (const auto& value : kValuesOfCommands) {
+    if (value.path != command.path || value.parameter != parameter.name) continue;
+    add_values_of(value.object);
+    if (!begins_as_number(begun_)) continue;
+    const auto number = begun_.substr(0, begun_.find_first_not_of("-+.0123456789"));
+    if (value.object == "607Ah" || value.object == "607Ch")
+      for (const auto* unit : kPositionUnits) add(number + unit);
+    if (value.object == "60FFh" || value.object == "6081h" || value.object.starts_with("6099h"))
+      for (const auto* unit : kSpeedUnits) add(number + unit);
+    if (value.object == "6071h") add(number + "%");
+  }
+}
+
+}  // namespace servoctl::cli
