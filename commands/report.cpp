@@ -5,6 +5,7 @@
 #include "base/calendar.hpp"
 #include "base/file.hpp"
 #include "base/text.hpp"
+#include "base/version.hpp"
 #include "cabinet/cabinet.hpp"
 #include "command/command.hpp"
 #include "command/output_form.hpp"
@@ -98,7 +99,7 @@ class Collection {
     const auto& rules = context_->profile->rules;
     const auto& name = context_->chinese && !rules.name_zh.empty() ? rules.name_zh : rules.name;
     out_.head = {{"time", time, Show::everywhere, say("made at", "生成时间")},
-                 {"tool", "servoctl " SERVOCTL_VERSION, Show::everywhere, say("made with", "生成工具")},
+                 {"tool", fmt::format("servoctl {}", version()), Show::everywhere, say("made with", "生成工具")},
                  {"bus", context_->session->url(), Show::everywhere, say("bus", "总线")},
                  {"family", fmt::format("{} ({} {})", context_->profile->family, rules.vendor, name),
                   Show::text, say("drive family", "驱动器系列")},

@@ -86,7 +86,7 @@ const std::set<std::string_view> kQuiet{"objects",      "param list",    "param 
                                         "run",          "sim",           "help",         "completion",
                                         "units forget", "cabinet check", "bus status",   "bus up",
                                         "bus down",     "bus detect",    "doctor",       "gateway",
-                                        "explain"};
+                                        "explain",      "man"};
 
 /// Held against the family that the cabinet file names, see tests/cabinet.
 const std::set<std::string_view> kByFile{"cabinet init",   "cabinet show", "cabinet plan", "cabinet apply",
