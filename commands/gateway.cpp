@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <set>
 
+#include "base/version.hpp"
 #include "command/command.hpp"
 #include "motion/abandoned.hpp"
 #include "session/serve_gateway.hpp"
@@ -10,7 +11,6 @@ namespace {
 
 using namespace command;
 
-constexpr std::string_view kVersion = SERVOCTL_VERSION;
 constexpr std::string_view kAllowed[] = {"write"};
 
 constexpr Parameter kParameters[] = {
@@ -50,11 +50,16 @@ void stop_and_tell(Context& context, const std::set<std::uint8_t>& nodes) {
     context.tell("error: " + context.errors[at].message + "\n");
 }
 
+/// `0.1` of 0.1.0: all that `info version` has room for.
+std::string two_numbers(std::string_view number) {
+  return std::string(number.substr(0, number.find('.', number.find('.') + 1)));
+}
+
 Result<void> serve(Context& context, gateway::Listener& listener, bool writes) {
   session::GatewayServer server(
       *context.session,
       {.writes = writes,
-       .version = std::string(kVersion.substr(0, kVersion.rfind('.'))),
+       .version = two_numbers(version()),
        .tell = [&](std::string_view line) { context.tell(fmt::format("notice: {}\n", line)); },
        .stop = [&](const auto& nodes) { stop_and_tell(context, nodes); }});
   auto served = session::serve_gateway(*context.session, listener, server);

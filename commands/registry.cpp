@@ -106,6 +106,7 @@ extern const Command kRun;
 extern const Command kSim;
 extern const Command kGateway;
 extern const Command kHelp;
+extern const Command kMan;
 extern const Command kCompletion;
 
 }  // namespace commands
@@ -217,6 +218,7 @@ constexpr Named kNamed[] = {
     {"sim", &commands::kSim},
     {"gateway", &commands::kGateway},
     {"help", &commands::kHelp},
+    {"man", &commands::kMan},
     {"completion", &commands::kCompletion},
 };
 constexpr auto kAll = [] {

@@ -5,6 +5,7 @@
 #include "base/calendar.hpp"
 #include "base/file.hpp"
 #include "base/text.hpp"
+#include "base/version.hpp"
 #include "cabinet/cabinet.hpp"
 #include "command/command.hpp"
 #include "command/output_form.hpp"
@@ -97,14 +98,15 @@ class Collection {
     if (answered_ == 0) return fail(std::exchange(context_->errors, {}).front());
     const auto& rules = context_->profile->rules;
     const auto& name = context_->chinese && !rules.name_zh.empty() ? rules.name_zh : rules.name;
-    out_.head = {{"time", time, Show::everywhere, say("made at", "生成时间")},
-                 {"tool", "servoctl " SERVOCTL_VERSION, Show::everywhere, say("made with", "生成工具")},
-                 {"bus", context_->session->url(), Show::everywhere, say("bus", "总线")},
-                 {"family", fmt::format("{} ({} {})", context_->profile->family, rules.vendor, name),
-                  Show::text, say("drive family", "驱动器系列")},
-                 {"family", context_->profile->family, Show::json},
-                 {"tests_text", tests_text(), Show::text, say("tests", "测试")},
-                 {"tests_passed", failed_ == 0, Show::json}};
+    out_.head = {
+        {"time", time, Show::everywhere, say("made at", "生成时间")},
+        {"tool", fmt::format("servoctl {}", version()), Show::everywhere, say("made with", "生成工具")},
+        {"bus", context_->session->url(), Show::everywhere, say("bus", "总线")},
+        {"family", fmt::format("{} ({} {})", context_->profile->family, rules.vendor, name), Show::text,
+         say("drive family", "驱动器系列")},
+        {"family", context_->profile->family, Show::json},
+        {"tests_text", tests_text(), Show::text, say("tests", "测试")},
+        {"tests_passed", failed_ == 0, Show::json}};
     return std::move(out_);
   }
 

@@ -97,7 +97,7 @@ _servoctl_scan() {
     return
   fi
   case $command in
-    '') source='=scan bus doctor info status read write explain objects param backup cabinet diff verify restore clone address lss store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim gateway help completion' ;;
+    '') source='=scan bus doctor info status read write explain objects param backup cabinet diff verify restore clone address lss store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim gateway help man completion' ;;
     bus) source='=status up down detect' ;;
     param) source='=list get set search explain' ;;
     cabinet) source='=init check show plan apply backup swap diff' ;;
@@ -168,7 +168,7 @@ _servoctl_scan() {
     'eds check') source='files' ;;
     'run') source='files' ;;
     'sim') source='none' ;;
-    'help') source='=scan bus doctor info status read write explain objects param backup cabinet diff verify restore clone address lss store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim gateway help completion' ;;
+    'help') source='=scan bus doctor info status read write explain objects param backup cabinet diff verify restore clone address lss store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim gateway help man completion' ;;
     'completion') source='=bash zsh fish objects parameters topics families' ;;
   esac
   case $command in

@@ -19,7 +19,7 @@ function(servoctl_tests layer)
   add_executable(${layer}_tests ${sources})
   target_link_libraries(${layer}_tests PRIVATE ${ARGN} servoctl_options fmt::fmt GTest::gtest GTest::gtest_main ${rapidcheck_library})
   target_include_directories(${layer}_tests PRIVATE ${CMAKE_SOURCE_DIR})
-  target_link_libraries(${layer}_tests PRIVATE servoctl_source_dir)
+  target_link_libraries(${layer}_tests PRIVATE servoctl_source_dir servoctl_fixed_version)
   servoctl_unity(${layer}_tests)
   if(SERVOCTL_PCH AND layer STREQUAL "base")
     target_precompile_headers(base_tests PRIVATE <algorithm> <chrono> <filesystem> <functional> <map> <memory> <optional> <span>

@@ -12,6 +12,7 @@
 
 #include "base/printable.hpp"
 #include "base/standard_input.hpp"
+#include "base/version.hpp"
 #include "cli/batch/batch_command.hpp"
 #include "cli/batch/input_lines.hpp"
 #include "cli/line_runner.hpp"
@@ -92,7 +93,7 @@ int run(const std::vector<std::string>& words, StandardConsole& console) {
   options.cancelled = interrupted;
   Shell shell(console, std::move(options));
   if (words.size() == 1 && words.front() == "--version") {
-    console.out("servoctl " SERVOCTL_VERSION "\n");
+    console.out(fmt::format("servoctl {}\n", version()));
     return 0;
   }
   install_signal_handlers();

@@ -21,7 +21,7 @@ std::string option_words(const Parameter& parameter) {
   std::string out =
       parameter.short_name.empty() ? std::string("    ") : std::string(parameter.short_name) + ", ";
   out += parameter.name;
-  if (parameter.kind != Kind::flag) out += " " + upper(parameter.name.substr(2));
+  if (parameter.kind != Kind::flag) out += " " + value_word(parameter);
   return out;
 }
 
@@ -29,7 +29,7 @@ std::string rows(std::span<const Parameter> parameters, bool options, std::size_
   std::string out;
   for (const auto& parameter : parameters) {
     if (parameter.name.starts_with("-") != options) continue;
-    const auto left = options ? option_words(parameter) : upper(parameter.name);
+    const auto left = options ? option_words(parameter) : value_word(parameter);
     out += "  " + pad_right(left, 22) + " " + wrapped(parameter.help, 25, width) + "\n";
   }
   return out;
@@ -75,13 +75,17 @@ std::string program_help(std::size_t width) {
 
 }  // namespace
 
+std::string value_word(const Parameter& parameter) {
+  return upper(parameter.name.substr(parameter.name.starts_with("--") ? 2 : 0));
+}
+
 std::string usage_line(std::string_view path) {
   const auto* command = find_command(path);
   std::string out(path);
   if (command == nullptr) return out;
   for (const auto& parameter : command->parameters) {
     if (parameter.name.starts_with("-")) continue;
-    const auto word = upper(parameter.name) + (parameter.many ? "…" : "");
+    const auto word = value_word(parameter) + (parameter.many ? "…" : "");
     out += parameter.required ? " " + word : " [" + word + "]";
   }
   return out + " [OPTIONS]";

@@ -15,6 +15,9 @@ Result<std::string> help_text(std::string_view path, std::size_t width);
 /// Whether the command reads this option itself although every command has one of the name.
 bool has_own(const Command& command, const Parameter& global);
 
+/// `OBJECT`: what stands for the value of an option or for a positional word.
+std::string value_word(const Parameter& parameter);
+
 /// `param set ASSIGNMENT… [options]`: how the command is written.
 std::string usage_line(std::string_view path);
 

@@ -8,6 +8,7 @@
 #include "base/calendar.hpp"
 #include "base/file.hpp"
 #include "base/text.hpp"
+#include "base/version.hpp"
 #include "drive/standard_objects.hpp"
 #include "od/data_sheet.hpp"
 #include "od/eds_section.hpp"
@@ -162,7 +163,7 @@ Backup make_backup(const show::Desk& desk, const session::Snapshot& snapshot) {
   Backup out;
   out.proven = true;
   out.family = desk.profile->family;
-  out.tool = "servoctl " SERVOCTL_VERSION;
+  out.tool = fmt::format("servoctl {}", version());
   out.time = utc_now_text();
   out.bus = desk.session->url();
   out.identity = snapshot.identity;

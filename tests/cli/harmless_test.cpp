@@ -121,6 +121,7 @@ const std::map<std::string, std::string> kSamples{
     {"sim", "sim FAMILY@3"},
     {"gateway", "gateway --listen DIR/gateway --allow write -y"},
     {"help", "help jog"},
+    {"man", "man"},
     {"completion", "completion bash"},
 };
 
