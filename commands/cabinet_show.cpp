@@ -43,9 +43,10 @@ std::string mode_text(const AxisState& look) {
 }
 
 std::string fault_text(const AxisState& look) {
-  if (!look.fault) return "-";
   constexpr std::size_t kWords = 26;
-  return *look.fault == 0 ? "none" : fmt::format("0x{:04X} {}", *look.fault, clip(look.fault_text, kWords));
+  const auto cell = look.told_fault.cell(kWords);
+  const auto* text = std::get_if<std::string>(&cell.data());
+  return text == nullptr ? "-" : *text;
 }
 
 std::string position_text(const AxisState& look) {
@@ -109,7 +110,7 @@ Record record_of(const AxisState& look, const Differences& differences) {
           {"energised", look.state ? Value(drive::is_energised(*look.state)) : Value()},
           {"mode", or_null(look.mode)},
           {"fault", or_null(look.fault)},
-          {"fault_text", report::text_or_null(look.fault_text)},
+          {"fault_text", report::text_or_null(look.told_fault.text)},
           {"position", position},
           {"different", or_null(differences.of(look))},
           {"error", look.error ? show::error_record(*look.error) : Value()}};

@@ -102,6 +102,17 @@ void add_drive_state(Record& out, const Context& context, std::optional<std::uin
   out.push_back({"bits", std::move(bits), Show::everywhere, "statusword bits"});
 }
 
+/// In the short form.
+constexpr std::size_t kFaultWords = 30;
+
+show::ToldFault fault_of(const Context& context, std::span<const Result<Bytes>> answers) {
+  const auto word = [&](std::size_t i) {
+    const auto number = session::number_in(answers[i]);
+    return number ? std::optional(static_cast<std::uint16_t>(*number)) : std::nullopt;
+  };
+  return show::told_fault(context.profile, context.chinese, word(2), word(0));
+}
+
 void add_mode_and_fault(Record& out, const Context& context, std::span<const Result<Bytes>> answers) {
   if (const auto mode = session::number_in(answers[1])) {
     const auto value = static_cast<std::int8_t>(*mode);
@@ -112,15 +123,9 @@ void add_mode_and_fault(Record& out, const Context& context, std::span<const Res
   } else {
     out.push_back({"mode", Value(), Show::json});
   }
-  if (const auto code = session::number_in(answers[2])) {
-    const auto text = show::fault_words(context.profile, context.chinese, static_cast<std::uint16_t>(*code));
-    out.push_back(
-        {"fault", *code == 0 ? std::string("none") : fmt::format("0x{:04X} {}", *code, text), Show::text});
-    out.push_back(
-        {"fault", *code == 0 ? Value() : Value(Record{{"code", *code}, {"text", text}}), Show::json});
-  } else {
-    out.push_back({"fault", Value(), Show::json});
-  }
+  const auto fault = fault_of(context, answers);
+  if (fault.known) out.push_back({"fault", fault.cell(std::string::npos), Show::text});
+  out.push_back({"fault", fault.record(), Show::json});
   if (const auto bits = session::number_in(answers[3])) {
     const auto text = canopen::error_register_text(static_cast<std::uint8_t>(*bits));
     out.push_back({"error_register", fmt::format("0x{:02X} {}", *bits, text), Show::text, "error register"});
@@ -183,15 +188,6 @@ Record one(Context& context, std::uint8_t node, std::span<const Result<Bytes>> a
   return out;
 }
 
-Value fault_cell(const Context& context, const Result<Bytes>& answer) {
-  const auto code = session::number_in(answer);
-  if (!code) return {};
-  if (*code == 0) return "none";
-  constexpr std::size_t kWords = 30;
-  const auto words = show::fault_words(context.profile, context.chinese, static_cast<std::uint16_t>(*code));
-  return fmt::format("0x{:04X} {}", *code, clip(words, kWords));
-}
-
 Value mode_cell(const Context& context, const Result<Bytes>& answer) {
   const auto number = session::number_in(answer);
   if (!number) return {};
@@ -228,7 +224,7 @@ List overview_row(const Context& context, std::uint8_t node, std::span<const Res
     state = context.chinese ? drive::name_zh(decoded) : drive::name(decoded);
   }
   return {node, network_cell(context, node), std::move(state), mode_cell(context, answers[1]),
-          fault_cell(context, answers[2])};
+          fault_of(context, answers).cell(kFaultWords)};
 }
 
 Result<report::Value> run(Context& context, const Arguments& arguments) {

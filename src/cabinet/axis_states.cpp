@@ -72,10 +72,9 @@ void AxisStates::take(AxisState& look, session::Session& session, std::span<cons
     look.mode = static_cast<std::int8_t>(*mode);
     look.mode_word = drive::mode_word(known.profile, *look.mode, desk_->chinese);
   }
-  if (const auto code = session::number_in(answers[2])) {
-    look.fault = static_cast<std::uint16_t>(*code);
-    if (*code != 0) look.fault_text = show::fault_words(known.profile, desk_->chinese, *look.fault);
-  }
+  if (const auto code = session::number_in(answers[2])) look.fault = static_cast<std::uint16_t>(*code);
+  look.told_fault =
+      show::told_fault(known.profile, desk_->chinese, look.fault, static_cast<std::uint16_t>(load_le(*word)));
   if (!answers[3] || known.units == nullptr) return;
   look.position = known.units->physical(objects::kPositionActual, *answers[3]);
   if (!look.position) return;

@@ -12,6 +12,7 @@
 #include "drive/cia402.hpp"
 #include "motion/motion_units.hpp"
 #include "show/desk.hpp"
+#include "show/fault_records.hpp"
 
 namespace servoctl::cabinet {
 
@@ -23,7 +24,7 @@ struct AxisState {
   std::optional<std::int8_t> mode;
   std::string mode_word;                     ///< As drive::mode_word().
   std::optional<std::uint16_t> fault;        ///< 603Fh; 0: none.
-  std::string fault_text;                    ///< In words; empty without fault.
+  show::ToldFault told_fault;                ///< The same in words, and by the state.
   std::optional<motion::Physical> position;  ///< Of the load, where the file says what it moves.
   std::optional<Error> error;                ///< Why nothing is known of it.
 };

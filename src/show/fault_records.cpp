@@ -4,6 +4,7 @@
 
 #include "base/text.hpp"
 #include "canopen/emergency.hpp"
+#include "drive/cia402.hpp"
 #include "show/records.hpp"
 
 namespace servoctl::show {
@@ -92,6 +93,31 @@ std::string fault_words(const drive::Profile* profile, bool chinese, std::uint16
   for (const auto* fault : found)
     append(panels, (fault->panel.empty() ? name_of(*fault, chinese) : fault->panel));
   return fmt::format("one of {} alarms: {}", found.size(), panels);
+}
+
+report::Value ToldFault::cell(std::size_t most) const {
+  if (!known) return {};
+  if (text.empty()) return "none";
+  if (!code) return "in fault, no code";
+  const auto number = fmt::format("0x{:04X}", *code);
+  return most == 0 ? number : number + " " + clip(text, most);
+}
+
+report::Value ToldFault::record() const {
+  if (text.empty()) return {};
+  return report::Record{{"code", code ? report::Value(*code) : report::Value()}, {"text", text}};
+}
+
+ToldFault told_fault(const drive::Profile* profile, bool chinese, std::optional<std::uint16_t> code,
+                     std::optional<std::uint16_t> statusword) {
+  const auto state = statusword ? std::optional(drive::decode_state(*statusword)) : std::nullopt;
+  const bool in_fault =
+      state == drive::DriveState::fault || state == drive::DriveState::fault_reaction_active;
+  if (code.value_or(0) != 0) return {true, code, fault_words(profile, chinese, *code)};
+  if (in_fault)
+    return {true, std::nullopt,
+            chinese ? "处于故障状态，无故障代码" : "the drive is in fault and tells no code (603Fh)"};
+  return {.known = code.has_value()};
 }
 
 }  // namespace servoctl::show

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -24,5 +25,21 @@ inline constexpr std::size_t kFewFaults = 3;
 /// Err-9, Err-15, …` where several share it, else the class of CiA 301. `profile` may be null.
 std::string fault_words(const drive::Profile* profile, bool chinese, std::uint16_t code,
                         const std::array<std::uint8_t, 5>& vendor = {});
+
+/// What a drive says of its fault, by 603Fh and the statusword; either may be unknown.
+struct ToldFault {
+  bool known = false;                 ///< Whether anything tells it.
+  std::optional<std::uint16_t> code;  ///< Of 603Fh, where that has one.
+  std::string text;                   ///< In words; empty where there is no fault.
+
+  /// `none`, `0x7300 Overspeed` cut to `most` columns of words (0: without), `in fault, no code`; nothing where nothing
+  /// tells it.
+  report::Value cell(std::size_t most) const;
+  /// `code` and `text`; null where there is no fault, or nothing tells it. `code` is null where the drive is in
+  /// fault and has no code to tell.
+  report::Value record() const;
+};
+ToldFault told_fault(const drive::Profile* profile, bool chinese, std::optional<std::uint16_t> code,
+                     std::optional<std::uint16_t> statusword);
 
 }  // namespace servoctl::show

@@ -58,18 +58,14 @@ void add_condition_columns(bool in_full, report::Table& table) {
 void add_condition(const Desk& desk, const Condition& condition, bool in_full, report::List& row) {
   const auto state =
       condition.statusword ? std::optional(drive::decode_state(*condition.statusword)) : std::nullopt;
-  const auto words = condition.fault.value_or(0) == 0
-                         ? std::string()
-                         : fault_words(desk.profile, desk.chinese, *condition.fault);
+  const auto fault = told_fault(desk.profile, desk.chinese, condition.fault, condition.statusword);
   if (!in_full) {
     row.push_back(!state ? Value() : Value(desk.chinese ? drive::name_zh(*state) : drive::name(*state)));
-    row.push_back(!condition.fault        ? Value()
-                  : *condition.fault == 0 ? Value("none")
-                                          : Value(fmt::format("0x{:04X}", *condition.fault)));
+    row.push_back(fault.cell(0));
   }
   row.push_back(state ? Value(drive::name(*state)) : Value());
   row.push_back(condition.statusword ? Value(*condition.statusword) : Value());
-  row.push_back(words.empty() ? Value() : Value(report::Record{{"code", *condition.fault}, {"text", words}}));
+  row.push_back(fault.record());
 }
 
 report::Table identity_table(const Desk& desk, std::span<const session::Identity> nodes,
