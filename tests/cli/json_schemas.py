@@ -91,6 +91,7 @@ class Schemas:
             self.used.update(validator.schema["places"])
             self.note(validator, validator.schema, document)
             return []
+        error = in_the_nearest_form(error)
         where = "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in error.absolute_path)
         return [f"{where or 'the document'}: {error.message[:300]}"]
 
@@ -125,6 +126,18 @@ class Schemas:
         for file in self.files:
             out += [place for place in choices(file, "", self.files[file]) if place not in self.used]
         return out
+
+
+def in_the_nearest_form(error):
+    """What is wrong with a document of several forms: said of the form it is nearest to."""
+    while error.context:
+        forms = {}
+        for each in error.context:
+            forms.setdefault(each.schema_path[0], []).append(each)
+        # A form of another type is far away, however little is wrong.
+        far = max(len(each.absolute_path) for each in error.context)
+        error = min(forms.values(), key=lambda errors: (far - max(len(e.absolute_path) for e in errors), len(errors)))[0]
+    return error
 
 
 def strays(schema):

@@ -215,7 +215,7 @@ with tempfile.TemporaryDirectory() as home:
         with open(os.path.join(home, title), "w", encoding="utf-8") as out:
             out.write(content)
     ran = check_lines(home, environment(home))
-    check_until_ended(["sim", "gsd600@1", "-b", "local:json-schemas-sim"], environment(home))
+    check_until_ended(["sim", "gsd600@1", "-b", f"local:json-schemas-{os.getpid()}"], environment(home))
     check_until_ended(["gateway", "--listen", os.path.join(home, "socket"), "-b", "sim:gsd600@1"], environment(home))
 check_coverage()
 for text in problems[:60]:
