@@ -15,7 +15,7 @@ configure_file(${from}/lintian-overrides ${share}/lintian/overrides/servoctl COP
 execute_process(COMMAND env LC_ALL=C date -R -u -d ${CPACK_SERVOCTL_DATE} OUTPUT_VARIABLE day OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
 file(WRITE ${doc}/changelog.Debian "servoctl (${CPACK_PACKAGE_VERSION}-1) unstable; urgency=medium
 
-  * Built from the sources of servoctl ${CPACK_PACKAGE_VERSION}; changelog.gz says what is new.
+  * servoctl ${CPACK_PACKAGE_VERSION}; changelog.gz says what is new.
 
  -- ${CPACK_PACKAGE_CONTACT}  ${day}
 ")

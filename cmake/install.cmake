@@ -40,15 +40,20 @@ set(CPACK_PACKAGE_NAME servoctl)
 set(CPACK_PACKAGE_VENDOR "The servoctl developers")
 set(CPACK_PACKAGE_CONTACT "${SERVOCTL_MAINTAINER}")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "commission CANopen servo drives from a terminal")
-set(CPACK_PACKAGE_DESCRIPTION "servoctl finds and identifies the servo drives on a bus (CANopen on CAN, CANopen over EtherCAT, Modbus), reads and changes
-their parameters by the numbers of their manuals, shows states and faults, saves, compares and restores settings, maps PDOs and turns motors
-for a test: by single commands, at a prompt, and in scripts. Simulated drives come with it.")
+set(CPACK_PACKAGE_DESCRIPTION "servoctl finds and identifies the servo drives on a bus (CANopen on CAN,
+CANopen over EtherCAT, Modbus), reads and changes their parameters by the
+numbers of their manuals, shows states and faults, saves, compares and restores
+settings, maps PDOs and turns motors for a test: by single commands, at a
+prompt, and in scripts. Simulated drives come with it.")
 set(CPACK_STRIP_FILES ON)
 set(CPACK_RESOURCE_FILE_LICENSE ${CMAKE_SOURCE_DIR}/LICENSE)
 set(CPACK_DEBIAN_PACKAGE_SECTION electronics)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)  # libc6, in the version that the program needs; the rest is inside.
+if(SERVOCTL_PACKS_RELOCATIONS AND TARGET servoctl_fmt)
+  set(CPACK_DEBIAN_PACKAGE_DEPENDS "libc6 (>= 2.36)")  # dpkg-shlibdeps looks at symbols, not at GLIBC_ABI_DT_RELR.
+endif()
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "can-utils, libcap2-bin")
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${CMAKE_SOURCE_DIR}/packaging/postinst)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
