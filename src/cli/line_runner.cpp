@@ -1,12 +1,45 @@
 #include "cli/line_runner.hpp"
 
+#include "base/printable.hpp"
 #include "cli/batch/batch_command.hpp"
+#include "cli/last_write.hpp"
 #include "cli/terminal/prompt_words.hpp"
 #include "cli/words.hpp"
 
 namespace servoctl::cli {
+namespace {
+
+bool is_undo(const std::vector<std::string>& words) {
+  const bool yes = words.size() == 2 && (words[1] == "--yes" || words[1] == "-y");
+  return words.front() == "undo" && (words.size() == 1 || yes);
+}
+
+/// `log on FILE`, `log off`, `log`; the exit code.
+int log_line(Shell& shell, const std::vector<std::string>& words) {
+  auto& console = shell.console();
+  const bool on = words.size() == 3 && words[1] == "on";
+  if (!on && !(words.size() == 2 && words[1] == "off") && words.size() != 1)
+    return shell.report_error(
+        make_error(Errc::usage, "'log' takes `on FILE` or `off`", "log on commissioning.log"),
+        shell.defaults().json, "log");
+  if (on) {
+    auto log = LineLog::open(words[2]);
+    if (!log) return shell.report_error(log.error(), shell.defaults().json, "log");
+    console.set_log(std::move(*log));
+  }
+  const auto name = console.log() == nullptr ? std::string() : console.log()->name();
+  console.note(name.empty() ? std::string("notice: there is no log\n")
+                            : "notice: all that is typed and answered " +
+                                  std::string(words.size() == 2 ? "went" : "goes") + " into " +
+                                  printable(name) + "\n");
+  if (words.size() == 2) console.set_log(nullptr);
+  return 0;
+}
+
+}  // namespace
 
 int LineRunner::run(std::string_view line) {
+  shell_->console().log_typed(line);
   const auto words = split_words(line);
   if (!words) return shell_->report_error(words.error(), shell_->defaults().json);
   if (words->empty()) return 0;
@@ -14,6 +47,11 @@ int LineRunner::run(std::string_view line) {
   if (exit_) return 0;
   if (const auto outcome = choose(*shell_, *words))
     return outcome->errors.empty() ? 0 : show(shell_->console(), *outcome);
+  if (is_undo(*words)) return undo(*shell_, words->size() == 2);
+  if (words->front() == "log") return log_line(*shell_, *words);
+  auto& last = shell_->last_write();
+  last.set_place(shell_->defaults().nodes);
+  last.set_enabled(!is_batch(*words));
   return is_batch(*words) ? run_batch(*shell_, *words, {}) : shell_->run(*words);
 }
 

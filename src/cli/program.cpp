@@ -15,6 +15,7 @@
 #include "base/version.hpp"
 #include "cli/batch/batch_command.hpp"
 #include "cli/batch/input_lines.hpp"
+#include "cli/last_place.hpp"
 #include "cli/line_runner.hpp"
 #include "cli/parse.hpp"
 #include "cli/shell.hpp"
@@ -79,9 +80,10 @@ int run_lines(Shell& shell, const std::vector<std::string>& words, StandardConso
   if (!settings) return shell.report_error(settings.error(), false);
   shell.defaults() = std::move(*settings);
   if (::isatty(STDIN_FILENO) != 1) return run_pipe(shell);
-  if (!shell.defaults().bus.empty())
-    if (const auto opened = shell.open(shell.defaults()); !opened)
-      return shell.report_error(opened.error(), false);
+  if (shell.defaults().bus.empty())
+    take_last_place(shell, state_folder());
+  else if (const auto opened = shell.open(shell.defaults()); !opened)
+    return shell.report_error(opened.error(), false);
   return run_prompt(shell, console);
 }
 

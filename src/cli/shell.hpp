@@ -14,6 +14,7 @@
 #include "cli/admission.hpp"
 #include "cli/axis_lines.hpp"
 #include "cli/bus_holder.hpp"
+#include "cli/last_write.hpp"
 #include "cli/outcome.hpp"
 #include "cli/parse.hpp"
 #include "cli/running_line.hpp"
@@ -64,6 +65,7 @@ class Shell {
   Settings& defaults() { return options_.defaults; }
   /// The bus as it is open now; null when none is.
   session::Session* session() { return bus_.session(); }
+  LastWrite& last_write() { return last_write_; }
   /// As BusHolder::heard_state(), on the bus of this URL; nothing where it is not open.
   HeardStates::State heard_state(std::string_view url, std::uint8_t node) const;
   /// The family of the lines that name none: that of the defaults, else what their one node was taken for;
@@ -180,6 +182,7 @@ class Shell {
   std::map<std::string, std::shared_ptr<const drive::Profile>> profiles_;
   std::map<std::string, FoundFamily> families_;  ///< Of drives, by bus, node and restarts.
   CabinetHolder cabinet_;
+  LastWrite last_write_;
 };
 
 }  // namespace servoctl::cli

@@ -218,6 +218,7 @@ Outcome Shell::perform_parsed(const ParsedLine& line, const Settings& settings) 
   const bool together = is_side_by_side(*line.command, line.arguments, *parts);
   auto outcomes =
       together ? perform_side_by_side(line, std::move(*parts)) : perform_in_turn(line, std::move(*parts));
+  if (outcomes.size() > 1) last_write_.give_up(*line.command, "it went to several buses or families");
   auto all = std::move(outcomes.front());
   for (std::size_t i = 1; i < outcomes.size(); ++i) add_outcome(all, std::move(outcomes[i]));
   return all;
@@ -290,7 +291,11 @@ std::vector<Outcome> Shell::perform_side_by_side(const ParsedLine& line, std::ve
 
 Outcome Shell::perform_part(const ParsedLine& line, LinePart part) {
   PartRun one(*this, line, std::move(part));
-  if (!one.result) one.carry_out();
+  if (!one.result) {
+    last_write_.look(*line.command, one.arguments, one.run.context, one.run.settings);
+    one.carry_out();
+    last_write_.settle(one.run.context);
+  }
   progress_.end();
   auto out = finish(one.run, *one.result);
   for (auto& error : out.errors) one.name_file(error);

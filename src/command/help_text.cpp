@@ -65,7 +65,8 @@ std::string program_help(std::size_t width) {
          "  servoctl [OPTIONS] -            a batch file from standard input (see `help run`)\n\n"
          "Commands:\n" +
          command_rows({}, width) +
-         "\nAt the prompt also: use NODE, drive FAMILY, bus BUS (for the following lines), exit.\n"
+         "\nAt the prompt also: use NODE, drive FAMILY, bus BUS (for the following lines), undo (the last\n"
+         "`param set` or `write`), log on FILE, log off, exit.\n"
          "\nOptions of every command:\n" +
          rows(global_options(), true, width) +
          "\n`help COMMAND` shows more. Exit codes: 0 done, 1 negative result, 2 usage, 3 bus, 4 no "

@@ -5,76 +5,18 @@ usage: prompt_test.py SERVOCTL
 """
 import json
 import os
-import pty
 import re
-import select
 import signal
 import subprocess
 import sys
 import tempfile
 import time
 
+from pty_terminal import Terminal, expect, failures
+
 servoctl = sys.argv[1]
-failures = []
-
-
-class Terminal:
-    def __init__(self, *arguments, state, lang="C.UTF-8"):
-        self.text = ""
-        self.pid, self.fd = pty.fork()
-        if self.pid == 0:
-            env = dict(os.environ, TERM="xterm", XDG_STATE_HOME=state, LANG=lang, COLUMNS="80", LINES="24")
-            for name in ("SERVOCTL_BUS", "SERVOCTL_NODE", "SERVOCTL_DRIVE", "LC_ALL", "LC_CTYPE"):
-                env.pop(name, None)
-            os.execve(servoctl, [servoctl, *arguments], env)
-
-    def type(self, text):
-        os.write(self.fd, text.encode())
-
-    def see(self, pattern, seconds=20, colours=False):
-        """Waits until the screen text shows the pattern; forgets everything up to its end."""
-        end = time.monotonic() + seconds
-        while True:
-            marks = r"\x1b\[[0-9;?]*[A-Zln-z]" if colours else r"\x1b\[[0-9;?]*[A-Za-z]|\x1b[=>]"
-            plain = re.sub(marks, "", self.text)
-            found = re.search(pattern, plain)
-            if found:
-                self.text = plain[found.end():]
-                return
-            if time.monotonic() > end or not self.read(end - time.monotonic()):
-                failures.append(f"did not see {pattern!r} in {plain[-400:]!r}")
-                return
-
-    def read(self, seconds):
-        ready, _, _ = select.select([self.fd], [], [], max(0, seconds))
-        if not ready:
-            return True
-        try:
-            data = os.read(self.fd, 4096)
-        except OSError:
-            return False
-        self.text += data.decode(errors="replace")
-        return bool(data)
-
-    def exit_code(self):
-        end = time.monotonic() + 10
-        while time.monotonic() < end:
-            pid, status = os.waitpid(self.pid, os.WNOHANG)
-            if pid:
-                return os.waitstatus_to_exitcode(status)
-            self.read(0.05)
-        os.kill(self.pid, signal.SIGKILL)
-        failures.append("the program did not end")
-        return None
-
-
-def expect(name, expected, actual):
-    if expected != actual:
-        failures.append(f"{name}: expected {expected!r}, got {actual!r}")
-
-
 with tempfile.TemporaryDirectory() as state:
-    t = Terminal("--bus", "sim:gsd600@1", state=state)
+    t = Terminal(servoctl, "--bus", "sim:gsd600@1", state=state)
     t.see(r"servoctl sim:gsd600@1> ")
     t.type("use 1\n")
     t.see(r"node 1 \[pre-operational\]> ")
@@ -124,7 +66,7 @@ with tempfile.TemporaryDirectory() as state:
 
     # Chinese is typed, mended by a backspace over a whole character, and found, whatever the locale is.
     for lang in ("C.UTF-8", "C", "zh_CN.GB2312"):
-        t = Terminal("--drive", "gsd600", "--lang", "zh", state=state, lang=lang)
+        t = Terminal(servoctl, "--drive", "gsd600", "--lang", "zh", state=state, lang=lang)
         t.see(r"> ")
         t.type("param search 速度环增益坏\x7f 1\n")
         t.see(r"Pn0214 +速度环增益 1")
@@ -132,7 +74,7 @@ with tempfile.TemporaryDirectory() as state:
         expect(f"exit code of exit in {lang}", 0, t.exit_code())
 
     # Chinese is found in the history, of this run and of the one before; a line is mended in its middle; Tab behind Chinese.
-    t = Terminal("--drive", "gsd600", "--lang", "zh", state=state)
+    t = Terminal(servoctl, "--drive", "gsd600", "--lang", "zh", state=state)
     t.see(r"> ")
     t.type("\x12速度环\r")
     t.see(r"Pn0214 +速度环增益 1")
@@ -158,7 +100,7 @@ with tempfile.TemporaryDirectory() as state:
 
     # State and fault stand in the prompt, as they were heard, and nothing is sent for it.
     trace = os.path.join(state, "trace")
-    t = Terminal("--bus", "sim:gsd600@1?fault=0xFF00@2s", "-n", "1", "-d", "gsd600", "--trace", trace, state=state)
+    t = Terminal(servoctl, "--bus", "sim:gsd600@1?fault=0xFF00@2s", "-n", "1", "-d", "gsd600", "--trace", trace, state=state)
     t.see(r"\[pre-operational\]> ")
     t.type("read statusword\n")
     t.see(r"\[switch on disabled\]> ")
@@ -173,7 +115,7 @@ with tempfile.TemporaryDirectory() as state:
     expect("requests of two reads", 2, len([line for line in sent if "#404160" in line]))
 
     # History is kept, an emergency is told above the line that is being typed, and the line is kept.
-    t = Terminal("--bus", "sim:gsd600@1?fault=0xFF00@1s", state=state)
+    t = Terminal(servoctl, "--bus", "sim:gsd600@1?fault=0xFF00@1s", state=state)
     t.see(r"> ")
     t.type("read 0x60")
     t.see(r"\* node 1: EMCY 0xFF00")
@@ -187,11 +129,11 @@ with tempfile.TemporaryDirectory() as state:
     t.type("\x04")
     expect("exit code of Ctrl-D", 0, t.exit_code())
 
-    t = Terminal("--bus", "can77", state=state)
+    t = Terminal(servoctl, "--bus", "can77", state=state)
     t.see(r"error: .*can77")
     expect("exit code without a bus", 3, t.exit_code())
 
-    t = Terminal("--bus", "sim:gsd600@1", state=state)
+    t = Terminal(servoctl, "--bus", "sim:gsd600@1", state=state)
     t.see(r"> ")
     os.kill(t.pid, signal.SIGTERM)
     expect("exit code of SIGTERM", 130, t.exit_code())
@@ -200,7 +142,7 @@ with tempfile.TemporaryDirectory() as state:
     cell = f"local:prompt-{os.getpid()}"
     sim = subprocess.Popen([servoctl, "sim", "gsd600@1", "--bus", cell], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     for ending in ("exit", "hang up"):
-        t = Terminal("--bus", cell, "-n", "1", "-d", "gsd600", state=state)
+        t = Terminal(servoctl, "--bus", cell, "-n", "1", "-d", "gsd600", state=state)
         t.see(r"> ")
         t.type("enable\n")
         t.see(r"\[y/N\] ")

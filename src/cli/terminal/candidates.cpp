@@ -21,6 +21,12 @@ using command::Kind;
 /// So many entries of a folder are looked at.
 constexpr std::size_t kMostFiles = 5000;
 
+/// Of five thousand words nearly all are ASCII.
+bool is_shown_as_it_is(std::string_view word) {
+  const bool ascii = std::all_of(word.begin(), word.end(), [](char c) { return c >= ' ' && c <= '~'; });
+  return ascii || printable(word) == word;
+}
+
 bool begins_hidden(const std::string& name, std::string_view begun) {
   return name.starts_with(".") && !begun.starts_with(".");
 }
@@ -36,8 +42,8 @@ Candidates::Candidates(std::string begun, Shell& shell, std::string family)
 bool Candidates::fits(std::string_view word) const { return starts_with_nocase(word, begun_); }
 
 void Candidates::add(std::string_view word, std::string_view hint) {
-  if (word.empty() || !fits(word) || printable(word) != word || !known_.insert(std::string(word)).second)
-    return;
+  if (word.empty() || !fits(word) || !is_shown_as_it_is(word)) return;
+  if (!known_.emplace(word).second) return;
   out_.push_back({std::string(word), std::string(hint)});
 }
 

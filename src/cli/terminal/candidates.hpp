@@ -1,9 +1,9 @@
 #pragma once
 
 #include <cstddef>
-#include <set>
 #include <string>
 #include <string_view>
+#include <unordered_set>
 #include <vector>
 
 #include "cli/shell.hpp"
@@ -53,7 +53,7 @@ class Candidates {
   Shell* shell_;
   std::string family_;
   bool chinese_;
-  std::set<std::string> known_;
+  std::unordered_set<std::string> known_;
   std::vector<Candidate> out_;
   std::string note_;
 };

@@ -50,6 +50,9 @@ BegunLine begun_line(std::string_view line) {
   return out;
 }
 
+/// What split_words() does not take as it is.
+constexpr std::string_view kNotPlain = " \t\"'\\#";
+
 /// The form in which split_words() reads it as one word.
 std::string as_word(std::string_view text) {
   std::string out;
@@ -144,7 +147,8 @@ Offer complete(std::string_view line, Shell& shell) {
   Candidates found(begun.last, shell, family_of(begun.words, shell));
   add_all(found, begun.words, begun.last);
   Offer out{.typed = begun.typed, .candidates = found.take(), .note = found.note()};
-  for (auto& one : out.candidates) one.word = as_word(one.word);
+  for (auto& one : out.candidates)
+    if (one.word.find_first_of(kNotPlain) != std::string::npos) one.word = as_word(one.word);
   return out;
 }
 

@@ -11,6 +11,7 @@
 #include <string>
 #include <utility>
 
+#include "base/printable.hpp"
 #include "base/signal_wait.hpp"
 #include "cli/terminal/signals.hpp"
 #include "cli/terminal/terminal_keys.hpp"
@@ -22,6 +23,35 @@ namespace {
 constexpr Duration kPatience = std::chrono::seconds(2);
 
 }  // namespace
+
+void Console::out(std::string_view text) {
+  const auto shown = printable_lines(text);
+  write_out(shown);
+  if (log_ == nullptr) return;
+  log_->answered(shown);
+  check_log();
+}
+
+void Console::err(std::string_view text) {
+  const auto shown = printable_lines(text);
+  write_err(shown);
+  if (log_ == nullptr) return;
+  log_->answered(shown);
+  check_log();
+}
+
+void Console::log_typed(std::string_view line) {
+  if (log_ == nullptr) return;
+  log_->typed(printable(line));
+  check_log();
+}
+
+void Console::check_log() {
+  const auto failure = log_->take_failure();
+  if (!failure) return;
+  log_.reset();
+  write_err("notice: " + printable(failure->message) + "; " + printable(failure->hint) + "\n");
+}
 
 /// Waits until a line was typed; false after Ctrl-C.
 bool StandardConsole::line_is_there() const {
@@ -93,12 +123,13 @@ bool StandardConsole::ask(std::string_view question) {
   ::tcflush(STDIN_FILENO, TCIFLUSH);  // What was typed before the question is no answer to it.
   err(std::string(question) + " [y/N] ");
   const auto answer = typed_line();
+  log_typed(answer);
   return answer == "y" || answer == "Y" || answer == "yes";
 }
 
 void StandardConsole::pause(std::string_view text) {
   err(std::string(text) + " [Enter] ");
-  typed_line();
+  log_typed(typed_line());
 }
 
 bool StandardConsole::can_ask() const { return ::isatty(STDIN_FILENO) == 1 && ::isatty(STDERR_FILENO) == 1; }

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <utility>
 
-#include "base/printable.hpp"
 #include "base/time.hpp"
+#include "cli/line_log.hpp"
 #include "cli/terminal/live_output.hpp"
 #include "cli/terminal/terminal_view.hpp"
 #include "command/keys.hpp"
@@ -27,9 +27,9 @@ class Console {
   virtual ~Console() = default;
 
   /// Data. Whatever it holds, nothing but printable_lines() of it leaves the program.
-  void out(std::string_view text) { write_out(printable_lines(text)); }
+  void out(std::string_view text);
   /// Errors, warnings, questions; as out().
-  void err(std::string_view text) { write_err(printable_lines(text)); }
+  void err(std::string_view text);
   /// A notice, or how far something has come: nothing with --quiet.
   void note(std::string_view text) {
     if (!quiet_) err(text);
@@ -64,6 +64,13 @@ class Console {
   /// The same for err().
   virtual std::size_t take_untold() { return 0; }
 
+  /// From now on all of it, and what is typed, goes into this log as well; null: into none. A log that fails
+  /// is told, and given up.
+  void set_log(std::unique_ptr<LineLog> log) { log_ = std::move(log); }
+  const LineLog* log() const { return log_.get(); }
+  /// A line, or the answer to a question.
+  void log_typed(std::string_view line);
+
   /// What is done while the user is waited for; it answers how long it can be left alone. May be empty.
   void set_service(std::function<Duration()> service) { service_ = std::move(service); }
 
@@ -73,7 +80,10 @@ class Console {
   Duration serve() const { return service_ ? service_() : Duration::max(); }
 
  private:
+  void check_log();
+
   std::function<Duration()> service_;
+  std::unique_ptr<LineLog> log_;
   bool quiet_ = false;
 };
 

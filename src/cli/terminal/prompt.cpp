@@ -7,8 +7,10 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "base/printable.hpp"
+#include "cli/last_place.hpp"
 #include "cli/line_runner.hpp"
 #include "cli/state_folder.hpp"
 #include "cli/terminal/completer.hpp"
@@ -48,15 +50,14 @@ class Prompt {
                     .size = [this] { return screen_size(); },
                     .offer = [this](std::string_view before) { return complete(before, *shell_); }}) {
     shell.stay_open(true);
-    if (const auto folder = state_folder(); !folder.empty()) file_ = folder / "history";
-    if (!file_.empty()) history_.load(file_);
+    if (!folder_.empty()) history_.load(folder_ / "history");
   }
   Prompt(const Prompt&) = delete;
   Prompt& operator=(const Prompt&) = delete;
   ~Prompt() {
     rest();
     // What was typed is worth no word when it cannot be kept.
-    if (!file_.empty()) (void)history_.save(file_);
+    if (!folder_.empty()) (void)history_.save(folder_ / "history");
   }
 
   int run();
@@ -73,6 +74,7 @@ class Prompt {
   void show_notices();
   void drop_line();
   void run_line();
+  void keep_place();
   void draw();
 
   Shell* shell_;
@@ -81,7 +83,8 @@ class Prompt {
   LineHistory history_;
   LineEditor editor_;
   LineMode mode_{STDIN_FILENO};
-  std::filesystem::path file_;
+  std::filesystem::path folder_ = state_folder();
+  std::string kept_;             ///< The place that was.
   bool edits_ = moves_cursor();  ///< Else the terminal edits the line, as far as it does.
   bool colours_ = shows_colours();
   bool editing_ = false;  ///< A line is being typed.
@@ -117,7 +120,15 @@ void Prompt::rest() {
   mode_.leave();
 }
 
+/// Once it is somewhere else than when it was kept last.
+void Prompt::keep_place() {
+  const auto& now = shell_->defaults();
+  const auto place = now.bus + "\n" + now.nodes + "\n" + now.drive;
+  if (std::exchange(kept_, place) != place) keep_last_place(now, folder_);
+}
+
 int Prompt::run() {
+  keep_place();
   begin_line();
   while (!done_ && !terminated()) {
     if (interrupted()) drop_line();
@@ -212,6 +223,7 @@ void Prompt::run_line() {
   if (text.find_first_not_of(' ') != std::string::npos) history_.add(text);
   runner_.run(text);
   clear_interrupt();
+  keep_place();
   done_ = runner_.wants_exit();
   if (!done_ && !terminated()) begin_line();
 }

@@ -16,9 +16,8 @@ namespace {
 const PromptWord* find_word(std::span<const PromptWord> all, const std::vector<std::string>& words) {
   if (words.empty()) return nullptr;
   if (words.size() > 1 && command::find_command(words[0] + " " + words[1]) != nullptr) return nullptr;
-  const auto found = std::find_if(all.begin(), all.end(), [&](const PromptWord& w) {
-    return w.name == words.front() && !w.argument.empty();
-  });
+  const auto found = std::find_if(all.begin(), all.end(),
+                                  [&](const PromptWord& w) { return w.name == words.front() && w.is_place; });
   return found == all.end() ? nullptr : &*found;
 }
 
@@ -105,9 +104,11 @@ PromptText prompt_text(Shell& shell) {
 }
 
 std::vector<PromptWord> prompt_words() {
-  return {{"use", "NODE", "use this node or axis, list or `all` for the following lines"},
-          {"drive", "FAMILY", "use this drive family for the following lines"},
-          {"bus", "URL", "switch to this bus"},
+  return {{"use", "NODE", "use this node or axis, list or `all` for the following lines", true},
+          {"drive", "FAMILY", "use this drive family for the following lines", true},
+          {"bus", "URL", "switch to this bus", true},
+          {"undo", "", "put back what the last `param set` or `write` replaced"},
+          {"log", "on FILE", "keep all that is typed and answered in a file, until `log off`"},
           {"exit", "", "leave (also quit, or Ctrl-D)"}};
 }
 

@@ -11,11 +11,12 @@
 namespace servoctl::cli {
 
 /// One of the words that only make sense where several lines follow each other: `use`, `drive`, `bus`,
-/// `exit`.
+/// `undo`, `log`, `exit`.
 struct PromptWord {
   std::string_view name;
   std::string_view argument;  ///< `NODE`; empty: takes none.
   std::string_view help;
+  bool is_place = false;  ///< It says where the following lines go.
 };
 std::vector<PromptWord> prompt_words();
 

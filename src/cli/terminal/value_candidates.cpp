@@ -116,7 +116,6 @@ void Candidates::add_values_of(std::string_view object) {
           : first                             ? word
                                               : label.label,
           fmt::format("{} {}", label.value, name_in(chinese_, label.label, label.label_zh)));
-      add(std::to_string(label.value), name_in(chinese_, label.label, label.label_zh));
     }
     return;
   }

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "base/result.hpp"
+#include "cli/shell.hpp"
+
+namespace servoctl::cli {
+
+/// Where the lines of a prompt went that named no place.
+struct LastPlace {
+  std::string bus;
+  std::string nodes;  ///< As after `use`; may be empty.
+  std::string drive;  ///< The same after `drive`.
+  std::string time;   ///< UTC.
+};
+
+/// The file in the folder for state that keeps it.
+class LastPlaceFile {
+ public:
+  explicit LastPlaceFile(const std::filesystem::path& state_folder) : path_(state_folder / "prompt.json") {}
+
+  /// Empty when there is none. Errc::file for one that is damaged.
+  Result<std::optional<LastPlace>> read() const;
+  /// Errc::file.
+  Result<void> write(const LastPlace& place) const;
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// For a prompt that was told neither bus nor node nor family: those of last time, and says so. A bus whose
+/// opening sends nothing is opened; another one is left to the first line that needs it. One that is not
+/// there any more is told, and nothing is taken.
+void take_last_place(Shell& shell, const std::filesystem::path& state_folder);
+
+/// Keeps where the prompt is now, once it is somewhere that can be found again.
+void keep_last_place(const Settings& now, const std::filesystem::path& state_folder);
+
+}  // namespace servoctl::cli

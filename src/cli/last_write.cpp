@@ -1,0 +1,166 @@
+#include "cli/last_write.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <array>
+
+#include "cabinet/cabinet.hpp"
+#include "drive/quantity.hpp"
+#include "drive/standard_objects.hpp"
+#include "session/identify.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+using command::Context;
+
+/// Objects that drive the motor, or say how: to write them back is a movement, and no correction.
+constexpr std::array<std::uint16_t, 8> kMoving{0x6040, 0x6042, 0x6060, 0x6071,
+                                               0x607A, 0x60B0, 0x60C1, 0x60FF};
+
+std::string why_not_back(const drive::Target& target, const drive::Meaning& meaning) {
+  const auto* entry = target.entry;
+  const auto* parameter = target.parameter;
+  const auto index = target.address.index;
+  if (std::find(kMoving.begin(), kMoving.end(), index) != kMoving.end())
+    return "it drives the motor, and is no setting";
+  const bool action = index == objects::kStoreIndex || index == objects::kRestoreIndex ||
+                      (entry != nullptr && entry->command) || (parameter != nullptr && parameter->command);
+  if (action) return "it starts an action";
+  if ((entry != nullptr && entry->is_volatile) || (parameter != nullptr && parameter->is_volatile))
+    return "it is no setting";
+  if (!od::readable(meaning.access)) return "it cannot be read";
+  return {};
+}
+
+/// The value as a line writes it; empty where no text stands for just these bytes.
+std::string text_of(const drive::Meaning& meaning, const Bytes& bytes) {
+  const auto value = od::decode(meaning.type, bytes);
+  if (!value) return {};
+  auto text = drive::plain_text(meaning, *value);
+  const auto back = drive::parse_quantity(meaning, text);
+  const auto again = back ? od::encode(meaning.type, *back) : Result<Bytes>(Bytes());
+  return again && *again == bytes ? text : std::string();
+}
+
+std::string name_of_node(const Context& context, std::uint8_t node) {
+  for (const auto* axis : context.axes)
+    if (axis->node == node) return axis->name;
+  return std::to_string(node);
+}
+
+}  // namespace
+
+/// Asked for once between two restarts.
+const session::Identity* LastWrite::identity_of(session::Session& session, std::uint8_t node) {
+  const auto key = std::pair(session.url(), std::pair(node, session.watch().boots(node)));
+  auto found = identities_.find(key);
+  if (found == identities_.end()) {
+    auto identity = session::read_identity(session, node);
+    if (!identity) return nullptr;
+    found = identities_.emplace(key, std::move(*identity)).first;
+  }
+  return &found->second;
+}
+
+void LastWrite::look(const command::Command& command, const command::Arguments& arguments,
+                     const Context& context, const Settings& settings) {
+  pending_.reset();
+  const bool writes = command.path == "param set" || command.path == "write";
+  if (!enabled_ || !writes || context.dry_run || context.session == nullptr) return;
+  pending_ = Line{.command = std::string(command.path),
+                  .bus = settings.bus,
+                  .place = place_,
+                  .drive = settings.drive,
+                  .of_cabinet = !context.axes.empty(),
+                  .keep = arguments.has("--keep"),
+                  .unlock = arguments.has("--unlock"),
+                  .values = {},
+                  .why_not = {}};
+  const auto named = command.settings(arguments);
+  if (!named) {
+    pending_->why_not = "it wrote a file";
+    return;
+  }
+  for (const auto node : context.nodes)
+    for (const auto& one : *named) look_at(context, one, node);
+}
+
+void LastWrite::look_at(const Context& context, const settings::NamedValue& named, std::uint8_t node) {
+  const auto target = named.panel && context.profile != nullptr
+                          ? drive::resolve_panel(*context.profile, named.name)
+                          : drive::resolve(context.profile, named.name);
+  if (!target) return;  // The line will be refused.
+  auto meaning = drive::meaning(*target, node);
+  if (named.type) meaning.type = *named.type;
+  auto why = why_not_back(*target, meaning);
+  if (why.empty() && !named.type && !(meaning.type_known && meaning.size_known))
+    why = "its type is not known; `--type` says it";
+  const auto before = why.empty() ? context.session->upload(node, target->address) : Result<Bytes>(Bytes());
+  const auto* identity = why.empty() ? identity_of(*context.session, node) : nullptr;
+  if (why.empty() && (!before || identity == nullptr)) why = "what it held before could not be read";
+  const auto text = why.empty() ? text_of(meaning, *before) : std::string();
+  if (why.empty() && text.empty()) why = "what it held before cannot be written as a text";
+  if (!why.empty()) {
+    pending_->why_not = fmt::format("{} on node {}: {}", named.name, node, why);
+    return;
+  }
+  pending_->values.push_back({.node = node,
+                              .target = name_of_node(context, node),
+                              .name = named.name,
+                              .object = target->address,
+                              .type = named.type ? std::string(od::name(*named.type)) : std::string(),
+                              .before = *before,
+                              .after = {},
+                              .before_text = text,
+                              .after_text = {},
+                              .identity = *identity,
+                              .boots = context.session->watch().boots(node)});
+}
+
+void LastWrite::settle(const Context& context) {
+  if (!pending_) return;
+  auto line = std::move(*pending_);
+  pending_.reset();
+  if (!line.why_not.empty()) {
+    // What could not be looked at may have been written all the same.
+    line.values.clear();
+    line_ = std::move(line);
+    return;
+  }
+  std::vector<Value> changed;
+  for (auto& value : line.values) {
+    const auto now = context.session->upload(value.node, value.object);
+    if (now && *now == value.before) continue;
+    auto meaning = drive::meaning(drive::target_at(context.profile, value.object), value.node);
+    if (const auto type = od::parse_data_type(value.type)) meaning.type = *type;
+    if (now)
+      value.after = *now;
+    else
+      line.why_not =
+          fmt::format("{} on node {}: what it holds now could not be read", value.name, value.node);
+    if (now) value.after_text = text_of(meaning, *now);
+    changed.push_back(std::move(value));
+  }
+  if (changed.empty()) return;
+  line.values = std::move(changed);
+  line_ = std::move(line);
+}
+
+void LastWrite::turn_round(Line line) {
+  for (auto& value : line.values) {
+    std::swap(value.before, value.after);
+    std::swap(value.before_text, value.after_text);
+    if (value.before_text.empty()) line.why_not = "what it held before cannot be written as a text";
+  }
+  line_ = std::move(line);
+}
+
+void LastWrite::give_up(const command::Command& command, std::string why) {
+  pending_.reset();
+  if (!enabled_ || command.settings == nullptr || command.effect != command::Effect::writes) return;
+  line_ = Line{};
+  line_->why_not = std::move(why);
+}
+
+}  // namespace servoctl::cli

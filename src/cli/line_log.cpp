@@ -1,0 +1,73 @@
+#include "cli/line_log.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <fmt/format.h>
+#include <cerrno>
+#include <cstring>
+#include <ctime>
+#include <utility>
+
+namespace servoctl::cli {
+namespace {
+
+/// `2026-11-23T14:00:00.123Z`.
+std::string time_of_day() {
+  timespec now{};
+  ::clock_gettime(CLOCK_REALTIME, &now);
+  std::tm utc{};
+  ::gmtime_r(&now.tv_sec, &utc);
+  char text[32];
+  const auto size = std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S", &utc);
+  return fmt::format("{}.{:03}Z", std::string_view(text, size), now.tv_nsec / 1'000'000);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<LineLog>> LineLog::open(const std::filesystem::path& file) {
+  const auto name = file.string();
+  const auto refused = [&](int error) {
+    return fail(Errc::file, fmt::format("{}: {}", name, std::strerror(error)),
+                "name another file, or a folder that you may write to");
+  };
+  // A FIFO would be waited for, a device might do anything.
+  struct stat kind {};
+  const bool there = ::stat(name.c_str(), &kind) == 0;
+  if (there && !S_ISREG(kind.st_mode))
+    return fail(Errc::file, fmt::format("{} is no regular file", name), "name a file");
+  can::Descriptor descriptor(
+      ::open(name.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NONBLOCK | O_NOCTTY, 0666));
+  if (!descriptor) return refused(errno);
+  return std::unique_ptr<LineLog>(new LineLog(std::move(descriptor), name));
+}
+
+void LineLog::typed(std::string_view line) {
+  if (!begun_.empty()) put("  ", std::exchange(begun_, {}));
+  put("> ", line);
+}
+
+void LineLog::answered(std::string_view text) {
+  for (auto end = text.find('\n'); end != std::string_view::npos; end = text.find('\n')) {
+    put("  ", std::exchange(begun_, {}) + std::string(text.substr(0, end)));
+    text.remove_prefix(end + 1);
+  }
+  begun_ += text;
+}
+
+void LineLog::put(std::string_view mark, std::string_view line) {
+  if (!file_) return;
+  const auto record = fmt::format("{} {}{}\n", time_of_day(), mark, line);
+  const auto written = ::write(file_.get(), record.data(), record.size());
+  if (written == static_cast<ssize_t>(record.size())) return;
+  const int error = written < 0 ? errno : ENOSPC;
+  failure_ =
+      make_error(Errc::file, fmt::format("{}: {}: the log has ended here", name_, std::strerror(error)),
+                 "make room, then `log on FILE` goes on; what runs is not stopped by it");
+  file_ = {};
+}
+
+std::optional<Error> LineLog::take_failure() { return std::exchange(failure_, std::nullopt); }
+
+}  // namespace servoctl::cli

@@ -1,0 +1,118 @@
+// `undo`: what is held against the drive before a value is put back.
+#include <fmt/format.h>
+
+#include "base/printable.hpp"
+#include "base/text.hpp"
+#include "cli/last_write.hpp"
+#include "cli/shell.hpp"
+#include "session/identify.hpp"
+#include "session/open_bus.hpp"
+#include "show/identity.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+using WrittenValue = LastWrite::Value;
+using WrittenLine = LastWrite::Line;
+
+Result<void> check_value(session::Session& session, const WrittenValue& value) {
+  const auto refused = [&](const std::string& why) {
+    return fail(
+        drive_error(Errc::refused, value.node, why, "nothing was sent; `param set` writes it by hand"));
+  };
+  if (session.watch().boots(value.node) != value.boots)
+    return refused("has restarted since it was written to");
+  const auto identity = session::read_identity(session, value.node);
+  if (!identity) return fail(identity.error());
+  if (const auto change = show::change_of(value.identity, *identity); !change.empty())
+    return refused(fmt::format("is another drive than the one that was written to: {}", change));
+  const auto now = session.upload(value.node, value.object);
+  if (!now) return fail(now.error());
+  if (*now != value.after)
+    return refused(fmt::format("no longer holds in {} ({}) what was written: somebody has changed it since",
+                               value.name, to_string(value.object)));
+  return {};
+}
+
+/// The session, where the prompt still is where the line was, and all drives hold what it wrote.
+Result<void> check_line(Shell& shell, const WrittenLine& line) {
+  if (!line.why_not.empty())
+    return fail(Errc::refused, "the last write is not put back: " + line.why_not,
+                "`param set` or `write` writes a value by hand");
+  auto settings = shell.defaults();
+  if (!line.of_cabinet && session::canonical_url(settings.bus) != session::canonical_url(line.bus))
+    return fail(Errc::refused,
+                fmt::format("the last write was on {}, and the prompt is not there any more", line.bus),
+                fmt::format("`bus {}`, and then `undo`", line.bus));
+  if (settings.nodes != line.place)
+    return fail(Errc::refused,
+                fmt::format("the last write was made with {} in use, and now {} is",
+                            line.place.empty() ? "no node" : line.place,
+                            settings.nodes.empty() ? "none" : settings.nodes),
+                line.place.empty() ? "`param set` writes it by hand"
+                                   : fmt::format("`use {}`, and then `undo`", line.place));
+  settings.bus = line.bus;
+  settings.of_cabinet = line.of_cabinet;
+  const auto session = shell.open(settings);
+  if (!session) return fail(session.error());
+  for (const auto& value : line.values)
+    if (const auto same = check_value(**session, value); !same) return same;
+  return {};
+}
+
+std::string question(const WrittenLine& line) {
+  std::string out;
+  for (const auto& value : line.values)
+    out += fmt::format("{}{} on {}{}: {} in place of {}", out.empty() ? "" : "; ", value.name,
+                       value.target == std::to_string(value.node) ? "node " : "", value.target,
+                       value.before_text, value.after_text.empty() ? "what was written" : value.after_text);
+  return "Put back " + out + "?";
+}
+
+Result<void> confirm_undo(Shell& shell, const WrittenLine& line, bool yes) {
+  if (yes || shell.defaults().yes) return {};
+  const auto shown = printable(question(line));
+  if (!shell.console().can_ask())
+    return fail(Errc::refused, "confirmation needed: " + shown, "`undo --yes` confirms");
+  if (shell.console().ask(shown)) return {};
+  return fail(Errc::refused, "not confirmed; nothing was sent");
+}
+
+/// A line that puts one value back.
+std::vector<std::string> words_of(const WrittenLine& line, const WrittenValue& value) {
+  std::vector<std::string> out;
+  for (const auto part : split(std::string_view(line.command), ' ')) out.emplace_back(part);
+  const auto add = [&out](std::initializer_list<std::string> words) { out.insert(out.end(), words); };
+  add({"-n", value.target});
+  if (!line.of_cabinet) add({"-b", line.bus});
+  if (!line.of_cabinet && !line.drive.empty()) add({"-d", line.drive});
+  if (!value.type.empty()) add({"--type", value.type});
+  if (line.keep) add({"--keep"});
+  if (line.unlock) add({"--unlock"});
+  add({"--", value.name, value.before_text});
+  return out;
+}
+
+}  // namespace
+
+int undo(Shell& shell, bool yes) {
+  const auto* last = shell.last_write().line();
+  if (last == nullptr)
+    return shell.report_error(make_error(Errc::usage, "there is nothing to put back",
+                                         "`undo` puts back what a `param set` or `write` of this prompt "
+                                         "replaced"),
+                              shell.defaults().json, "undo");
+  const auto line = *last;
+  auto right = check_line(shell, line);
+  if (right) right = confirm_undo(shell, line, yes);
+  // Somebody may have thought about the question for a while.
+  if (right) right = check_line(shell, line);
+  if (!right) return shell.report_error(right.error(), shell.defaults().json, "undo");
+  int code = 0;
+  for (auto value = line.values.rbegin(); value != line.values.rend() && code == 0; ++value)
+    code = shell.run(words_of(line, *value));
+  if (code == 0) shell.last_write().turn_round(line);
+  return code;
+}
+
+}  // namespace servoctl::cli

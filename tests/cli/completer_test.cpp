@@ -1,0 +1,129 @@
+// What Tab offers, with what it says beside it, and how long that takes.
+#include "cli/terminal/completer.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+
+#include "cli/shell.hpp"
+#include "recording_console.hpp"
+#include "tests/source_dir.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Milliseconds; what is not optimised, or runs under the sanitizers of clang, takes its time.
+#if defined(NDEBUG) && !defined(__clang__)
+constexpr double kLimit = 20;
+#else
+constexpr double kLimit = 200;
+#endif
+
+class Completing : public testing::Test {
+ protected:
+  Completing() : shell(console, options()) {}
+  static Shell::Options options() {
+    Shell::Options out;
+    out.drive_folders = {fs::path(source_dir()) / "eds"};
+    out.clock = sim::SimBus::Clock::virtual_time;
+    out.defaults.bus = "sim:gsd600@1,gsd600@5";
+    out.defaults.drive = "gsd600";
+    out.defaults.nodes = "1";
+    return out;
+  }
+  /// The hint beside the word; "(none)" where it is not offered.
+  std::string hint(std::string_view line, std::string_view word) {
+    for (const auto& one : complete(line, shell).candidates)
+      if (one.word == word) return one.hint;
+    return "(none)";
+  }
+  bool offers_word(std::string_view line, std::string_view word) { return hint(line, word) != "(none)"; }
+  RecordingConsole console;
+  Shell shell;
+};
+
+TEST_F(Completing, SaysBesideAWordWhatItIs) {
+  EXPECT_EQ(hint("read statusw", "statusword"), "0x6041");
+  EXPECT_EQ(hint("read 0x604", "0x6041"), "Statusword");
+  EXPECT_EQ(hint("param get Pn021", "Pn0214"), "Speed loop gain 1");
+  shell.defaults().chinese = true;
+  EXPECT_EQ(hint("param get Pn021", "Pn0214"), "速度环增益 1");
+  EXPECT_NE(hint("param ", "search"), "");
+  EXPECT_NE(hint("read --ty", "--type"), "");
+  EXPECT_NE(hint("un", "undo"), "");
+}
+
+TEST_F(Completing, OffersWhatAValueMayBe) {
+  EXPECT_TRUE(offers_word("mode ", "pv"));
+  EXPECT_TRUE(offers_word("mode 3", "3"));
+  EXPECT_TRUE(offers_word("home 3", "35"));
+  EXPECT_EQ(hint("param set Pn0000 ", "Position\\ mode"), "0 Position mode");
+  EXPECT_EQ(hint("param set Pn0000 0", "0"), "Position mode");
+  EXPECT_TRUE(offers_word("param set Pn0000=", "Pn0000=Position\\ mode"));
+  EXPECT_TRUE(offers_word("param set Pn0000=1 Pn021", "Pn0214"));
+  EXPECT_TRUE(offers_word("write modes_of_operation 3", "3"));
+  EXPECT_NE(complete("param set Pn0214 ", shell).note.find("Hz"), std::string::npos);
+  EXPECT_TRUE(complete("param set Pn0214 ", shell).candidates.empty());
+  EXPECT_TRUE(offers_word("param set Pn0214 40", "40Hz"));
+}
+
+TEST_F(Completing, OffersUnitsBehindANumber) {
+  EXPECT_TRUE(offers_word("jog 60", "60rpm"));
+  EXPECT_TRUE(offers_word("move 1.5", "1.5rev"));
+  EXPECT_TRUE(offers_word("move -90", "-90deg"));
+  EXPECT_TRUE(offers_word("torque 5", "5%"));
+}
+
+TEST_F(Completing, OffersNodesThatWereHeardAndGoesOnInAList) {
+  EXPECT_TRUE(offers_word("use ", "1"));
+  EXPECT_FALSE(offers_word("use ", "5"));
+  ASSERT_EQ(shell.run({"nmt", "reset", "-n", "1,5", "--wait", "--yes"}), 0) << console.err_text;
+  EXPECT_NE(hint("use ", "5"), "");
+  EXPECT_TRUE(offers_word("status -n 1,", "1,5"));
+}
+
+TEST_F(Completing, PutsABackslashBeforeWhatWouldEndAWordAndReadsQuotes) {
+  const auto folder = fs::temp_directory_path() / ("completing " + std::to_string(::getpid()));
+  fs::create_directories(folder / "a folder");
+  std::ofstream(folder / "速度 1.json") << "{}";
+  const auto begun = fs::temp_directory_path().string() + "/completing\\ " + std::to_string(::getpid()) + "/";
+  EXPECT_TRUE(offers_word("diff " + begun, begun + "a\\ folder/"));
+  EXPECT_TRUE(offers_word("diff " + begun + "速", begun + "速度\\ 1.json"));
+  EXPECT_TRUE(offers_word("diff '" + folder.string() + "/速", begun + "速度\\ 1.json"));
+  fs::remove_all(folder);
+  EXPECT_TRUE(offers_word("param get '速度 环' Pn021", "Pn0214"));
+  EXPECT_EQ(complete("param get 速度 Pn021", shell).typed, 5U);
+}
+
+TEST_F(Completing, TakesLessThanTwentyMillisecondsWithFiveThousandObjects) {
+  const auto file = fs::temp_directory_path() / ("many-" + std::to_string(::getpid()) + ".eds");
+  std::ofstream out(file);
+  out << "[DeviceInfo]\nVendorName=x\n[ManufacturerObjects]\nSupportedObjects=5000\n";
+  for (int i = 0; i < 5000; ++i) out << i + 1 << "=0x" << std::hex << 0x2000 + i << std::dec << "\n";
+  for (int i = 0; i < 5000; ++i)
+    out << "[" << std::hex << 0x2000 + i << std::dec << "]\nParameterName=Object number " << i
+        << "\nObjectType=0x7\nDataType=0x0007\nAccessType=rw\nPDOMapping=0\n";
+  out.close();
+  shell.defaults().drive = file.string();
+  ASSERT_GE(complete("read object", shell).candidates.size(), 5000U);  // Reads the file.
+  auto best = std::chrono::steady_clock::duration::max();
+  for (int i = 0; i < 20; ++i) {
+    const auto begin = std::chrono::steady_clock::now();
+    const auto offer = complete(i % 2 == 0 ? "read object" : "read ", shell);
+    best = std::min(best, std::chrono::steady_clock::now() - begin);
+    EXPECT_GE(offer.candidates.size(), 5000U);
+  }
+  const auto ms = std::chrono::duration<double, std::milli>(best).count();
+  RecordProperty("milliseconds", std::to_string(ms));
+  std::printf("5,000 objects: %.1f ms\n", ms);
+  EXPECT_LT(ms, kLimit);
+  fs::remove(file);
+}
+
+}  // namespace
+}  // namespace servoctl::cli

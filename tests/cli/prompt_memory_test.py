@@ -1,0 +1,201 @@
+#!/usr/bin/env python3
+"""What a prompt remembers: where it was last time, what its last write replaced (undo), and what goes into a log.
+usage: prompt_memory_test.py SERVOCTL"""
+import json
+import os
+import re
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+
+from pty_terminal import Terminal, expect, failures
+
+servoctl = sys.argv[1]
+cell = f"local:memory-{os.getpid()}"
+other = f"local:memory-other-{os.getpid()}"
+env = {k: v for k, v in os.environ.items() if not k.startswith("SERVOCTL_")}
+drives = [subprocess.Popen([servoctl, "sim", "gsd600@1,gsd600@2", "--bus", bus], env=env, stdout=subprocess.DEVNULL,
+                           stderr=subprocess.DEVNULL) for bus in (cell, other)]
+
+
+def run(*words, bus=cell):
+    return subprocess.run([servoctl, *words, "-b", bus, "-d", "gsd600"], env=env, capture_output=True, text=True)
+
+
+def value(node=1):
+    answer = run("param", "get", "Pn0214", "-n", str(node), "--json")
+    return json.loads(answer.stdout)["result"][0]["raw"] if answer.returncode == 0 else None
+
+
+def last_place(state):
+    # Without a state there is nothing to say, and the prompt is nowhere.
+    t = Terminal(servoctl, state=state)
+    t.see(r"^servoctl> ")
+    t.type(f"bus {cell}\n")
+    t.see(r"servoctl local:\S+> ")
+    t.type("use 2\n")
+    t.see(r"node 2[^>]*> ")
+    t.type("drive gsd600\n")
+    t.see(r"gsd600[^>]*> ")
+    t.type("exit\n")
+    expect("exit code of the first prompt", 0, t.exit_code())
+    t = Terminal(servoctl, state=state)
+    t.see(r"notice: as last time \(\d{4}-[^)]*Z\): bus " + cell + r", node 2, family gsd600; `bus`, `use` and `drive` change it")
+    t.see(r"servoctl " + cell + r" node 2 gsd600[^>]*> ")
+    t.type("use 1\n")
+    t.see(r"node 1 gsd600[^>]*> ")
+    t.type("exit\n")
+    expect("exit code of the second prompt", 0, t.exit_code())
+    # What is named wins, whole.
+    t = Terminal(servoctl, "-b", other, state=state)
+    t.see(r"servoctl " + other + r"> ")
+    if "as last time" in t.text:
+        failures.append("last time was told although a bus was named")
+    t.type("exit\n")
+    expect("exit code with -b", 0, t.exit_code())
+    # A bus that is not there any more, and one behind which another device may be.
+    file = os.path.join(state, "servoctl", "prompt.json")
+    for bus, told in (("can77", r"not as last time \(bus can77, node 1\): [^\n]*can77[^\n]*"), ("slcan:/dev/nowhere@500k", r"the first line that needs the bus opens it")):
+        with open(file, "w", encoding="utf-8") as out:
+            json.dump({"servoctl_prompt": 1, "bus": bus, "nodes": "1", "time": "2026-01-01T00:00:00Z"}, out)
+        t = Terminal(servoctl, state=state)
+        t.see(told)
+        t.see(r"servoctl[^>]*> ")
+        t.type("\x04")
+        expect(f"exit code after {bus}", 0, t.exit_code())
+    with open(file, "w", encoding="utf-8") as out:
+        out.write("{")
+    t = Terminal(servoctl, state=state)
+    t.see(r"notice: [^\n]*prompt\.json")
+    t.see(r"servoctl> ")
+    t.type("\x04")
+    expect("exit code after a damaged file", 0, t.exit_code())
+
+
+def undo(state):
+    before = value()
+    t = Terminal(servoctl, "-b", cell, "-n", "1", "-d", "gsd600", state=state)
+    t.see(r"> ")
+    t.type("undo\n")
+    t.see(r"there is nothing to put back")
+    t.type("param set Pn0214 400\n")
+    t.see(r"read back[^>]*> ")
+    t.type("undo\n")
+    t.see(rf"Put back Pn0214 on node 1: {before} in place of 400\? \[y/N\] ")
+    t.type("n\n")
+    t.see(r"not confirmed; nothing was sent[^>]*> ")
+    expect("the value after No", 400, value())
+    t.type("undo\n")
+    t.see(r"\[y/N\] ")
+    t.type("y\n")
+    t.see(r"read back[^>]*> ")
+    expect("the value after undo", before, value())
+    t.type("undo --yes\n")
+    t.see(r"read back[^>]*> ")
+    expect("the value after undo of undo", 400, value())
+    # Somebody else has written meanwhile.
+    expect("a write of another process", 0, run("param", "set", "Pn0214", "500", "-n", "1").returncode)
+    t.type("undo --yes\n")
+    t.see(r"no longer holds in Pn0214 [^\n]* what was written[^>]*> ")
+    expect("the value of somebody else", 500, value())
+    # The prompt is elsewhere.
+    t.type("param set Pn0214 450\n")
+    t.see(r"read back[^>]*> ")
+    t.type("use 2\n")
+    t.see(r"node 2[^>]*> ")
+    t.type("undo --yes\n")
+    t.see(r"made with 1 in use, and now 2 is[^>]*> ")
+    t.type(f"use 1\nbus {other}\n")
+    t.see(other + r" node 1[^>]*> ")
+    t.type("undo --yes\n")
+    t.see(r"the prompt is not there any more[^>]*> ")
+    t.type(f"bus {cell}\n")
+    t.see(cell + r" node 1[^>]*> ")
+    # The drive has restarted: what was not kept is gone, and it may be another one.
+    t.type("nmt reset --wait --yes\n")
+    t.see(r"reset +yes[^>]*> ")
+    t.type("undo --yes\n")
+    t.see(r"has restarted since it was written to[^>]*> ")
+    # What moves a motor is no setting, and hides what was written before it.
+    t.type("write 0x607A 1000\n")
+    t.see(r"written[^>]*> ")
+    t.type("undo --yes\n")
+    t.see(r"the last write is not put back: 0x607A on node 1: it drives the motor[^>]*> ")
+    t.type("exit\n")
+    expect("exit code of exit", 0, t.exit_code())
+    # From a pipe it is the same, and asks for --yes.
+    lines = "param set Pn0214 410\nundo\n"
+    answer = subprocess.run([servoctl, "-b", cell, "-n", "1", "-d", "gsd600"], env=env, input=lines, capture_output=True, text=True)
+    expect("exit code of undo without --yes in a pipe", 8, answer.returncode)
+    expect("the value then", 410, value())
+
+
+def log(state):
+    file = os.path.join(state, "the log")
+    t = Terminal(servoctl, "-b", cell, "-n", "1", "-d", "gsd600", state=state)
+    t.see(r"> ")
+    t.type(f"log on '{file}'\n")
+    t.see(r"all that is typed and answered goes into [^\n]*the log")
+    t.type("param search --lang zh 速度环增益\n")
+    t.see(r"Pn0214")
+    t.type("nmt reset\n")
+    t.see(r"\[y/N\] ")
+    t.type("n\n")
+    t.see(r"not confirmed[^>]*> ")
+    with open(file, encoding="utf-8") as written:  # While the prompt goes on.
+        text = written.read()
+    stamp = r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}Z"
+    for wanted in (rf"^{stamp} > param search --lang zh 速度环增益$", rf"^{stamp}   Pn0214 +速度环增益 1", rf"^{stamp} > nmt reset$",
+                   rf"^{stamp}   .*\[y/N\] $", rf"^{stamp} > n$", rf"^{stamp}   error: not confirmed; nothing was sent$"):
+        if not re.search(wanted, text, re.MULTILINE):
+            failures.append(f"the log has no {wanted!r}: {text!r}")
+    t.type("log off\n")
+    t.see(r"went into [^>]*> ")
+    t.type("read statusword\n")
+    t.see(r"0x6041[^>]*> ")
+    with open(file, encoding="utf-8") as written:
+        if "statusword" in written.read():
+            failures.append("a line after `log off` is in the log")
+    for wrong in ("log on /dev/null", "log on /proc/nowhere/log", "log sideways"):
+        t.type(wrong + "\n")
+        t.see(r"error: [^>]*> ")
+    t.type("exit\n")
+    expect("exit code of exit", 0, t.exit_code())
+
+
+def full_disk(state):
+    # A limit of the size stands for a full disk: the line is carried out, and told.
+    t = Terminal(servoctl, "-b", cell, "-n", "1", "-d", "gsd600", state=state)
+    t.see(r"> ")
+    resource.prlimit(t.pid, resource.RLIMIT_FSIZE, (200, 200))
+    t.type(f"log on {os.path.join(state, 'full')}\n")
+    t.see(r"goes into")
+    t.type("param set Pn0214 420\n")
+    t.see(r"notice: [^\n]*full: [^\n]*the log has ended here; make room")
+    t.see(r"read back|> ")
+    expect("the value written beside a full disk", 420, value())
+    t.type("log\n")
+    t.see(r"there is no log")
+    t.type("exit\n")
+    t.exit_code()
+
+
+try:
+    for _ in range(200):
+        if value() is not None and run("read", "0x1000", "-n", "2", bus=other).returncode == 0:
+            break
+        time.sleep(0.05)
+    for part in (last_place, undo, log, full_disk):
+        with tempfile.TemporaryDirectory() as folder:
+            part(folder)
+finally:
+    for drive in drives:
+        drive.terminate()
+        drive.wait()
+
+for failure in failures:
+    print("FAILED", failure)
+print(f"{len(failures)} failed")
+sys.exit(1 if failures else 0)
