@@ -47,7 +47,7 @@ fi
 has .deb root/usr "${common[@]}" share/zsh/vendor-completions/_servoctl share/doc/servoctl/README.Debian share/doc/servoctl/changelog.Debian.gz
 works .deb "$work/root/usr/bin/servoctl"
 gzip -dc root/usr/share/man/man1/servoctl.1.gz | cmp -s - <(root/usr/bin/servoctl man) || fail "the manual page is not that of the program"
-for library in libcli11 libfmt nlohmann-json3 libexpected libtomlplusplus libpugixml libedit libbsd libmd libncurses libnl-3 zlib1g libstdc++ libc6; do
+for library in libcli11 libfmt nlohmann-json3 libexpected libtomlplusplus libpugixml libnl-3 zlib1g libstdc++ libc6; do
   grep -q "^$library.*-dev (source: .* .*)" root/usr/share/doc/servoctl/copyright || fail "no licence of $library"
 done
 while IFS= read -r terms; do

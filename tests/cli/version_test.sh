@@ -16,7 +16,7 @@ export GIT_AUTHOR_DATE='2026-02-03T23:30:00 -0200' GIT_COMMITTER_DATE='2026-02-0
 unset GIT_DIR GIT_WORK_TREE GIT_INDEX_FILE
 
 check() {  # check NAME PATTERN
-  cmake -DSOURCE="$work/tree" -DPROJECT=0.1.0 -DINTO="$work/out" -P "$source/cmake/version.cmake"
+  cmake -DSOURCE="$work/tree" -DPROJECT=0.1.0 -DINTO="$work/out" -P "$source/packaging/version.cmake"
   local is
   is=$(head -1 "$work/out/version.txt")
   # shellcheck disable=SC2053

@@ -12,11 +12,11 @@ add_custom_command(OUTPUT ${install_folder}/servoctl.1.gz
 set(linked_packages libcli11-dev,nlohmann-json3-dev,libexpected-dev,libtomlplusplus-dev,libfmt-dev)
 if(TARGET servoctl_fmt)
   string(REGEX MATCH "^[0-9]+" major ${CMAKE_CXX_COMPILER_VERSION})
-  string(APPEND linked_packages ,libpugixml-dev,libedit-dev,libbsd-dev,libmd-dev,libncurses-dev,libnl-3-dev,zlib1g-dev,libstdc++-${major}-dev,libc6-dev)
+  string(APPEND linked_packages ,libpugixml-dev,libnl-3-dev,zlib1g-dev,libstdc++-${major}-dev,libc6-dev)
 endif()
 add_custom_command(OUTPUT ${install_folder}/copyright
-  COMMAND ${CMAKE_COMMAND} -DSOURCE=${CMAKE_SOURCE_DIR} -DINTO=${install_folder} -DPACKAGES=${linked_packages} -P ${CMAKE_SOURCE_DIR}/cmake/copyright.cmake
-  DEPENDS ${CMAKE_SOURCE_DIR}/cmake/copyright.cmake ${CMAKE_SOURCE_DIR}/LICENSE VERBATIM)
+  COMMAND ${CMAKE_COMMAND} -DSOURCE=${CMAKE_SOURCE_DIR} -DINTO=${install_folder} -DPACKAGES=${linked_packages} -P ${CMAKE_SOURCE_DIR}/packaging/copyright.cmake
+  DEPENDS ${CMAKE_SOURCE_DIR}/packaging/copyright.cmake ${CMAKE_SOURCE_DIR}/LICENSE VERBATIM)
 add_custom_command(OUTPUT ${install_folder}/changelog.gz
   COMMAND sh -c "gzip -9nc \"$0\" >\"$1\"" ${CMAKE_SOURCE_DIR}/CHANGELOG.md ${install_folder}/changelog.gz
   DEPENDS ${CMAKE_SOURCE_DIR}/CHANGELOG.md VERBATIM)
@@ -57,8 +57,8 @@ endif()
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "can-utils, libcap2-bin")
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${CMAKE_SOURCE_DIR}/packaging/postinst)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
-set(CPACK_PROJECT_CONFIG_FILE ${CMAKE_SOURCE_DIR}/cmake/pack.cmake)
-set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_SOURCE_DIR}/cmake/debian_files.cmake)
+set(CPACK_PROJECT_CONFIG_FILE ${CMAKE_SOURCE_DIR}/packaging/pack.cmake)
+set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_SOURCE_DIR}/packaging/debian_files.cmake)
 set(CPACK_SERVOCTL_BUILD ${CMAKE_BINARY_DIR})
 set(CPACK_SERVOCTL_SOURCE ${CMAKE_SOURCE_DIR})
 include(CPack)
