@@ -18,7 +18,7 @@ packages=(libc6 libgcc-s1 gcc-12-base libcrypt1 dash man-db libpipeline1 libgdbm
 cache=$build/clean-root
 mkdir -p "$cache"
 work=$(mktemp -d)
-trap 'umount -R "$work/root/proc" 2>/dev/null; rm -rf --one-file-system "$work"' EXIT
+trap 'umount -R "$work/root/proc" 2>/dev/null || true; rm -rf --one-file-system "$work"' EXIT
 if [ "$(find "$cache" -name '*.deb' | wc -l)" -ne ${#packages[@]} ]; then
   rm -f "$cache"/*.deb
   (cd "$cache" && timeout 60 apt-get download -qq -o APT::Sandbox::User=root "${packages[@]}" >"$work/log" 2>&1) ||
