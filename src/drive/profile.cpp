@@ -280,6 +280,10 @@ Result<Profile> load_profile(std::string_view family, std::span<const fs::path> 
   return load_family(family, folders, 0);
 }
 
+Result<Profile> load_profile(const Family& family, std::span<const fs::path> folders) {
+  return load_parts(family, folders, 0);
+}
+
 Profile profile_of_sheet(od::EdsFile sheet, std::string name, std::span<const fs::path> folders) {
   auto profile = generic_profile(std::move(name), folders);
   take_sheet(profile, sheet);

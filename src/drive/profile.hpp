@@ -74,6 +74,8 @@ std::vector<Family> find_families(std::span<const std::filesystem::path> folders
 /// where it says nothing itself. Errc::usage for an unknown name (nearest ones offered), Errc::file for a
 /// file that cannot be used.
 Result<Profile> load_profile(std::string_view family, std::span<const std::filesystem::path> folders);
+/// The same of a family that was found.
+Result<Profile> load_profile(const Family& family, std::span<const std::filesystem::path> folders);
 
 /// What a data sheet that stands in no file says (a drive's own dictionary), on what CiA 402 says of all
 /// drives.

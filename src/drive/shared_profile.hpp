@@ -10,9 +10,9 @@
 
 namespace servoctl::drive {
 
-/// As load_profile(); but the files of a family by its name are read once by the process and stay in memory,
-/// for whoever asks: the simulated drive and the command that speaks to it, the next line of a batch, another
-/// thread. A user's own file is read anew each time: it may have been edited.
+/// As load_profile(); but the files of a family by its name are read once by the process as long as they stay
+/// as they are, for whoever asks: the simulated drive and the command that speaks to it, another thread. A
+/// user's own file is read anew each time.
 Result<std::shared_ptr<const Profile>> shared_profile(std::string_view family,
                                                       std::span<const std::filesystem::path> folders);
 
