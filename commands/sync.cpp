@@ -155,7 +155,7 @@ const Command kSyncStart{
     .path = "sync start",
     .summary = "Produce SYNC at a fixed period; asks first",
     .details =
-        "At the prompt and in a batch file it runs in the background of the following lines, until `sync "
+        "At the prompt, in a pipe and in a batch file it runs in the background of the following lines, until `sync "
         "stop` or the end of input; alone it runs until Ctrl-C, or for the time of --for. At its end it "
         "shows the measured periods: mean, shortest, longest, standard deviation, and how many SYNCs were "
         "missed because the computer was late. There must be no other producer of SYNC on the bus.",

@@ -51,7 +51,7 @@ int LineRunner::run(std::string_view line) {
   if (words->front() == "log") return log_line(*shell_, *words);
   auto& last = shell_->last_write();
   last.set_place(shell_->defaults().nodes);
-  last.set_enabled(!is_batch(*words));
+  last.set_enabled(shell_->stays_open() && !is_batch(*words));
   return is_batch(*words) ? run_batch(*shell_, *words, {}) : shell_->run(*words);
 }
 

@@ -38,8 +38,10 @@ void open_standard_descriptors() {
   }
 }
 
-/// Lines from a pipe or file: stops at the first that fails, whose exit code is the answer.
+/// Lines from a pipe or file: stops at the first that fails, whose exit code is the answer. What a line
+/// begins goes on behind it, as at the prompt, and ends with the input.
 int run_pipe(Shell& shell) {
+  shell.stay_open(true);
   auto& input = standard_input();
   LineRunner runner(shell);
   std::string line;
@@ -47,6 +49,7 @@ int run_pipe(Shell& shell) {
   while (code == 0 && !runner.wants_exit() && next_line(shell, input, line)) code = runner.run(line);
   if (code == 0 && interrupted()) code = exit_code(Errc::interrupted);
   if (code != 0) shell.let_go();
+  shell.stop_sync();
   return code;
 }
 

@@ -84,6 +84,7 @@ class Shell {
   /// Whether other lines follow, so that what a line begins may go on behind it; the answer is what held
   /// before.
   bool stay_open(bool stays) { return std::exchange(stays_open_, stays); }
+  bool stays_open() const { return stays_open_; }
   std::vector<std::uint8_t> energised_on(std::string_view url) const { return bus_.energised_on(url); }
   bool produces_sync() const { return bus_.produces_sync(); }
   /// As BusHolder::stop_sync().

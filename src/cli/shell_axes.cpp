@@ -5,12 +5,10 @@
 #include <variant>
 
 #include "base/text.hpp"
-#include "cabinet/axis_identity.hpp"
 #include "cabinet/station.hpp"
 #include "can/socketcan.hpp"
 #include "cli/shell.hpp"
 #include "session/gateway_network.hpp"
-#include "session/identify.hpp"
 #include "session/open_bus.hpp"
 #include "session/open_port.hpp"
 #include "session/open_register_line.hpp"
@@ -172,18 +170,6 @@ Result<std::vector<LinePart>> Shell::parts_of_line(const ParsedLine& line, const
   if (parts)
     if (const auto good = check_several(command, line.arguments, *parts); !good) return fail(good.error());
   return parts;
-}
-
-/// Before something is changed: the drive of an axis is the one that the file says, where it says its serial
-/// number.
-Result<void> Shell::hold_serials(Run& run) {
-  for (const auto* axis : run.axes) {
-    if (!axis->serial || run.settings.force_family) continue;
-    const auto identity = session::read_identity(*run.context.session, axis->node);
-    if (!identity) return fail(identity.error());
-    if (const auto same = cabinet::hold_serial(*axis, *identity); !same) return same;
-  }
-  return {};
 }
 
 /// One part of a line on its way.

@@ -6,6 +6,7 @@
 
 #include "base/calendar.hpp"
 #include "base/text.hpp"
+#include "cabinet/axis_identity.hpp"
 #include "cli/shell.hpp"
 #include "session/identify.hpp"
 #include "session/open_bus.hpp"
@@ -231,6 +232,18 @@ void Shell::offer_turn(Run& run) {
   run.context.notices.push_back(fmt::format(
       "--turn {} was given for this drive at {}: add it if motor, encoder and gear are those of then",
       (*known)->turn, (*known)->time));
+}
+
+/// Before something is changed: the drive of an axis is the one that the file says, where it says its serial
+/// number.
+Result<void> Shell::hold_serials(Run& run) {
+  for (const auto* axis : run.axes) {
+    if (!axis->serial || run.settings.force_family) continue;
+    const auto identity = session::read_identity(*run.context.session, axis->node);
+    if (!identity) return fail(identity.error());
+    if (const auto same = cabinet::hold_serial(*axis, *identity); !same) return same;
+  }
+  return {};
 }
 
 }  // namespace servoctl::cli

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <cstdlib>
 #include <system_error>
 #include <utility>
 
@@ -17,19 +16,6 @@ namespace {
 
 fs::path with_extension(const fs::path& stem, std::string_view extension) {
   return stem.string() + std::string(extension);
-}
-
-/// The program's own data: beside an installed program, or in the source tree of one that was just built.
-std::optional<fs::path> own_folder() {
-  std::error_code ignored;
-  const auto program = fs::read_symlink("/proc/self/exe", ignored);
-  if (ignored) return std::nullopt;
-  for (auto folder = program.parent_path(); folder.has_relative_path(); folder = folder.parent_path()) {
-    if (fs::is_directory(folder / "share/servoctl/eds", ignored)) return folder / "share/servoctl/eds";
-    if (fs::is_directory(folder / "eds", ignored) && fs::exists(folder / "CMakeLists.txt", ignored))
-      return folder / "eds";
-  }
-  return std::nullopt;
 }
 
 /// The family whose files say what CiA 301 and CiA 402 say of every drive.
@@ -227,19 +213,6 @@ const od::Parameter* Profile::parameter(std::string_view id) const {
 const od::Parameter* Profile::parameter(ObjectAddress object) const {
   const auto found = by_object_.find(object);
   return found == by_object_.end() ? nullptr : &parameters[found->second];
-}
-
-std::vector<fs::path> drive_folders() {
-  std::vector<fs::path> out;
-  if (const char* own = std::getenv("SERVOCTL_DRIVES"); own != nullptr)
-    for (const auto part : split(std::string_view(own), ':'))
-      if (!part.empty()) out.emplace_back(part);
-  if (const char* config = std::getenv("XDG_CONFIG_HOME"); config != nullptr && *config != '\0')
-    out.push_back(fs::path(config) / "servoctl/drives");
-  else if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0')
-    out.push_back(fs::path(home) / ".config/servoctl/drives");
-  if (auto own = own_folder()) out.push_back(std::move(*own));
-  return out;
 }
 
 std::vector<Family> find_families(std::span<const fs::path> folders) {

@@ -29,8 +29,7 @@ Value planned_frames(const show::Desk& desk, std::span<const Change> changes) {
   return table;
 }
 
-Result<Value> planned_changes(show::Desk& desk, std::span<const Change> wanted,
-                              const WriteOptions& options) {
+Result<Value> planned_changes(show::Desk& desk, std::span<const Change> wanted, const WriteOptions& options) {
   const auto changes = changes_with(desk, wanted, options);
   session::Rehearsal rehearsal;
   KeepingNodes keeping(desk, changes);
