@@ -76,5 +76,17 @@ void complete_a_name_among_5000(benchmark::State& state) {
 }
 BENCHMARK(complete_a_name_among_5000)->Unit(benchmark::kMillisecond);
 
+/// What each further Tab costs, where all names fit and are listed.
+void offer_each_of_5000(benchmark::State& state) {
+  const auto file = std::filesystem::temp_directory_path() / "servoctl-bench.eds";
+  (void)write_file_atomically(file, large_eds(5000));
+  cli::StandardConsole console;
+  cli::Shell shell(console, {});
+  shell.defaults().drive = file.string();
+  for (auto _ : state) benchmark::DoNotOptimize(cli::complete("read quantity_number_", shell));
+  std::filesystem::remove(file);
+}
+BENCHMARK(offer_each_of_5000)->Unit(benchmark::kMillisecond);
+
 }  // namespace
 }  // namespace servoctl

@@ -1,10 +1,9 @@
-// What Tab offers, with what it says beside it, and how long that takes.
+// What Tab offers, with what it says beside it.
 #include "cli/terminal/completer.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <filesystem>
 #include <fstream>
 
@@ -16,13 +15,6 @@ namespace servoctl::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Milliseconds; what is not optimised, or runs under the sanitizers of clang, takes its time.
-#if defined(NDEBUG) && !defined(__clang__)
-constexpr double kLimit = 20;
-#else
-constexpr double kLimit = 200;
-#endif
 
 class Completing : public testing::Test {
  protected:
@@ -100,7 +92,7 @@ TEST_F(Completing, PutsABackslashBeforeWhatWouldEndAWordAndReadsQuotes) {
   EXPECT_EQ(complete("param get 速度 Pn021", shell).typed, 5U);
 }
 
-TEST_F(Completing, TakesLessThanTwentyMillisecondsWithFiveThousandObjects) {
+TEST_F(Completing, OffersEachOfFiveThousandObjects) {
   const auto file = fs::temp_directory_path() / ("many-" + std::to_string(::getpid()) + ".eds");
   std::ofstream out(file);
   out << "[DeviceInfo]\nVendorName=x\n[ManufacturerObjects]\nSupportedObjects=5000\n";
@@ -110,18 +102,8 @@ TEST_F(Completing, TakesLessThanTwentyMillisecondsWithFiveThousandObjects) {
         << "\nObjectType=0x7\nDataType=0x0007\nAccessType=rw\nPDOMapping=0\n";
   out.close();
   shell.defaults().drive = file.string();
-  ASSERT_GE(complete("read object", shell).candidates.size(), 5000U);  // Reads the file.
-  auto best = std::chrono::steady_clock::duration::max();
-  for (int i = 0; i < 20; ++i) {
-    const auto begin = std::chrono::steady_clock::now();
-    const auto offer = complete(i % 2 == 0 ? "read object" : "read ", shell);
-    best = std::min(best, std::chrono::steady_clock::now() - begin);
-    EXPECT_GE(offer.candidates.size(), 5000U);
-  }
-  const auto ms = std::chrono::duration<double, std::milli>(best).count();
-  RecordProperty("milliseconds", std::to_string(ms));
-  std::printf("5,000 objects: %.1f ms\n", ms);
-  EXPECT_LT(ms, kLimit);
+  EXPECT_EQ(complete("read object_number_", shell).candidates.size(), 5000U);
+  EXPECT_GE(complete("read ", shell).candidates.size(), 5000U);
   fs::remove(file);
 }
 
