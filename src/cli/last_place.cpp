@@ -102,8 +102,15 @@ void take_last_place(Shell& shell, const std::filesystem::path& state_folder) {
 
 void keep_last_place(const Settings& now, const std::filesystem::path& state_folder) {
   if (now.bus.empty() || now.bus.starts_with("replay:") || state_folder.empty()) return;
+  // Another folder may have another cabinet file, with the same names for other drives; and all nodes are
+  // none to begin with.
+  const bool of_cabinet = now.bus.find(':') == std::string::npos && !can::is_interface(now.bus);
+  if (of_cabinet || names_axes(now.nodes) || now.nodes == "all") return;
+  std::error_code error;
+  const bool file = std::filesystem::is_regular_file(now.drive, error);
+  const auto drive = file ? std::filesystem::canonical(now.drive, error).string() : now.drive;
   // Where the prompt was is worth no word when it cannot be kept.
-  (void)LastPlaceFile(state_folder).write({now.bus, now.nodes, now.drive, utc_now_text()});
+  (void)LastPlaceFile(state_folder).write({now.bus, now.nodes, drive, utc_now_text()});
 }
 
 }  // namespace servoctl::cli

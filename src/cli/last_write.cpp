@@ -8,15 +8,17 @@
 #include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/identify.hpp"
+#include "session/pdo_change.hpp"
 
 namespace servoctl::cli {
 namespace {
 
 using command::Context;
 
-/// Objects that drive the motor, or say how: to write them back is a movement, and no correction.
-constexpr std::array<std::uint16_t, 8> kMoving{0x6040, 0x6042, 0x6060, 0x6071,
-                                               0x607A, 0x60B0, 0x60C1, 0x60FF};
+/// Objects that drive the motor or an output, or say how: to write them back is a movement, and no
+/// correction.
+constexpr std::array<std::uint16_t, 11> kMoving{0x6040, 0x6042, 0x6060, 0x6071, 0x607A, 0x60B0,
+                                                0x60B1, 0x60B2, 0x60C1, 0x60FE, 0x60FF};
 
 std::string why_not_back(const drive::Target& target, const drive::Meaning& meaning) {
   const auto* entry = target.entry;
@@ -97,6 +99,11 @@ void LastWrite::look_at(const Context& context, const settings::NamedValue& name
   if (why.empty() && !named.type && !(meaning.type_known && meaning.size_known))
     why = "its type is not known; `--type` says it";
   const auto before = why.empty() ? context.session->upload(node, target->address) : Result<Bytes>(Bytes());
+  if (why.empty() && before && pending_->keep && context.profile != nullptr) {
+    session::Values both{{target->address, *before}};
+    session::add_stored_copies(*context.profile, node, both);
+    if (both.size() > 1) why = "`--keep` wrote the parameter too that the drive copies into it at its start";
+  }
   const auto* identity = why.empty() ? identity_of(*context.session, node) : nullptr;
   if (why.empty() && (!before || identity == nullptr)) why = "what it held before could not be read";
   const auto text = why.empty() ? text_of(meaning, *before) : std::string();

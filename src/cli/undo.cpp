@@ -83,9 +83,9 @@ std::vector<std::string> words_of(const WrittenLine& line, const WrittenValue& v
   std::vector<std::string> out;
   for (const auto part : split(std::string_view(line.command), ' ')) out.emplace_back(part);
   const auto add = [&out](std::initializer_list<std::string> words) { out.insert(out.end(), words); };
-  add({"-n", value.target});
-  if (!line.of_cabinet) add({"-b", line.bus});
-  if (!line.of_cabinet && !line.drive.empty()) add({"-d", line.drive});
+  // Of an axis too by its number: what the cabinet file calls so may be another drive now.
+  add({"-n", std::to_string(value.node), "-b", line.bus});
+  if (!line.drive.empty()) add({"-d", line.drive});
   if (!value.type.empty()) add({"--type", value.type});
   if (line.keep) add({"--keep"});
   if (line.unlock) add({"--unlock"});

@@ -71,7 +71,7 @@ std::string description() {
              "standard input.") +
          ".PP\n" +
          roff_text(
-             "What stores, restores, resets or moves is asked for on a terminal and needs `--yes` elsewhere. What "
+             "What stores all values, restores, resets or moves is asked for on a terminal and needs `--yes` elsewhere. What "
              "stands behind `--` is a value, whatever it looks like: `write 0x2000 -- -5`.") +
          ".PP\n" +
          roff_text(

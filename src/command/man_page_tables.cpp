@@ -49,6 +49,8 @@ constexpr Entry kManualEnvironment[] = {
      "`/run/user/UID/servoctl` or `/tmp/servoctl-UID`."},
     {"HOME", "Where `~` is."},
     {"LANG", "See `SERVOCTL_LANG`."},
+    {"NO_COLOR", "The prompt has no colours where it is set and not empty."},
+    {"TERM", "Where it is empty or `dumb` the prompt has no line editor."},
     {"SOURCE_DATE_EPOCH",
      "Seconds since 1970 that stand for the present time in the files that are written, so that they can be "
      "made the same again."},

@@ -21,6 +21,9 @@ bool is_unused(ObjectAddress object, const Values& values) {
          object.sub > load_le(count->second);
 }
 
+/// The identifier in an object that holds a COB-ID (CiA 301, 7.5.2.15).
+constexpr std::uint64_t kCobIdBits = 0x1FFF'FFFF;
+
 /// How one attempt goes about it.
 struct Way {
   bool pre_operational = false;
@@ -161,12 +164,15 @@ Values values_of(const Pdo& pdo, const Values& present) {
 void add_stored_copies(const drive::Profile& profile, std::uint8_t node, Values& wanted) {
   const auto& with_node = profile.rules.mirror_add_node_id;
   for (const auto& parameter : profile.parameters) {
-    if (!parameter.mirror || !parameter.object) continue;
+    // Others are the same value under another number, in force at once: nothing is copied at a start.
+    if (!parameter.mirror || !parameter.object || parameter.effect != od::Effect::restart) continue;
     const auto found = wanted.find(*parameter.mirror);
     const auto size = od::size_of(parameter.type);
     if (found == wanted.end() || !size) continue;
     const bool added = std::count(with_node.begin(), with_node.end(), *parameter.mirror) > 0;
-    wanted.insert_or_assign(*parameter.object, store_le(load_le(found->second) - (added ? node : 0U), *size));
+    auto value = load_le(found->second);
+    if (added && (value & kCobIdBits) >= node) value -= node;  // One that is off and has no number stays off.
+    wanted.insert_or_assign(*parameter.object, store_le(value, *size));
   }
 }
 

@@ -8,6 +8,7 @@
 #include "canopen/sdo_frame.hpp"
 #include "session/cob_id_check.hpp"
 #include "settings/keeping_nodes.hpp"
+#include "settings/stored_copies.hpp"
 
 namespace servoctl::settings {
 namespace {
@@ -79,8 +80,9 @@ Result<Change> change_from_file(const drive::Profile* profile, std::uint8_t node
   return Change{node, target, size ? meaning.type : od::DataType::domain, std::move(data)};
 }
 
-Result<Value> write_from_file(show::Desk& desk, std::span<const Change> changes,
+Result<Value> write_from_file(show::Desk& desk, std::span<const Change> wanted,
                               const std::filesystem::path& file, const WriteOptions& options) {
+  const auto changes = changes_with(desk, wanted, options);
   std::vector<session::SdoRequest> requests;
   for (const auto& change : changes)
     requests.push_back({change.node, change.target.address, change.data, change.transfer});

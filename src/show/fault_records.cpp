@@ -117,7 +117,7 @@ ToldFault told_fault(const drive::Profile* profile, bool chinese, std::optional<
   if (in_fault)
     return {true, std::nullopt,
             chinese ? "处于故障状态，无故障代码" : "the drive is in fault and tells no code (603Fh)"};
-  return {.known = code.has_value()};
+  return {code.has_value(), code, {}};
 }
 
 }  // namespace servoctl::show

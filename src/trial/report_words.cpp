@@ -19,7 +19,7 @@ constexpr std::array kWords{
     Pair{"value", "值"},
     Pair{"unit", "单位"},
     Pair{"note", "备注"},
-    Pair{"ran to its end", "执行完毕"},
+    Pair{"ended without an error", "无错误结束"},
     Pair{"mode", "运行模式"},
     Pair{"modes", "支持的模式"},
     Pair{"fault", "故障"},

@@ -144,7 +144,8 @@ PreflightItem::Weight weight(std::string_view family, WatchdogPlan::Kind kind) {
 }
 
 TEST(WatchdogLine, IsACautionWhereTheManualDoesNotTellTheReaction) {
-  EXPECT_EQ(weight("gsd600", Kind::heartbeat), PreflightItem::Weight::good);
+  EXPECT_EQ(weight("cia402", Kind::heartbeat), PreflightItem::Weight::good);
+  EXPECT_EQ(weight("gsd600", Kind::heartbeat), PreflightItem::Weight::caution);
   EXPECT_EQ(weight("dm", Kind::heartbeat), PreflightItem::Weight::caution);
   EXPECT_EQ(weight("ts", Kind::heartbeat), PreflightItem::Weight::caution);
   EXPECT_EQ(weight("da200", Kind::none), PreflightItem::Weight::caution);

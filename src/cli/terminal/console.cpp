@@ -128,6 +128,7 @@ bool StandardConsole::ask(std::string_view question) {
 }
 
 void StandardConsole::pause(std::string_view text) {
+  (void)::tcflush(STDIN_FILENO, TCIFLUSH);  // What was typed before the text is no answer to it.
   err(std::string(text) + " [Enter] ");
   log_typed(typed_line());
 }

@@ -14,7 +14,7 @@ using KeyKind = KeyPress::Kind;
 constexpr char kEscapeByte = '\x1B';
 constexpr std::string_view kPasteBegins = "\x1B[200~";
 constexpr std::string_view kPasteEnds = "\x1B[201~";
-/// More than this is a paste that never ended.
+/// Of more than this nothing is taken.
 constexpr std::size_t kLongestPaste = std::size_t{1} << 20U;
 constexpr std::size_t kLongestSequence = 32;
 
@@ -103,9 +103,16 @@ std::optional<KeyPress> KeyDecoder::take(char byte) {
 
 std::optional<KeyPress> KeyDecoder::take_pasted(char byte) {
   pasted_ += byte;
-  const bool ends = std::string_view(pasted_).ends_with(kPasteEnds);
-  if (!ends && pasted_.size() < kLongestPaste) return std::nullopt;
-  if (ends) pasted_.resize(pasted_.size() - kPasteEnds.size());
+  if (!std::string_view(pasted_).ends_with(kPasteEnds)) {
+    // The rest is of the paste as well: taken for keys, its line ends would run lines.
+    if (pasted_.size() > kLongestPaste) {
+      pasted_.erase(0, pasted_.size() - kPasteEnds.size());
+      too_long_ = true;
+    }
+    return std::nullopt;
+  }
+  pasted_.resize(pasted_.size() - kPasteEnds.size());
+  if (std::exchange(too_long_, false)) pasted_.clear();
   pasting_ = false;
   return KeyPress{.kind = KeyKind::text, .text = std::exchange(pasted_, {}), .pasted = true};
 }

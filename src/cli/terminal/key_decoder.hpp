@@ -62,6 +62,7 @@ class KeyDecoder {
   std::string held_;  ///< Of a key that has not ended.
   std::string pasted_;
   bool pasting_ = false;
+  bool too_long_ = false;  ///< The paste, to be taken.
 };
 
 }  // namespace servoctl::cli

@@ -47,6 +47,10 @@ class LineEditor {
   Step take(char byte);
   /// Whether a paste or a key has begun and not ended: the next byte is of it.
   bool is_inside_key() const { return keys_.is_inside(); }
+  /// Waits no longer for the end of a paste or of a key.
+  void forget_key() { keys_ = {}; }
+  /// Whether lines of a paste wait for Enter.
+  bool waits_pasted() const { return !pasted_.empty(); }
   std::string text() const { return line_.text(); }
   /// Drops the line, and what else was pasted.
   void drop();

@@ -1,8 +1,10 @@
 #include "cli/terminal/prompt.hpp"
 
 #include <poll.h>
+#include <termios.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
@@ -10,6 +12,7 @@
 #include <utility>
 
 #include "base/printable.hpp"
+#include "cli/batch/batch_command.hpp"
 #include "cli/last_place.hpp"
 #include "cli/line_runner.hpp"
 #include "cli/state_folder.hpp"
@@ -18,6 +21,7 @@
 #include "cli/terminal/line_mode.hpp"
 #include "cli/terminal/prompt_words.hpp"
 #include "cli/terminal/signals.hpp"
+#include "cli/words.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -37,6 +41,14 @@ bool moves_cursor() {
 bool shows_colours() {
   const char* none = std::getenv("NO_COLOR");
   return none == nullptr || *none == '\0';
+}
+
+/// Whether the line may have moved a motor.
+bool may_move(const std::string& line) {
+  const auto words = split_words(line);
+  if (!words || words->empty()) return false;
+  const auto match = match_command(*words);
+  return is_batch(*words) || (match.command != nullptr && match.command->effect >= command::Effect::moves);
 }
 
 class Prompt {
@@ -89,6 +101,8 @@ class Prompt {
   bool colours_ = shows_colours();
   bool editing_ = false;  ///< A line is being typed.
   bool done_ = false;
+  bool gives_up_paste_ = false;
+  std::chrono::steady_clock::time_point last_key_;
   bool held_ = false;  ///< A key waits, and the terminal takes nothing: what it shows would be lost.
 };
 
@@ -166,6 +180,7 @@ void Prompt::take_keys() {
   constexpr int kAtOnce = 4096;
   for (int i = 0; i < kAtOnce && !done_ && (i == 0 || key_waits()); ++i) {
     char byte = 0;
+    last_key_ = std::chrono::steady_clock::now();
     if (::read(STDIN_FILENO, &byte, 1) != 1) {
       done_ = !interrupted();
       break;
@@ -183,6 +198,12 @@ void Prompt::take_keys() {
 
 /// What has changed meanwhile.
 void Prompt::look() {
+  // Ctrl-C may have dropped the end of a paste with the rest of it; what still comes is not taken for keys.
+  const bool silent = std::chrono::steady_clock::now() - last_key_ > kLook;
+  if (gives_up_paste_ && silent) {
+    editor_.forget_key();
+    gives_up_paste_ = false;
+  }
   if (edits_ && mode_.renew()) {
     console_->draw(kMarkPastes);
     draw();
@@ -212,6 +233,7 @@ void Prompt::drop_line() {
   else
     console_->out("^C\n");
   editor_.drop();
+  gives_up_paste_ = editor_.is_inside_key();
   rest();
   begin_line();
 }
@@ -221,7 +243,10 @@ void Prompt::run_line() {
   if (edits_) console_->draw(editor_.leave());
   rest();
   if (text.find_first_not_of(' ') != std::string::npos) history_.add(text);
+  const bool ahead = key_waits();
   runner_.run(text);
+  // What was typed while it ran was meant for no line that follows: an Enter would start the next one.
+  if (!ahead || editor_.waits_pasted() || may_move(text)) (void)::tcflush(STDIN_FILENO, TCIFLUSH);
   clear_interrupt();
   keep_place();
   done_ = runner_.wants_exit();
