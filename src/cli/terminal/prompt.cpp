@@ -243,10 +243,9 @@ void Prompt::run_line() {
   if (edits_) console_->draw(editor_.leave());
   rest();
   if (text.find_first_not_of(' ') != std::string::npos) history_.add(text);
-  const bool ahead = key_waits();
   runner_.run(text);
-  // What was typed while it ran was meant for no line that follows: an Enter would start the next one.
-  if (!ahead || editor_.waits_pasted() || may_move(text)) (void)::tcflush(STDIN_FILENO, TCIFLUSH);
+  // An Enter typed while a motor turned, or before the next pasted line was shown, starts nothing.
+  if (editor_.waits_pasted() || may_move(text)) (void)::tcflush(STDIN_FILENO, TCIFLUSH);
   clear_interrupt();
   keep_place();
   done_ = runner_.wants_exit();
