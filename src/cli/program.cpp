@@ -23,6 +23,7 @@
 #include "cli/terminal/console.hpp"
 #include "cli/terminal/prompt.hpp"
 #include "cli/terminal/signals.hpp"
+#include "cli/words.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -38,15 +39,23 @@ void open_standard_descriptors() {
   }
 }
 
+/// Whether the line reads what else the input has: then it is the last one.
+bool takes_rest(const std::string& line) {
+  const auto words = split_words(line);
+  return words && std::find(words->begin(), words->end(), "-") != words->end();
+}
+
 /// Lines from a pipe or file: stops at the first that fails, whose exit code is the answer. What a line
 /// begins goes on behind it, as at the prompt, and ends with the input.
 int run_pipe(Shell& shell) {
-  shell.stay_open(true);
   auto& input = standard_input();
   LineRunner runner(shell);
   std::string line;
   int code = 0;
-  while (code == 0 && !runner.wants_exit() && next_line(shell, input, line)) code = runner.run(line);
+  while (code == 0 && !runner.wants_exit() && next_line(shell, input, line)) {
+    shell.stay_open(!takes_rest(line));
+    code = runner.run(line);
+  }
   if (code == 0 && interrupted()) code = exit_code(Errc::interrupted);
   if (code != 0) shell.let_go();
   shell.stop_sync();

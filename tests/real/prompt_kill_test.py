@@ -59,7 +59,8 @@ class Prompt:
         self.text = ""
         os.write(self.fd, line.encode() + b"\r")
         end = time.monotonic() + seconds
-        while wanted not in self.text:
+        # What is typed before the prompt is back behind a drive that was enabled is dropped.
+        while "> " not in self.text.partition(wanted)[2]:
             if time.monotonic() > end or not self.read(end - time.monotonic()):
                 fail(f"'{line}' does not show {wanted!r}: {self.text[-600:]!r}")
                 return
