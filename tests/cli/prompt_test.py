@@ -54,7 +54,7 @@ with tempfile.TemporaryDirectory() as state:
     t.see(r"take the load off \[Enter\] ")
     t.type("\n")
     t.see(r"0x6061:0")
-    t.see(r"2 of 2 lines done")
+    t.see(r"2 of 2 lines done[^>]*> ")
     t.type(f"run {batch}\n")
     t.see(r"\[Enter\] ")
     t.type("\x03")
