@@ -26,7 +26,7 @@ using settings::AddressOutcome;
 
 constexpr std::uintmax_t kMostBytesOfPlan = 1U << 20U;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kAddressParameters[] = {
     {.name = "new", .help = "the new node-ID, 1 to 127", .kind = Kind::number},
     {.name = "--bitrate", .help = "the new bitrate: 125k, 250k, 500k, 1M", .kind = Kind::text},
     {.name = "--plan",
@@ -39,7 +39,7 @@ constexpr Parameter kParameters[] = {
     {.name = "--resume", .help = "resume an interrupted plan", .kind = Kind::flag},
 };
 
-Result<settings::AddressWish> wish_of(const Arguments& arguments) {
+Result<settings::AddressWish> address_wish(const Arguments& arguments) {
   settings::AddressWish out;
   if (arguments.has("new")) {
     const auto number = parse_integer(arguments.text("new"));
@@ -57,7 +57,7 @@ Result<settings::AddressWish> wish_of(const Arguments& arguments) {
   return out;
 }
 
-Result<settings::AddressOptions> options_of(const Arguments& arguments) {
+Result<settings::AddressOptions> address_options(const Arguments& arguments) {
   const auto patience = duration_option(arguments, "--wait");
   if (!patience) return fail(patience.error());
   return settings::AddressOptions{.unlock = arguments.has("--unlock"),
@@ -95,7 +95,7 @@ const cabinet::Axis* axis_at(const Context& context, const AddressChange& change
   return nullptr;
 }
 
-std::string question(const Context& context, std::span<const AddressChange> changes) {
+std::string question_address(const Context& context, std::span<const AddressChange> changes) {
   std::string out;
   for (const auto& change : changes) {
     if (change.idle()) continue;
@@ -136,7 +136,7 @@ void tell_power(Context& context, const AddressChange& change, const AddressOutc
       change.node, change.to, change.to));
 }
 
-void tell_bitrate(Context& context, std::uint32_t bitrate) {
+void tell_next_bitrate(Context& context, std::uint32_t bitrate) {
   for (const auto& line : settings::bitrate_steps(context.session->url(), bitrate))
     context.notices.push_back(line);
 }
@@ -145,7 +145,7 @@ Value kept_value(session::Kept kept) {
   return kept == session::Kept::unknown ? Value() : Value(kept == session::Kept::yes);
 }
 
-report::List row_of(const AddressChange& change, const AddressOutcome& outcome) {
+report::List address_row(const AddressChange& change, const AddressOutcome& outcome) {
   report::List stayed;
   for (const auto object : outcome.stayed) stayed.emplace_back(to_string(object));
   return {change.node,
@@ -159,8 +159,8 @@ report::List row_of(const AddressChange& change, const AddressOutcome& outcome) 
           outcome.error ? show::error_record(*outcome.error) : Value()};
 }
 
-Result<Value> carry_out(Context& context, std::span<const AddressChange> changes,
-                        const settings::AddressOptions& options) {
+Result<Value> change_addresses(Context& context, std::span<const AddressChange> changes,
+                               const settings::AddressOptions& options) {
   report::Table table;
   table.columns = {{"node"},
                    {"new_node", "new"},
@@ -178,9 +178,9 @@ Result<Value> carry_out(Context& context, std::span<const AddressChange> changes
     tell_power(context, change, outcome);
     tell_axes(context, change, outcome);
     if (outcome.end == AddressEnd::awaits_restart && change.bitrate) bitrate = change.bitrate;
-    table.rows.push_back(row_of(change, outcome));
+    table.rows.push_back(address_row(change, outcome));
   }
-  if (bitrate) tell_bitrate(context, *bitrate);
+  if (bitrate) tell_next_bitrate(context, *bitrate);
   return Value(std::move(table));
 }
 
@@ -209,12 +209,12 @@ Result<void> name_all(Context& context) {
   return context.hold_family(context.nodes, context.profile, true);
 }
 
-Result<Value> run(Context& context, const Arguments& arguments) {
-  const auto options = options_of(arguments);
+Result<Value> run_address(Context& context, const Arguments& arguments) {
+  const auto options = address_options(arguments);
   if (!options) return fail(options.error());
   if (const auto words = check_words(context, arguments); !words) return fail(words.error());
   if (arguments.has("--plan")) return run_plan(context, arguments, *options);
-  const auto wish = wish_of(arguments);
+  const auto wish = address_wish(arguments);
   if (!wish) return fail(wish.error());
   if (const auto named = name_all(context); !named) return fail(named.error());
   std::vector<AddressChange> changes;
@@ -228,13 +228,14 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   if (const auto free = settings::refuse_taken(*context.session, targets); !free) return fail(free.error());
   if (context.dry_run) return settings::planned_address(context, changes, options->unlock);
   if (std::any_of(changes.begin(), changes.end(), [](const auto& change) { return !change.idle(); }))
-    if (const auto agreed = context.confirm(question(context, changes)); !agreed) return fail(agreed.error());
-  return carry_out(context, changes, *options);
+    if (const auto agreed = context.confirm(question_address(context, changes)); !agreed)
+      return fail(agreed.error());
+  return change_addresses(context, changes, *options);
 }
 
-Result<void> check(Context& context, const Arguments& arguments) {
+Result<void> check_address(Context& context, const Arguments& arguments) {
   if (const auto words = check_words(context, arguments); !words) return words;
-  const auto wish = wish_of(arguments);
+  const auto wish = address_wish(arguments);
   return wish ? Result<void>() : fail(wish.error());
 }
 
@@ -256,11 +257,11 @@ const Command kAddress{
         "at first, and each moves when its new node-ID is free; drives that exchange theirs go through a free "
         "one. It ends with the first that fails; FILE.csv.journal keeps how far it came, and --resume continues. "
         "For example: address 5 -n 1; address --bitrate 500k -n all; address --plan cabinet.csv.",
-    .parameters = kParameters,
+    .parameters = kAddressParameters,
     .needs = Needs::dictionary | Needs::can,
     .effect = Effect::resets,
-    .run = run,
-    .check = check,
+    .run = run_address,
+    .check = check_address,
     .elsewhere = "a drive on EtherCAT is addressed by its place on the ring; it has no node-ID to change",
 };
 

@@ -19,7 +19,7 @@ using report::Value;
 
 constexpr std::string_view kChanged = "changed";
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kBackupParameters[] = {
     {.name = "file", .help = "file of one drive, folder of several", .kind = Kind::file, .required = true},
     {.name = "--format",
      .help = "json, dcf, csv or batch (default: by the file's extension, else json)",
@@ -76,7 +76,7 @@ Result<Saved> save(Context& context, settings::Backup backup, bool changed, sett
   return out;
 }
 
-Result<Value> run(Context& context, const Arguments& arguments) {
+Result<Value> run_backup(Context& context, const Arguments& arguments) {
   const auto only = arguments.text("--only");
   const auto wanted = filter_of(context, only);
   if (!wanted) return fail(wanted.error());
@@ -115,11 +115,11 @@ const Command kBackup{
         "drive is listed with the reason. A file is written whole or not at all. JSON has identity and "
         "checksum: keep that one. A DCF (CiA 306) is for other tools, a table for a spreadsheet, a batch for "
         "`run`. `restore`, `diff` and `verify` read all of them.",
-    .parameters = kParameters,
+    .parameters = kBackupParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::reads,
     .family = FamilyCheck::always,
-    .run = run,
+    .run = run_backup,
     .on_registers = true,
 };
 

@@ -17,7 +17,7 @@ using report::Show;
 using report::Value;
 using session::Heard;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kBusDetectParameters[] = {
     kInterface,
     {.name = "--for", .help = "how long to listen at each bitrate (default 2s)", .kind = Kind::duration},
     {.name = "--bitrate",
@@ -26,7 +26,7 @@ constexpr Parameter kParameters[] = {
      .repeats = true},
 };
 
-Result<session::SearchOptions> options_of(const Arguments& arguments) {
+Result<session::SearchOptions> search_options(const Arguments& arguments) {
   session::SearchOptions out;
   const auto each = duration_option(arguments, "--for");
   if (!each) return fail(each.error());
@@ -42,22 +42,22 @@ Result<session::SearchOptions> options_of(const Arguments& arguments) {
   return out;
 }
 
-report::List row_of(const Heard& heard) {
+report::List bitrate_row(const Heard& heard) {
   return {heard.bitrate, drive::bitrate_text(heard.bitrate), name(heard.verdict), heard.frames, heard.errors};
 }
 
-report::Table table_of(const session::Search& search) {
+report::Table bitrates_table(const session::Search& search) {
   report::Table out;
   out.columns = {{"bitrate", "", Show::json},
                  {"bitrate_text", "bitrate", Show::text},
                  {"heard"},
                  {"frames"},
                  {"errors"}};
-  for (const auto& heard : search.heard) out.rows.push_back(row_of(heard));
+  for (const auto& heard : search.heard) out.rows.push_back(bitrate_row(heard));
   return out;
 }
 
-std::string question(const std::string& name, const can::LinkState& before) {
+std::string question_bus_detect(const std::string& name, const can::LinkState& before) {
   const auto how = session::settings_text(before);
   auto out = fmt::format("Take {} down to listen at other bitrates? It is up{}{}", name,
                          how.empty() ? "" : " at ", how);
@@ -66,7 +66,7 @@ std::string question(const std::string& name, const can::LinkState& before) {
 }
 
 /// What the silence, or the noise, means.
-Error nothing_found(const std::string& name, const session::Search& search) {
+Error no_bitrate_found(const std::string& name, const session::Search& search) {
   const bool noise = std::any_of(search.heard.begin(), search.heard.end(),
                                  [](const Heard& heard) { return heard.verdict == Heard::Verdict::errors; });
   if (noise)
@@ -91,10 +91,10 @@ void tell_before(const Context& context, const std::string& name, const can::Lin
                            how.empty() ? "" : " with ", how));
 }
 
-Result<Value> run(Context& context, const Arguments& arguments) {
+Result<Value> run_bus_detect(Context& context, const Arguments& arguments) {
   const auto name = interface_argument(arguments);
   if (!name) return fail(name.error());
-  auto options = options_of(arguments);
+  auto options = search_options(arguments);
   if (!options) return fail(options.error());
   const auto link = can::open_link(*name);
   if (!link) return fail(link.error());
@@ -103,25 +103,26 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   if (context.dry_run) {
     session::Search plan;
     for (const auto bitrate : options->bitrates) plan.heard.push_back({.bitrate = bitrate});
-    auto table = table_of(plan);
+    auto table = bitrates_table(plan);
     table.columns.resize(2);
     for (auto& row : table.rows) row.resize(2);
     return Value(std::move(table));
   }
   if (before->up) {
     if (const auto held = hold_energised(context, *name); !held) return fail(held.error());
-    if (const auto agreed = context.confirm(question(*name, *before)); !agreed) return fail(agreed.error());
+    if (const auto agreed = context.confirm(question_bus_detect(*name, *before)); !agreed)
+      return fail(agreed.error());
   }
   tell_before(context, *name, *before);
   const auto search = session::search_bitrate(**link, *options);
   if (!search) return fail(search.error());
-  if (!search->bitrate) context.errors.push_back(nothing_found(*name, *search));
+  if (!search->bitrate) context.errors.push_back(no_bitrate_found(*name, *search));
   report::Record out{
       {"interface", *name},
       {"bitrate", search->bitrate ? Value(*search->bitrate) : Value(), Show::json},
       {"bitrate_text", search->bitrate ? Value(drive::bitrate_text(*search->bitrate)) : Value("not found"),
        Show::text, "bitrate"},
-      {"heard", table_of(*search)}};
+      {"heard", bitrates_table(*search)}};
   if (search->bitrate && (!before->up || before->bitrate != search->bitrate))
     context.notices.push_back(
         fmt::format("{} was put back to what it was; `bus up {} --bitrate {}` takes part in the bus", *name,
@@ -129,9 +130,9 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   return Value(std::move(out));
 }
 
-Result<void> check(Context&, const Arguments& arguments) {
+Result<void> check_bus_detect(Context&, const Arguments& arguments) {
   if (const auto name = interface_argument(arguments); !name) return fail(name.error());
-  const auto options = options_of(arguments);
+  const auto options = search_options(arguments);
   return options ? Result<void>() : fail(options.error());
 }
 
@@ -148,12 +149,12 @@ const Command kBusDetect{
         "first and needs --yes in a script. On every way out, Ctrl-C too, the interface is put back to what it was; "
         "one that never had a bitrate keeps the last and is down. Where it was killed, `bus up` ends the listening. "
         "Drives that send nothing by themselves cannot be heard. Exit code 1 when no bitrate was found.",
-    .parameters = kParameters,
+    .parameters = kBusDetectParameters,
     .needs = Needs::nothing,
     .effect = Effect::links,
     .family = FamilyCheck::never,
-    .run = run,
-    .check = check,
+    .run = run_bus_detect,
+    .check = check_bus_detect,
 };
 
 }  // namespace servoctl::commands

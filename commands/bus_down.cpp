@@ -11,9 +11,9 @@ namespace {
 using namespace command;
 using report::Value;
 
-constexpr Parameter kParameters[] = {kInterface};
+constexpr Parameter kBusDownParameters[] = {kInterface};
 
-Result<Value> run(Context& context, const Arguments& arguments) {
+Result<Value> run_bus_down(Context& context, const Arguments& arguments) {
   const auto name = interface_argument(arguments);
   if (!name) return fail(name.error());
   const auto link = can::open_link(*name);
@@ -43,7 +43,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   return Value(show::link_record(*name, *after));
 }
 
-Result<void> check(Context&, const Arguments& arguments) {
+Result<void> check_bus_down(Context&, const Arguments& arguments) {
   const auto name = interface_argument(arguments);
   return name ? Result<void>() : fail(name.error());
 }
@@ -59,12 +59,12 @@ const Command kBusDown{
         "(by the kernel's lists; one that only sends is not in them), it says so and asks first, and needs --yes in a "
         "script. Refused while a drive is energised that this prompt or batch file enabled over it. It needs the right "
         "CAP_NET_ADMIN; `bus status` says whether you have it.",
-    .parameters = kParameters,
+    .parameters = kBusDownParameters,
     .needs = Needs::nothing,
     .effect = Effect::links,
     .family = FamilyCheck::never,
-    .run = run,
-    .check = check,
+    .run = run_bus_down,
+    .check = check_bus_down,
 };
 
 }  // namespace servoctl::commands

@@ -12,7 +12,7 @@ namespace {
 using namespace command;
 using report::Value;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kBusStatusParameters[] = {
     {.name = "interface", .help = "CAN interface: can0 (default: all)", .kind = Kind::bus},
 };
 
@@ -32,7 +32,7 @@ Result<Value> run_one(Context& context, const std::string& name) {
   return Value(show::link_record(name, *state));
 }
 
-Result<Value> run(Context& context, const Arguments& arguments) {
+Result<Value> run_bus_status(Context& context, const Arguments& arguments) {
   if (arguments.has("interface")) {
     const auto name = interface_argument(arguments);
     return name ? run_one(context, *name) : fail(name.error());
@@ -60,10 +60,10 @@ const Command kBusStatus{
         "(error-active, error-warning, error-passive, bus-off, stopped), bitrate and sample point, its error counters, "
         "how often it was bus-off and restarted since its driver was loaded, restart-ms, queue length, driver, how "
         "many sockets receive from it, and whether you may change it. Nothing is sent and nothing is changed.",
-    .parameters = kParameters,
+    .parameters = kBusStatusParameters,
     .needs = Needs::nothing,
     .effect = Effect::none,
-    .run = run,
+    .run = run_bus_status,
 };
 
 }  // namespace servoctl::commands

@@ -16,7 +16,7 @@ namespace {
 using namespace command;
 using report::Value;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kBusUpParameters[] = {
     kInterface,
     {.name = "--bitrate", .help = "bitrate of the drives: 125k, 250k, 500k, 1M", .kind = Kind::text},
     {.name = "--sample-point", .help = "where in a bit it is sampled: 0.8 or 80%", .kind = Kind::text},
@@ -37,7 +37,7 @@ Result<std::optional<std::uint16_t>> sample_point_of(const Arguments& arguments)
   return std::optional(static_cast<std::uint16_t>(std::floor(thousandths + 0.5)));
 }
 
-Result<session::BusWish> wish_of(const Arguments& arguments) {
+Result<session::BusWish> bus_wish(const Arguments& arguments) {
   session::BusWish out;
   if (arguments.has("--bitrate")) {
     const auto bitrate = drive::parse_bitrate(arguments.text("--bitrate"));
@@ -56,24 +56,24 @@ Result<session::BusWish> wish_of(const Arguments& arguments) {
   return out;
 }
 
-std::string question(const std::string& name, const session::BusPlan& plan) {
+std::string question_bus_up(const std::string& name, const session::BusPlan& plan) {
   auto out = fmt::format("Take {} down and up again? It is up with {}. Its bus stands still for that time",
                          name, fmt::join(plan.differs, ", "));
   if (const auto who = who_receives(name); !who.empty()) out += "; " + who;
   return out + ".";
 }
 
-Value planned(const std::string& name, const session::BusPlan& plan) {
+Value planned_bus_up(const std::string& name, const session::BusPlan& plan) {
   report::Table table;
   table.columns = {{"command"}};
   for (const auto& step : plan.steps) table.rows.push_back({can::ip_command(name, step)});
   return Value(std::move(table));
 }
 
-Result<Value> run(Context& context, const Arguments& arguments) {
+Result<Value> run_bus_up(Context& context, const Arguments& arguments) {
   const auto name = interface_argument(arguments);
   if (!name) return fail(name.error());
-  const auto wish = wish_of(arguments);
+  const auto wish = bus_wish(arguments);
   if (!wish) return fail(wish.error());
   const auto link = can::open_link(*name);
   if (!link) return fail(link.error());
@@ -81,7 +81,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   if (!before) return fail(before.error());
   const auto plan = session::plan_bus_up(*name, *before, *wish);
   if (!plan) return fail(plan.error());
-  if (context.dry_run) return planned(*name, *plan);
+  if (context.dry_run) return planned_bus_up(*name, *plan);
   if (plan->steps.empty()) {
     context.notices.push_back(
         fmt::format("{} is up with these settings already; nothing was changed", *name));
@@ -89,7 +89,8 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   }
   if (plan->stops_bus) {
     if (const auto held = hold_energised(context, *name); !held) return fail(held.error());
-    if (const auto agreed = context.confirm(question(*name, *plan)); !agreed) return fail(agreed.error());
+    if (const auto agreed = context.confirm(question_bus_up(*name, *plan)); !agreed)
+      return fail(agreed.error());
   }
   if (const auto done = session::set_up(**link, *before, *plan); !done) return fail(done.error());
   const auto after = (*link)->state();
@@ -98,9 +99,9 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   return Value(show::link_record(*name, *after));
 }
 
-Result<void> check(Context&, const Arguments& arguments) {
+Result<void> check_bus_up(Context&, const Arguments& arguments) {
   if (const auto name = interface_argument(arguments); !name) return fail(name.error());
-  const auto wish = wish_of(arguments);
+  const auto wish = bus_wish(arguments);
   return wish ? Result<void>() : fail(wish.error());
 }
 
@@ -119,12 +120,12 @@ const Command kBusUp{
         "commands of iproute2 that do the same. vcan and vxcan have no bitrate: `bus up vcan0`. It needs the right "
         "CAP_NET_ADMIN; `bus status` says whether you have it. For example: bus up can0 --bitrate 500k --restart-ms "
         "100.",
-    .parameters = kParameters,
+    .parameters = kBusUpParameters,
     .needs = Needs::nothing,
     .effect = Effect::links,
     .family = FamilyCheck::never,
-    .run = run,
-    .check = check,
+    .run = run_bus_up,
+    .check = check_bus_up,
 };
 
 }  // namespace servoctl::commands

@@ -8,7 +8,7 @@ namespace {
 
 using namespace command;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kCabinetApplyParameters[] = {
     kAxisOption,
     kOnlyOption,
     {.name = "--no-keep", .help = "write working values only; lost at power-off", .kind = Kind::flag},
@@ -17,7 +17,7 @@ constexpr Parameter kParameters[] = {
     {.name = "--resume", .help = "resume the axes whose apply was interrupted", .kind = Kind::flag},
 };
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
+Result<report::Value> run_cabinet_apply(Context& context, const Arguments& arguments) {
   const auto cabinet = context.front_end->cabinet();
   if (!cabinet) return fail(cabinet.error());
   const auto stations = open_stations(context, **cabinet, arguments);
@@ -49,10 +49,10 @@ const Command kCabinetApply{
         "energised, and one that is another than the file says is left alone. After a pulled cable or a "
         "crash --resume continues; `restore FILE.before-AXIS.json -n AXIS` restores the old values. A second "
         "apply does nothing.",
-    .parameters = kParameters,
+    .parameters = kCabinetApplyParameters,
     .needs = Needs::nothing,
     .effect = Effect::resets,
-    .run = run,
+    .run = run_cabinet_apply,
 };
 
 }  // namespace servoctl::commands

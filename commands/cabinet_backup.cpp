@@ -7,9 +7,9 @@ namespace {
 
 using namespace command;
 
-constexpr Parameter kParameters[] = {kAxisOption};
+constexpr Parameter kCabinetBackupParameters[] = {kAxisOption};
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
+Result<report::Value> run_cabinet_backup(Context& context, const Arguments& arguments) {
   const auto cabinet = context.front_end->cabinet();
   if (!cabinet) return fail(cabinet.error());
   const auto stations = open_stations(context, **cabinet, arguments);
@@ -28,10 +28,10 @@ const Command kCabinetBackup{
         "to the cabinet file: backup-2026-11-22T19-40-00Z/feeder.json, with a copy of the cabinet file. The "
         "folder appears when it is complete. An axis that does not answer, or is another drive than the file "
         "says, is missing in it and is an error. `restore` takes each file, `cabinet diff` compares folders.",
-    .parameters = kParameters,
+    .parameters = kCabinetBackupParameters,
     .needs = Needs::nothing,
     .effect = Effect::reads,
-    .run = run,
+    .run = run_cabinet_backup,
 };
 
 }  // namespace servoctl::commands

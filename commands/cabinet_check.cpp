@@ -13,7 +13,7 @@ namespace {
 using namespace command;
 using report::Value;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kCabinetCheckParameters[] = {
     {.name = "file", .help = "the cabinet file (default: as --cabinet)", .kind = Kind::file},
 };
 
@@ -21,14 +21,14 @@ std::string load_text(const cabinet::Axis& axis) {
   return axis.load ? fmt::format("{:.6g} {}/rev", axis.load->per_rev, axis.load->unit) : std::string();
 }
 
-Value pdos_of(const cabinet::Axis& axis) {
+Value pdos_text(const cabinet::Axis& axis) {
   const auto& pdos = axis.pdos;
   if (!pdos.preset.empty()) return pdos.preset;
   if (!pdos.file.empty()) return pdos.file.filename().string();
   return pdos.recipes.empty() ? Value() : Value(fmt::format("{} PDOs", pdos.recipes.size()));
 }
 
-report::Table table_of(const cabinet::Cabinet& cabinet) {
+report::Table axes_checked(const cabinet::Cabinet& cabinet) {
   report::Table out;
   out.columns = {{"axis"},
                  {"bus"},
@@ -45,12 +45,12 @@ report::Table table_of(const cabinet::Cabinet& cabinet) {
         axis.heartbeat ? Value(std::chrono::duration_cast<std::chrono::milliseconds>(*axis.heartbeat).count())
                        : Value();
     out.rows.push_back({axis.name, axis.bus, axis.node, axis.family, report::text_or_null(load_text(axis)),
-                        pdos_of(axis), ms, axis.parameters.size(), std::move(groups)});
+                        pdos_text(axis), ms, axis.parameters.size(), std::move(groups)});
   }
   return out;
 }
 
-Result<Value> run(Context& context, const Arguments& arguments) {
+Result<Value> run_cabinet_check(Context& context, const Arguments& arguments) {
   const auto file = arguments.text("file");
   auto given = file.empty() ? Result<cabinet::Cabinet>() : cabinet::read_cabinet(std::string(file));
   if (!given) return fail(given.error());
@@ -60,7 +60,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
       **found, [&](const std::string& family) { return context.front_end->family(family); });
   std::move(findings.errors.begin(), findings.errors.end(), std::back_inserter(context.errors));
   std::move(findings.notices.begin(), findings.notices.end(), std::back_inserter(context.notices));
-  return Value(table_of(**found));
+  return Value(axes_checked(**found));
 }
 
 }  // namespace
@@ -74,10 +74,10 @@ const Command kCabinetCheck{
         "parameters with their units and limits, two values for one object, PDOs, heartbeat, units of "
         "limits. Every fault has file, line and column, and one that many axes share is told once. Shows "
         "what each axis is. Nothing is sent.",
-    .parameters = kParameters,
+    .parameters = kCabinetCheckParameters,
     .needs = Needs::nothing,
     .effect = Effect::none,
-    .run = run,
+    .run = run_cabinet_check,
 };
 
 }  // namespace servoctl::commands

@@ -7,7 +7,7 @@ namespace {
 
 using namespace command;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kCabinetDiffParameters[] = {
     {.name = "a",
      .help = "a cabinet file, or a folder of `cabinet backup`",
      .kind = Kind::file,
@@ -18,7 +18,7 @@ constexpr Parameter kParameters[] = {
      .required = true},
 };
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
+Result<report::Value> run_cabinet_diff(Context& context, const Arguments& arguments) {
   return cabinet::compare_cabinets(
       context, std::filesystem::path(arguments.text("a")), std::filesystem::path(arguments.text("b")),
       [&](const std::string& family) { return context.front_end->family(family); });
@@ -34,10 +34,10 @@ const Command kCabinetDiff{
         "Two of: a cabinet file, a folder of `cabinet backup`. Two folders are compared value by value, two "
         "files by what they say of each axis, and a folder with a file by what the file says of the drive "
         "that was saved. Lists every difference with its axis; exit code 1 if there is one. No bus is needed.",
-    .parameters = kParameters,
+    .parameters = kCabinetDiffParameters,
     .needs = Needs::nothing,
     .effect = Effect::none,
-    .run = run,
+    .run = run_cabinet_diff,
 };
 
 }  // namespace servoctl::commands

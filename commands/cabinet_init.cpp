@@ -19,7 +19,7 @@ using report::Value;
 
 namespace fs = std::filesystem;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kCabinetInitParameters[] = {
     {.name = "file",
      .help = "the file to make, or to add a bus to (default cabinet.toml)",
      .kind = Kind::file},
@@ -194,7 +194,7 @@ class Init {
   std::vector<std::pair<fs::path, std::string>> pdos_;
 };
 
-Result<Value> run(Context& context, const Arguments& arguments) {
+Result<Value> run_cabinet_init(Context& context, const Arguments& arguments) {
   auto families = families_of(arguments);
   if (!families) return fail(families.error());
   const auto name = arguments.has("--name") ? std::string(arguments.text("--name")) : std::string("main");
@@ -217,11 +217,11 @@ const Command kCabinetInit{
         "one, and what is not as from the factory: parameters, heartbeat, and the PDOs in a file beside it. "
         "Comments say what to fill in. Drives are only read; a slave in INIT is taken to PRE-OP for it. A file that is there is added to where it does "
         "not have this bus yet: `cabinet init --bus coe:eth0 --name ring`.",
-    .parameters = kParameters,
+    .parameters = kCabinetInitParameters,
     .needs = Needs::bus,
     .effect = Effect::reads,
     .family = FamilyCheck::never,
-    .run = run,
+    .run = run_cabinet_init,
 };
 
 }  // namespace servoctl::commands

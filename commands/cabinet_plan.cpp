@@ -8,13 +8,13 @@ namespace {
 
 using namespace command;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kCabinetPlanParameters[] = {
     kAxisOption,
     kOnlyOption,
     {.name = "--no-unlisted", .help = "do not read what is not in the file", .kind = Kind::flag},
 };
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
+Result<report::Value> run_cabinet_plan(Context& context, const Arguments& arguments) {
   const auto cabinet = context.front_end->cabinet();
   if (!cabinet) return fail(cabinet.error());
   const auto stations = open_stations(context, **cabinet, arguments);
@@ -45,10 +45,10 @@ const Command kCabinetPlan{
         "bus is named with it. Settings that are not in the file and not as the factory "
         "left them stand apart; --no-unlisted saves reading them. Exit code 1 if there is something to do. "
         "Nothing is written; drives may be running. `cabinet apply` does what the plan says.",
-    .parameters = kParameters,
+    .parameters = kCabinetPlanParameters,
     .needs = Needs::nothing,
     .effect = Effect::reads,
-    .run = run,
+    .run = run_cabinet_plan,
 };
 
 }  // namespace servoctl::commands

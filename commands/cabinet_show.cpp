@@ -25,7 +25,7 @@ using report::Value;
 /// Four looks a second.
 constexpr Duration kPause = std::chrono::milliseconds(250);
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kCabinetShowParameters[] = {
     {.name = "axes", .help = "axes or groups: feeder,lift (default: all)"},
     {.name = "--watch", .help = "look again and again, until q or Ctrl-C", .kind = Kind::flag},
     kForOption,
@@ -37,7 +37,7 @@ std::string state_text(const AxisState& look, bool chinese) {
   return std::string(chinese ? drive::name_zh(*look.state) : drive::name(*look.state));
 }
 
-std::string mode_text(const AxisState& look) {
+std::string axis_mode_text(const AxisState& look) {
   if (!look.mode) return "-";
   return look.mode_word.empty() ? fmt::format("{}", *look.mode) : look.mode_word;
 }
@@ -98,7 +98,7 @@ class Differences {
 
 Value or_null(const auto& optional) { return optional ? Value(*optional) : Value(); }
 
-Record record_of(const AxisState& look, const Differences& differences) {
+Record axis_record(const AxisState& look, const Differences& differences) {
   const auto position =
       look.position ? Value(Record{{"value", look.position->value}, {"unit", look.position->unit}}) : Value();
   return {{"axis", look.axis->name},
@@ -116,24 +116,24 @@ Record record_of(const AxisState& look, const Differences& differences) {
           {"error", look.error ? show::error_record(*look.error) : Value()}};
 }
 
-report::Table table_of(const std::vector<AxisState>& looks, const Differences& differences, bool chinese) {
+report::Table axes_table(const std::vector<AxisState>& looks, const Differences& differences, bool chinese) {
   report::Table out;
   out.columns = {{"axis"},  {"bus"},  {"node"},  {"family"},   {"network"},
                  {"state"}, {"mode"}, {"fault"}, {"position"}, {"different", "differ"}};
   for (const auto& look : looks) {
     const auto shown = [](std::string text) { return text == "-" ? Value() : Value(std::move(text)); };
     out.rows.push_back({look.axis->name, look.axis->bus, look.axis->node, look.axis->family,
-                        shown(network_text(look)), state_text(look, chinese), shown(mode_text(look)),
+                        shown(network_text(look)), state_text(look, chinese), shown(axis_mode_text(look)),
                         shown(fault_text(look)), shown(position_text(look)), or_null(differences.of(look))});
-    out.documents.emplace_back(record_of(look, differences));
+    out.documents.emplace_back(axis_record(look, differences));
   }
   return out;
 }
 
 /// Shows look after look: in place on a terminal, else a line for each axis that has changed.
-class Watching {
+class WatchingAxes {
  public:
-  Watching(Context& context, const Differences& differences)
+  WatchingAxes(Context& context, const Differences& differences)
       : context_(&context),
         differences_(&differences),
         view_(context.open_view({.columns = {{.title = "axis"},
@@ -156,8 +156,8 @@ class Watching {
     for (const auto& look : looks) {
       if (view_)
         view_->set(look.axis->name, {look.axis->name, fmt::format("{}", look.axis->node), network_text(look),
-                                     state_text(look, context_->chinese), mode_text(look), fault_text(look),
-                                     position_text(look), differ_text(look)});
+                                     state_text(look, context_->chinese), axis_mode_text(look),
+                                     fault_text(look), position_text(look), differ_text(look)});
       else
         take_line(look, seconds);
     }
@@ -172,14 +172,14 @@ class Watching {
   /// A position changes all the time: it is told with what else changes.
   void take_line(const AxisState& look, double seconds) {
     auto text = fmt::format("{}  {}  {}  {}", network_text(look), state_text(look, context_->chinese),
-                            mode_text(look), fault_text(look));
+                            axis_mode_text(look), fault_text(look));
     if (const auto different = differences_->of(look); different.value_or(0) > 0)
       text += fmt::format("  {} differ", *different);
     auto& before = lines_[look.axis];
     if (text == before) return;
     before = text;
     Record record{{"time", seconds}};
-    for (auto& field : record_of(look, *differences_)) record.push_back(std::move(field));
+    for (auto& field : axis_record(look, *differences_)) record.push_back(std::move(field));
     context_->emit(record,
                    fmt::format("{:8.3f} s  {}  {}  {}", seconds, look.axis->name, text, position_text(look)));
   }
@@ -198,7 +198,7 @@ bool was_interrupted(const std::vector<AxisState>& looks) {
 }
 
 /// Until the next look; false when the user wants an end.
-bool pause(session::Session* session, Watching& watching) {
+bool pause(session::Session* session, WatchingAxes& watching) {
   const auto end = steady_now() + kPause;
   constexpr Duration kSlice = std::chrono::milliseconds(50);
   while (steady_now() < end && !watching.is_over()) {
@@ -214,7 +214,7 @@ bool pause(session::Session* session, Watching& watching) {
   return !watching.is_over();
 }
 
-Result<Value> run(Context& context, const Arguments& arguments) {
+Result<Value> run_cabinet_show(Context& context, const Arguments& arguments) {
   const auto length = duration_option(arguments, "--for");
   if (!length) return fail(length.error());
   const auto cabinet = context.front_end->cabinet();
@@ -235,7 +235,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   Differences differences(context, **cabinet);
   differences.read(now);
   if (arguments.has("--watch")) {
-    Watching watching(context, differences);
+    WatchingAxes watching(context, differences);
     const auto begin = steady_now();
     for (;;) {
       const auto since = steady_now() - begin;
@@ -249,7 +249,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   }
   for (const auto& look : now)
     if (look.error) context.errors.push_back(*look.error);
-  return Value(table_of(now, differences, context.chinese));
+  return Value(axes_table(now, differences, context.chinese));
 }
 
 }  // namespace
@@ -264,11 +264,11 @@ const Command kCabinetShow{
         "names them). --watch looks four times a second: on a terminal a table that "
         "is updated where it stands (space pauses, s sorts, q ends), in a pipe a line for each axis "
         "whose state changed; what differs is read every five seconds. A bus that is lost is opened again. Drives are only read.",
-    .parameters = kParameters,
+    .parameters = kCabinetShowParameters,
     .needs = Needs::nothing,
     .effect = Effect::reads,
     .family = FamilyCheck::never,
-    .run = run,
+    .run = run_cabinet_show,
 };
 
 }  // namespace servoctl::commands

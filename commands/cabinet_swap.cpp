@@ -13,7 +13,7 @@ namespace {
 
 using namespace command;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kCabinetSwapParameters[] = {
     {.name = "axis", .help = "whose drive was replaced", .kind = Kind::text, .required = true},
     {.name = "--from", .help = "node at which the new drive is, often 1", .kind = Kind::number},
     {.name = "--backup", .help = "restore all of this folder of `cabinet backup`", .kind = Kind::file},
@@ -27,7 +27,7 @@ constexpr Parameter kParameters[] = {
      .kind = Kind::flag},
 };
 
-Result<cabinet::SwapOptions> options_of(const Arguments& arguments) {
+Result<cabinet::SwapOptions> swap_options(const Arguments& arguments) {
   cabinet::SwapOptions out;
   if (arguments.has("--from")) {
     const auto number = parse_integer(arguments.text("--from"));
@@ -48,8 +48,8 @@ Result<cabinet::SwapOptions> options_of(const Arguments& arguments) {
   return out;
 }
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
-  auto options = options_of(arguments);
+Result<report::Value> run_cabinet_swap(Context& context, const Arguments& arguments) {
+  auto options = swap_options(arguments);
   if (!options) return fail(options.error());
   const auto cabinet = context.front_end->cabinet();
   if (!cabinet) return fail(cabinet.error());
@@ -78,10 +78,10 @@ const Command kCabinetSwap{
         "is told, not written. What cannot be put back is told: the encoder's offset and the home position. "
         "After a failure the line is repeated: what is done is not done again; what was interrupted while "
         "settings were written is continued by --resume. For example: cabinet swap feeder3 --from 1.",
-    .parameters = kParameters,
+    .parameters = kCabinetSwapParameters,
     .needs = Needs::nothing,
     .effect = Effect::resets,
-    .run = run,
+    .run = run_cabinet_swap,
 };
 
 }  // namespace servoctl::commands

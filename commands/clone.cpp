@@ -15,7 +15,7 @@ using namespace command;
 
 using report::Value;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kCloneParameters[] = {
     {.name = "--from", .help = "node whose settings are taken", .kind = Kind::number, .required = true},
     {.name = "--to", .help = "nodes that get them: 2,3,5-8", .kind = Kind::text, .required = true},
     {.name = "--force", .help = "even if identities differ", .kind = Kind::flag},
@@ -26,7 +26,7 @@ constexpr Parameter kParameters[] = {
 
 constexpr std::string_view kNodesHint = "write 2, 2,3,4 or 2-4; node-IDs are 1 to 127";
 
-Result<Value> run(Context& context, const Arguments& arguments) {
+Result<Value> run_clone(Context& context, const Arguments& arguments) {
   if (const auto alone = check_resume(arguments); !alone) return fail(alone.error());
   const auto from = canopen::parse_node_ids(arguments.text("--from"), kNodesHint);
   if (!from) return fail(from.error());
@@ -74,10 +74,10 @@ const Command kClone{
         "Backup and restore in one, with the same care: each target is checked, the differences are shown "
         "and confirmed, its old values go to before-clone-node-N.json in the current folder, and a failure "
         "writes them back and stops. Node-ID and bitrate stay; COB-IDs follow the target's node-ID.",
-    .parameters = kParameters,
+    .parameters = kCloneParameters,
     .needs = Needs::bus | Needs::dictionary,
     .effect = Effect::stores,
-    .run = run,
+    .run = run_clone,
     .on_registers = true,
 };
 

@@ -14,7 +14,7 @@ using namespace command;
 
 constexpr std::string_view kWhat[] = {"bash", "zsh", "fish", "objects", "parameters", "topics", "families"};
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kCompletionParameters[] = {
     {.name = "what",
      .help = "a shell, or the names it asks for while you type",
      .kind = Kind::choice,
@@ -46,7 +46,7 @@ Result<report::Value> topic_names(const Context& context) {
   return report::Value(lines(names));
 }
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
+Result<report::Value> run_completion(Context& context, const Arguments& arguments) {
   const auto what = arguments.text("what");
   if (what == "families") {
     std::vector<std::string> names;
@@ -77,10 +77,10 @@ const Command kCompletion{
         "bash: put `source <(servoctl completion bash)` into ~/.bashrc. zsh: `servoctl completion zsh > "
         "_servoctl` in a folder of $fpath. fish: `servoctl completion fish > "
         "~/.config/fish/completions/servoctl.fish`. An installed servoctl includes all three.",
-    .parameters = kParameters,
+    .parameters = kCompletionParameters,
     .needs = Needs::nothing,
     .effect = Effect::none,
-    .run = run,
+    .run = run_completion,
 };
 
 }  // namespace servoctl::commands

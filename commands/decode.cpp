@@ -16,7 +16,7 @@ using namespace command;
 
 using report::Value;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kDecodeParameters[] = {
     {.name = "file",
      .help = "a recording: --trace, candump -L, -l, -ta or plain, .asc, .trc, .blf, pcap, pcapng",
      .kind = Kind::file,
@@ -26,7 +26,7 @@ constexpr Parameter kParameters[] = {
     kObjectOption,
 };
 
-Result<Value> run(Context& context, const Arguments& arguments) {
+Result<Value> run_decode(Context& context, const Arguments& arguments) {
   auto filter = frame_filter(context, arguments);
   if (!filter) return fail(filter.error());
   const auto text = traffic::read_recording(arguments.text("file"));
@@ -60,10 +60,10 @@ const Command kDecode{
         "read or written in the recording itself, else by the family's factory mapping. `-o jsonl` gives one "
         "document per frame. A recording can also serve as a bus that answers commands: --bus "
         "replay:FILE.",
-    .parameters = kParameters,
+    .parameters = kDecodeParameters,
     .needs = Needs::nothing,
     .effect = Effect::none,
-    .run = run,
+    .run = run_decode,
 };
 
 }  // namespace servoctl::commands

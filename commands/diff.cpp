@@ -20,7 +20,7 @@ using report::Value;
 constexpr std::string_view kFactory = "factory";
 constexpr std::string_view kNode = "node:";
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kDiffParameters[] = {
     {.name = "a", .help = "a backup, data sheet, node:N or factory", .kind = Kind::file, .required = true},
     {.name = "b", .help = "a backup, data sheet, node:N or factory", .kind = Kind::file, .required = true},
     {.name = "--batch", .help = "the command lines that turn A into B", .kind = Kind::flag},
@@ -192,7 +192,7 @@ class Difference {
   std::set<ObjectAddress> unreached_[2];  ///< What the file could not hold: it was read over Modbus.
 };
 
-Result<Value> run(Context& context, const Arguments& arguments) {
+Result<Value> run_diff(Context& context, const Arguments& arguments) {
   std::vector<Operand> operands;
   for (const auto word : {arguments.text("a"), arguments.text("b")}) {
     auto operand = parse_operand(word, context.front_end);
@@ -222,10 +222,10 @@ const Command kDiff{
         "(EDS; or an EDS and a DCF) are compared entry by entry: name, type, access, mapping, default and "
         "limits. A file in another format is refused if it has an unusable entry; --skip-invalid compares "
         "the rest.",
-    .parameters = kParameters,
+    .parameters = kDiffParameters,
     .needs = Needs::nothing,
     .effect = Effect::reads,
-    .run = run,
+    .run = run_diff,
     .on_registers = true,
 };
 

@@ -21,8 +21,8 @@ report::Table state_table() {
 }
 
 /// What is known of one node now goes into the table and beside it.
-void tell(Context& context, std::uint8_t node, const motion::PowerDownResult& done,
-          std::string_view done_word, report::Table& table) {
+void tell_power_off(Context& context, std::uint8_t node, const motion::PowerDownResult& done,
+                    std::string_view done_word, report::Table& table) {
   if (!done.outcome) context.errors.push_back(done.outcome.error());
   const bool energised = !done.statusword || drive::is_energised(done.state());
   table.rows.push_back({node, done.statusword ? Value(drive::name(done.state())) : Value(), Value(energised),
@@ -37,7 +37,7 @@ void tell(Context& context, std::uint8_t node, const motion::PowerDownResult& do
             : fmt::format("NODE {} MAY BE ENERGISED, STATE UNKNOWN: SWITCH OFF THE SUPPLY", node));
 }
 
-Value planned(const Context& context, motion::PowerAim aim) {
+Value planned_disable(const Context& context, motion::PowerAim aim) {
   std::vector<session::PlannedMessage> messages;
   for (const auto node : context.nodes)
     for (auto& message : motion::planned_power_down(node, aim)) messages.push_back(std::move(message));
@@ -45,8 +45,8 @@ Value planned(const Context& context, motion::PowerAim aim) {
 }
 
 /// All nodes are told at the same time, whatever becomes of the others.
-Result<Value> run(Context& context, motion::PowerAim aim, std::string_view done_word) {
-  if (context.dry_run) return planned(context, aim);
+Result<Value> power_down(Context& context, motion::PowerAim aim, std::string_view done_word) {
+  if (context.dry_run) return planned_disable(context, aim);
   auto table = state_table();
   std::vector<motion::PowerDownPlan> plans;
   for (const auto node : context.nodes) {
@@ -55,15 +55,16 @@ Result<Value> run(Context& context, motion::PowerAim aim, std::string_view done_
     plans.back().aim = aim;
   }
   const auto done = motion::take_down(*context.session, plans);
-  for (std::size_t i = 0; i < plans.size(); ++i) tell(context, plans[i].node, done[i], done_word, table);
+  for (std::size_t i = 0; i < plans.size(); ++i)
+    tell_power_off(context, plans[i].node, done[i], done_word, table);
   return Value(std::move(table));
 }
 
 Result<Value> run_disable(Context& context, const Arguments&) {
-  return run(context, motion::PowerAim::disable, "disabled");
+  return power_down(context, motion::PowerAim::disable, "disabled");
 }
 Result<Value> run_quick_stop(Context& context, const Arguments&) {
-  return run(context, motion::PowerAim::stop, "stopped");
+  return power_down(context, motion::PowerAim::stop, "stopped");
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ using namespace command;
 using report::Value;
 using traffic::Findings;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kDoctorParameters[] = {
     {.name = "bus",
      .help = "can0, coe:eth0 (default: --bus, of any kind, or all CAN interfaces)",
      .kind = Kind::bus},
@@ -45,7 +45,7 @@ std::vector<std::string> urls_of(const Context& context, const Arguments& argume
   return can::can_interfaces();
 }
 
-Result<Value> run(Context& context, const Arguments& arguments) {
+Result<Value> run_doctor(Context& context, const Arguments& arguments) {
   traffic::DoctorOptions options;
   const auto length = duration_option(arguments, "--for");
   if (!length) return fail(length.error());
@@ -84,11 +84,11 @@ const Command kDoctor{
         "errors is what the driver tells: many USB adapters tell no errors on the wire, only their counters; one behind "
         "slcan: tells the flags of its controller and no counters, and acknowledges what it hears. `note` is "
         "worth knowing, `fault` is wrong or very likely so. Exit code 1 when there is a fault.",
-    .parameters = kParameters,
+    .parameters = kDoctorParameters,
     .needs = Needs::nothing,
     .effect = Effect::reads,
     .family = FamilyCheck::never,
-    .run = run,
+    .run = run_doctor,
 };
 
 }  // namespace servoctl::commands

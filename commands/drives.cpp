@@ -8,11 +8,11 @@ namespace {
 
 using namespace command;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kDrivesParameters[] = {
     {.name = "family", .help = "show the rules of this family", .kind = Kind::family},
 };
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
+Result<report::Value> run_drives(Context& context, const Arguments& arguments) {
   if (arguments.has("family")) {
     const auto loaded = drive::shared_profile(arguments.text("family"), context.drive_folders);
     if (!loaded) return fail(loaded.error());
@@ -52,10 +52,10 @@ const Command kDrives{
     .details =
         "Put your own families into ~/.config/servoctl/drives or a folder in $SERVOCTL_DRIVES "
         "(docs/drive-data.md).",
-    .parameters = kParameters,
+    .parameters = kDrivesParameters,
     .needs = Needs::nothing,
     .effect = Effect::none,
-    .run = run,
+    .run = run_drives,
 };
 
 }  // namespace servoctl::commands

@@ -15,7 +15,7 @@ using namespace command;
 
 using report::Show;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kEdsCheckParameters[] = {
     {.name = "file",
      .help = "an EDS, DCF or ESI file; - for standard input",
      .kind = Kind::file,
@@ -80,7 +80,7 @@ report::Record ethercat_record(const od::EsiFile& esi) {
           {"synchronisation", report::text_or_null(modes_of(layout))}};
 }
 
-report::Record record_of(const std::string& path, const od::EdsFile& file) {
+report::Record finding_record(const std::string& path, const od::EdsFile& file) {
   auto findings = findings_of(file);
   return {{"file", path},
           {"product", report::text_or_null(file.device.product_name)},
@@ -95,7 +95,7 @@ report::Record record_of(const std::string& path, const od::EdsFile& file) {
 }
 
 /// Of a file that cannot be used: its error stands in the list as well, so that no file is missing there.
-report::Record record_of(const std::string& path, const Error& error, bool alone) {
+report::Record finding_record(const std::string& path, const Error& error, bool alone) {
   const auto show = alone ? Show::json : Show::everywhere;
   report::Record out{{"file", path, show}};
   for (const auto* key : {"product", "vendor", "objects", "entries", "errors", "warnings"})
@@ -123,7 +123,7 @@ class Check {
     const auto file = od::read_eds(*text, word);
     if (!file) return refuse(word, file.error());
     count_errors(word, *file);
-    out_.emplace_back(record_of(word, *file));
+    out_.emplace_back(finding_record(word, *file));
   }
 
   report::List take() { return std::move(out_); }
@@ -145,7 +145,7 @@ class Check {
 
   void add(const std::string& word, const od::EsiFile& file) {
     count_errors(word, file.sheet);
-    auto record = record_of(word, file.sheet);
+    auto record = finding_record(word, file.sheet);
     const auto ethercat = ethercat_record(file);
     record.insert(record.begin() + 3, ethercat.begin(), ethercat.end());
     out_.emplace_back(std::move(record));
@@ -153,7 +153,7 @@ class Check {
 
   void refuse(const std::string& word, const Error& error) {
     context_->errors.push_back(error);
-    out_.emplace_back(record_of(word, error, alone_));
+    out_.emplace_back(finding_record(word, error, alone_));
   }
 
   void count_errors(const std::string& word, const od::EdsFile& file) {
@@ -166,7 +166,7 @@ class Check {
   report::List out_;
 };
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
+Result<report::Value> run_eds_check(Context& context, const Arguments& arguments) {
   const auto words = arguments.all("file");
   Check check(context, words.size() == 1);
   for (const auto& word : words) check.file(word);
@@ -189,10 +189,10 @@ const Command kEdsCheck{
         "several files the worst sets the exit code. Of an ESI with several devices each is checked: FILE.xml#2 is "
         "the second alone, and FILE.xml#NAME the one of that name. `-` reads standard input to its end: in a pipe of "
         "command lines, what follows this line.",
-    .parameters = kParameters,
+    .parameters = kEdsCheckParameters,
     .needs = Needs::nothing,
     .effect = Effect::none,
-    .run = run,
+    .run = run_eds_check,
 };
 
 }  // namespace servoctl::commands

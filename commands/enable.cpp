@@ -17,7 +17,7 @@ using namespace command;
 using report::Show;
 using report::Value;
 
-constexpr Parameter kParameters[] = {kTurnOption};
+constexpr Parameter kEnableParameters[] = {kTurnOption};
 
 /// Up to "operation enabled" with harmless targets. On every other way out the drive is de-energised.
 Result<void> energise(Context& context, motion::Motion& motion, session::Rehearsal& rehearsal) {
@@ -63,7 +63,7 @@ std::string_view result_text(const Context& context) {
 }
 
 /// What would be sent to all nodes, up to the first that is refused.
-Result<Value> planned(Context& context, const Arguments& arguments) {
+Result<Value> planned_enable(Context& context, const Arguments& arguments) {
   session::Rehearsal rehearsal;
   for (const auto node : context.nodes) {
     auto options = motion_options(context, arguments);
@@ -77,8 +77,8 @@ Result<Value> planned(Context& context, const Arguments& arguments) {
   return show::planned_messages(context, rehearsal.messages());
 }
 
-Result<Value> run(Context& context, const Arguments& arguments) {
-  if (context.dry_run) return planned(context, arguments);
+Result<Value> run_enable(Context& context, const Arguments& arguments) {
+  if (context.dry_run) return planned_enable(context, arguments);
   session::Rehearsal unused;
   report::Table table;
   table.columns = {{"node"}, {"state"}, {"energised", "", Show::json}, {"result"}, {"error", "", Show::json}};
@@ -118,10 +118,10 @@ const Command kEnable{
         "EtherCAT it stays so only while servoctl exchanges process data with it: a single command holds it until "
         "Ctrl-C, and then stops and disables it. "
         "`jog` and `move` enable and disable by themselves.",
-    .parameters = kParameters,
+    .parameters = kEnableParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,
-    .run = run,
+    .run = run_enable,
 };
 
 }  // namespace servoctl::commands

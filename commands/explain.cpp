@@ -16,7 +16,7 @@ using namespace command;
 using show::Explanation;
 using show::Found;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kExplainParameters[] = {
     {.name = "word",
      .help = "a name, a code, or words in English or Chinese; nothing: the topics by kind",
      .kind = Kind::topic,
@@ -122,7 +122,7 @@ Result<report::Value> all_topics(const Context& context, const Shelf& shelf) {
   return answer(show::topic_list(all, context.chinese, page_width(context)), all);
 }
 
-tl::unexpected<Error> nothing_found(const Context& context, const Shelf& shelf, std::string_view said) {
+tl::unexpected<Error> no_entry_found(const Context& context, const Shelf& shelf, std::string_view said) {
   const auto family = context.profile == nullptr ? std::string() : context.profile->family;
   auto hint = did_you_mean(said, show::explained_names(shelf.libraries));
   if (hint.empty() && !family.empty())
@@ -135,14 +135,14 @@ tl::unexpected<Error> nothing_found(const Context& context, const Shelf& shelf, 
               std::move(hint));
 }
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
+Result<report::Value> run_explain(Context& context, const Arguments& arguments) {
   std::string said;
   for (const auto& word : arguments.all("word")) append(said, word, " ");
   const auto shelf = open_shelf(context);
   if (!shelf) return fail(shelf.error());
   if (trim(said).empty()) return all_topics(context, *shelf);
   const auto all = show::explanations(show::TopicQuery(said), shelf->libraries, context.chinese);
-  if (all.empty()) return nothing_found(context, *shelf, said);
+  if (all.empty()) return no_entry_found(context, *shelf, said);
   return told(context, all);
 }
 
@@ -158,10 +158,10 @@ const Command kExplain{
         "(`explain homing 7`), bits, inputs and outputs (`explain DI 28`). Words that are no name are looked "
         "for in titles and texts. Without -d the standard and what has this very name in any family; without a "
         "word the topics by kind. --lang zh takes the Chinese texts.",
-    .parameters = kParameters,
+    .parameters = kExplainParameters,
     .needs = Needs::nothing,
     .effect = Effect::none,
-    .run = run,
+    .run = run_explain,
 };
 
 }  // namespace servoctl::commands

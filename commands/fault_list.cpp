@@ -9,25 +9,25 @@ namespace {
 
 using namespace command;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kFaultListParameters[] = {
     {.name = "pattern", .help = "a code (0x8130, AL.28) or a word", .kind = Kind::text},
 };
 
-std::string code_text(const drive::Fault& fault) {
+std::string listed_code(const drive::Fault& fault) {
   return fault.code ? fmt::format("0x{:04X}", *fault.code) : std::string();
 }
 
-bool wanted(const drive::Fault& fault, std::string_view pattern) {
-  for (const auto& text : {code_text(fault), fault.extra, fault.panel, fault.name, fault.name_zh})
+bool wanted_fault(const drive::Fault& fault, std::string_view pattern) {
+  for (const auto& text : {listed_code(fault), fault.extra, fault.panel, fault.name, fault.name_zh})
     if (show::contains_nocase(text, pattern)) return true;
   return false;
 }
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
+Result<report::Value> run_fault_list(Context& context, const Arguments& arguments) {
   std::vector<const drive::Fault*> found;
   const auto pattern = arguments.text("pattern");
   for (const auto& fault : context.profile->faults)
-    if (wanted(fault, pattern)) found.push_back(&fault);
+    if (wanted_fault(fault, pattern)) found.push_back(&fault);
   if (found.empty())
     return fail(Errc::negative, fmt::format("no fault of {} matches '{}'", context.profile->family, pattern),
                 "`fault list` shows all");
@@ -46,10 +46,10 @@ const Command kFaultList{
     .details =
         "Works without a bus. The code is that of object 603Fh and of emergency messages. `?` marks what the "
         "manual does not state, `!` what it states inconsistently; --json gives the line numbers.",
-    .parameters = kParameters,
+    .parameters = kFaultListParameters,
     .needs = Needs::dictionary,
     .effect = Effect::none,
-    .run = run,
+    .run = run_fault_list,
 };
 
 }  // namespace servoctl::commands

@@ -14,13 +14,13 @@ using namespace command;
 using report::Show;
 using report::Value;
 
-report::Table result_table() {
+report::Table reset_table() {
   report::Table table;
   table.columns = {{"node"}, {"result"}, {"error", "", Show::json}};
   return table;
 }
 
-std::string whom(const Context& context) {
+std::string whom_reset(const Context& context) {
   return context.nodes.size() == 1 ? fmt::format("node {}", context.nodes.front())
                                    : fmt::format("{} nodes", context.nodes.size());
 }
@@ -47,9 +47,9 @@ Value planned_resets(Context& context) {
 
 Result<Value> run_reset(Context& context, const Arguments&) {
   if (context.dry_run) return planned_resets(context);
-  const auto question = fmt::format("Reset the fault of {}? The cause must be gone.", whom(context));
+  const auto question = fmt::format("Reset the fault of {}? The cause must be gone.", whom_reset(context));
   if (const auto answer = context.confirm(question); !answer) return fail(answer.error());
-  auto table = result_table();
+  auto table = reset_table();
   for (const auto node : context.nodes) {
     const auto done = motion::reset_fault(*context.session, context.profile, node);
     if (!done)
@@ -65,9 +65,9 @@ Result<Value> run_clear(Context& context, const Arguments&) {
   for (const auto node : context.nodes)
     planned.push_back(session::planned_write({node, objects::kErrorHistory, Bytes{0}}));
   if (context.dry_run) return show::planned_messages(context, planned);
-  const auto question = fmt::format("Clear the fault history of {}?", whom(context));
+  const auto question = fmt::format("Clear the fault history of {}?", whom_reset(context));
   if (const auto answer = context.confirm(question); !answer) return fail(answer.error());
-  auto table = result_table();
+  auto table = reset_table();
   for (const auto& each : planned) {
     const auto node = each.node;
     const auto written = context.session->download(node, each.write->object, *each.write->data);

@@ -23,7 +23,7 @@ using report::Value;
 
 constexpr std::uint8_t kMostHistory = 254;
 
-std::string code_text(std::uint16_t code, const std::string& words) {
+std::string shown_code(std::uint16_t code, const std::string& words) {
   return fmt::format("0x{:04X} {}", code, words);
 }
 
@@ -102,7 +102,7 @@ class FaultReport {
     }
     const auto code = static_cast<std::uint16_t>(load_le(*answer));
     out_.push_back(
-        {"code_text", code == 0 ? "none" : code_text(code, words(code)), Show::text, "error code 603Fh"});
+        {"code_text", code == 0 ? "none" : shown_code(code, words(code)), Show::text, "error code 603Fh"});
     out_.push_back({"code", code, Show::json});
     out_.push_back({"text", code == 0 ? Value() : Value(words(code)), Show::json});
   }
@@ -133,7 +133,7 @@ class FaultReport {
     out_.push_back({"alarm_text",
                     !answer     ? missing(target->address)
                     : code == 0 ? std::string("none")
-                                : code_text(code, words(code)),
+                                : shown_code(code, words(code)),
                     Show::text, context_->chinese ? target->label_zh() : target->label()});
     out_.push_back({"alarm",
                     answer ? Value(Record{{"id", target->parameter != nullptr ? target->parameter->id
@@ -152,7 +152,7 @@ class FaultReport {
                                   {"error_register", e.error_register},
                                   {"vendor", to_hex(e.vendor)},
                                   {"text", text}});
-      lines.emplace_back(code_text(e.code, text));
+      lines.emplace_back(shown_code(e.code, text));
     }
     if (!lines.empty()) out_.push_back({"emergency_text", std::move(lines), Show::text, "emergencies heard"});
     out_.push_back({"emergencies", std::move(records), Show::json});
@@ -191,7 +191,7 @@ class FaultReport {
   std::vector<const drive::Fault*> candidates_;
 };
 
-Result<Value> run(Context& context, const Arguments&) {
+Result<Value> run_fault_show(Context& context, const Arguments&) {
   List out;
   for (const auto node : context.nodes) {
     auto record = FaultReport(context, node).make();
@@ -216,7 +216,7 @@ const Command kFaultShow{
     .parameters = {},
     .needs = Needs::node,
     .effect = Effect::reads,
-    .run = run,
+    .run = run_fault_show,
     .on_registers = true,
 };
 

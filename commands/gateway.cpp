@@ -13,7 +13,7 @@ using namespace command;
 
 constexpr std::string_view kAllowed[] = {"write"};
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kGatewayParameters[] = {
     {.name = "--listen",
      .help = "127.0.0.1:60000 (default), or a path such as /run/gateway for a local socket",
      .kind = Kind::text},
@@ -69,7 +69,7 @@ Result<void> serve(Context& context, gateway::Listener& listener, bool writes) {
   return served;
 }
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
+Result<report::Value> run_gateway(Context& context, const Arguments& arguments) {
   const auto place = arguments.has("--listen") ? arguments.text("--listen") : "127.0.0.1:60000";
   const auto address = gateway::parse_place(place);
   if (!address) return fail(address.error());
@@ -99,12 +99,12 @@ const Command kGateway{
         "client enables by 6040h is stopped and disabled when that client goes, or the gateway ends. PDOs, "
         "LSS, guarding and events are not part of it. `help` on the line lists what is. To use the gateway of "
         "another program, name it as a bus: --bus gateway://HOST:60000.",
-    .parameters = kParameters,
+    .parameters = kGatewayParameters,
     .needs = Needs::bus,
     .effect = Effect::moves,
     .family = FamilyCheck::never,
     .reads_without = "--allow",
-    .run = run,
+    .run = run_gateway,
 };
 
 }  // namespace servoctl::commands

@@ -6,14 +6,14 @@ namespace {
 
 using namespace command;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kHelpParameters[] = {
     {.name = "command",
      .help = "a command or a group: read, param, param set",
      .kind = Kind::command,
      .many = true},
 };
 
-Result<report::Value> run(Context&, const Arguments& arguments) {
+Result<report::Value> run_help(Context&, const Arguments& arguments) {
   std::string path;
   for (const auto& word : arguments.all("command")) append(path, word, " ");
   auto text = help_text(path, 0);
@@ -29,10 +29,10 @@ const Command kHelp{
     .path = "help",
     .summary = "Show the commands, or how one is used",
     .details = {},
-    .parameters = kParameters,
+    .parameters = kHelpParameters,
     .needs = Needs::nothing,
     .effect = Effect::none,
-    .run = run,
+    .run = run_help,
 };
 
 }  // namespace servoctl::commands

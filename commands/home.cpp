@@ -6,7 +6,7 @@ namespace {
 
 using namespace command;
 
-constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
+constexpr auto kHomeParameters = with_motion_options(std::to_array<Parameter>({
     {.name = "method", .help = "number or name in 6098h (default: the present one)", .kind = Kind::value},
     {.name = "--speed", .help = "switch search speed (6099h:01)", .kind = Kind::value},
     {.name = "--search", .help = "speed of the search for zero (6099h:02)", .kind = Kind::value},
@@ -17,7 +17,7 @@ constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
     kCsvOption,
 }));
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
+Result<report::Value> run_home(Context& context, const Arguments& arguments) {
   motion::Home home;
   home.method = arguments.text("method");
   home.fast = arguments.text("--speed");
@@ -43,10 +43,10 @@ const Command kHome{
         "method that takes the present position, that position must read as the offset). Method, speeds and "
         "offset are restored afterwards; the home position stays. Example: `home 35 -n 1`, `home 1 --speed "
         "30rpm --search 6rpm -n 1`.",
-    .parameters = kParameters,
+    .parameters = kHomeParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,
-    .run = run,
+    .run = run_home,
 };
 
 }  // namespace servoctl::commands

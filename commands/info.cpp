@@ -50,8 +50,9 @@ void add_state(Record& out, const session::Identity& node, session::Session& ses
   out.push_back({"nmt", node.state ? Value(session::name(*node.state)) : Value()});
 }
 
-Value one(const session::Identity& node, std::span<const drive::Family> families,
-          std::span<const Result<Bytes>> more, const drive::Profile* profile, const Context& context) {
+Value identity_record(const session::Identity& node, std::span<const drive::Family> families,
+                      std::span<const Result<Bytes>> more, const drive::Profile* profile,
+                      const Context& context) {
   const auto guesses = session::guess_families(node, families);
   Record out{
       {"node", node.node},
@@ -99,7 +100,7 @@ Error no_answer(session::Session& session, std::uint8_t node, std::span<const Er
   return drive_error(Errc::timeout, node, "no answer", "`scan` shows which nodes answer");
 }
 
-Result<report::Value> run_registers(Context& context) {
+Result<report::Value> info_of_registers(Context& context) {
   report::List out;
   for (const auto node : context.nodes) {
     auto told = show::register_info(context, node);
@@ -111,8 +112,8 @@ Result<report::Value> run_registers(Context& context) {
   return report::Value(std::move(out));
 }
 
-Result<report::Value> run(Context& context, const Arguments&) {
-  if (context.session->modbus() != nullptr) return run_registers(context);
+Result<report::Value> run_info(Context& context, const Arguments&) {
+  if (context.session->modbus() != nullptr) return info_of_registers(context);
   std::vector<Error> away;
   auto found = session::scan(*context.session, context.nodes, &away);
   if (!found) return fail(found.error());
@@ -134,8 +135,8 @@ Result<report::Value> run(Context& context, const Arguments&) {
                              ? Result<void>{}
                              : context.hold_family(std::span(&node, 1), context.profile, false);
       if (!right) context.errors.push_back(right.error());
-      out.push_back(one((*found)[at], families, std::span(answers).subspan(3 * at, 3),
-                        right ? context.profile : nullptr, context));
+      out.push_back(identity_record((*found)[at], families, std::span(answers).subspan(3 * at, 3),
+                                    right ? context.profile : nullptr, context));
       ++at;
       continue;
     }
@@ -158,7 +159,7 @@ const Command kInfo{
     .needs = Needs::node,
     .effect = Effect::reads,
     .family = FamilyCheck::never,
-    .run = run,
+    .run = run_info,
     .on_registers = true,
 };
 

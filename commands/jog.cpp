@@ -9,7 +9,7 @@ namespace {
 
 using namespace command;
 
-constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
+constexpr auto kJogParameters = with_motion_options(std::to_array<Parameter>({
     {.name = "speed",
      .help = "60rpm, -1.5rev/s; the sign is the direction",
      .kind = Kind::value,
@@ -74,7 +74,7 @@ Result<motion::Jog> parse_jog(const Arguments& arguments) {
   return jog;
 }
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
+Result<report::Value> run_jog(Context& context, const Arguments& arguments) {
   auto jog = parse_jog(arguments);
   if (!jog) return fail(jog.error());
   const bool by_key = !jog->length && !jog->turns;
@@ -118,10 +118,10 @@ const Command kJog{
         "meanwhile and stops by itself 0.5 s after the last heartbeat. Position, speed and torque are shown "
         "during the motion; -o jsonl has every sample. Examples: `jog 60rpm --for 2s -n 1`, `jog -30rpm "
         "--turns 3 -n 1 --yes`.",
-    .parameters = kParameters,
+    .parameters = kJogParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,
-    .run = run,
+    .run = run_jog,
 };
 
 }  // namespace servoctl::commands

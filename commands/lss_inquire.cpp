@@ -10,11 +10,11 @@ using namespace command;
 using canopen::LssService;
 using report::Value;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kLssInquireParameters[] = {
     kVendorOption, kProductOption, kRevisionOption, kSerialOption, kOnlySlaveOption,
 };
 
-Value planned(const LssChoice& choice) {
+Value planned_lss_inquire(const LssChoice& choice) {
   std::vector<canopen::LssRequest> requests;
   for (const auto what : {LssService::inquire_node, LssService::inquire_vendor, LssService::inquire_product,
                           LssService::inquire_revision, LssService::inquire_serial})
@@ -22,10 +22,10 @@ Value planned(const LssChoice& choice) {
   return lss_planned_frames(choice, requests);
 }
 
-Result<Value> run(Context& context, const Arguments& arguments) {
+Result<Value> run_lss_inquire(Context& context, const Arguments& arguments) {
   const auto choice = lss_choice(context, arguments);
   if (!choice) return fail(choice.error());
-  if (context.dry_run) return planned(*choice);
+  if (context.dry_run) return planned_lss_inquire(*choice);
   session::LssDialogue lss(*context.session, context.session->options().timeout);
   const auto slave = lss.select(choice->address);
   if (!slave) return fail(slave.error());
@@ -37,7 +37,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   return Value(std::move(out));
 }
 
-Result<void> check(Context& context, const Arguments& arguments) {
+Result<void> check_lss_inquire(Context& context, const Arguments& arguments) {
   return check_lss_choice(context, arguments);
 }
 
@@ -54,12 +54,12 @@ const Command kLssInquire{
         "are noticed, and nothing is believed of either. The slave is taken to the configuration state, asked, and "
         "taken back to waiting, on every way out. Many drives have no LSS: see `address`. For example: lss inquire "
         "--only; lss inquire -n 3.",
-    .parameters = kParameters,
+    .parameters = kLssInquireParameters,
     .needs = Needs::can,
     .effect = Effect::reads,
     .family = FamilyCheck::never,
-    .run = run,
-    .check = check,
+    .run = run_lss_inquire,
+    .check = check_lss_inquire,
     .elsewhere = "a drive on EtherCAT is addressed by its place on the ring: `scan` shows what each is",
 };
 

@@ -18,12 +18,11 @@ using namespace command;
 
 using canopen::LssAddress;
 using report::Value;
-using Found = session::LssFound;
 
 /// Slaves answer within some milliseconds; where nobody does, each bit costs this.
 constexpr Duration kDefaultPatience = std::chrono::milliseconds(50);
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kLssScanParameters[] = {
     {.name = "--assign",
      .help = "give them node-IDs in turn, from this one on; asks first",
      .kind = Kind::number},
@@ -60,7 +59,7 @@ Result<void> read_range(const Arguments& arguments, ScanWish& wish) {
   return {};
 }
 
-Result<ScanWish> wish_of(const Arguments& arguments) {
+Result<ScanWish> scan_wish(const Arguments& arguments) {
   ScanWish out;
   const auto patience = duration_option(arguments, "--patience");
   if (!patience) return fail(patience.error());
@@ -83,9 +82,9 @@ Result<ScanWish> wish_of(const Arguments& arguments) {
   return out;
 }
 
-Result<std::vector<Found>> find(Context& context, const ScanWish& wish) {
+Result<std::vector<session::LssFound>> find(Context& context, const ScanWish& wish) {
   session::LssDialogue lss(*context.session, wish.patience);
-  std::vector<Found> out;
+  std::vector<session::LssFound> out;
   if (wish.low) {
     const auto found = lss.search(*wish.low, *wish.high);
     if (!found) return fail(found.error());
@@ -99,7 +98,7 @@ Result<std::vector<Found>> find(Context& context, const ScanWish& wish) {
   return out;
 }
 
-void tell_found(Context& context, const ScanWish& wish, std::span<const Found> found) {
+void tell_found(Context& context, const ScanWish& wish, std::span<const session::LssFound> found) {
   for (const auto& each : found)
     if (each.slaves > 1)
       context.errors.push_back(make_error(
@@ -120,7 +119,8 @@ struct Given {
   settings::LssNodeOutcome outcome;
 };
 
-report::Table table_of(const Context& context, std::span<const Found> found, std::span<const Given> given) {
+report::Table slaves_table(const Context& context, std::span<const session::LssFound> found,
+                           std::span<const Given> given) {
   report::Table table;
   table.columns = {{"vendor_id", "vendor"},
                    {"product_code", "product"},
@@ -151,7 +151,7 @@ report::Table table_of(const Context& context, std::span<const Found> found, std
   return table;
 }
 
-std::string question(std::span<const Found> found, std::span<const std::uint8_t> nodes) {
+std::string question_lss_scan(std::span<const session::LssFound> found, std::span<const std::uint8_t> nodes) {
   std::string out =
       found.size() == 1 ? "Give this LSS slave its node-ID?" : "Give these LSS slaves their node-IDs?";
   for (std::size_t i = 0; i < found.size(); ++i)
@@ -159,7 +159,8 @@ std::string question(std::span<const Found> found, std::span<const std::uint8_t>
   return out + ". Each starts with it at once.";
 }
 
-Value planned(std::span<const Found> found, std::span<const std::uint8_t> nodes, bool keep) {
+Value planned_lss_scan(std::span<const session::LssFound> found, std::span<const std::uint8_t> nodes,
+                       bool keep) {
   report::Table table;
   table.columns = {{"new_node", "new"}, {"frame"}};
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -185,8 +186,8 @@ Result<std::vector<std::uint8_t>> nodes_from(std::uint8_t first, std::size_t cou
 
 /// One after the other; ends with the first that does not take its node-ID, for what went wrong may concern
 /// all. One that has taken it and does not start with it keeps nobody from going on.
-std::vector<Given> give(Context& context, std::span<const Found> found, std::span<const std::uint8_t> nodes,
-                        bool keep) {
+std::vector<Given> give(Context& context, std::span<const session::LssFound> found,
+                        std::span<const std::uint8_t> nodes, bool keep) {
   std::vector<Given> out;
   for (std::size_t i = 0; i < found.size(); ++i) {
     const session::LssSlave slave{found[i].address, canopen::kUnconfigured};
@@ -199,39 +200,40 @@ std::vector<Given> give(Context& context, std::span<const Found> found, std::spa
 }
 
 /// Those that have a node-ID stand last, and keep it.
-Result<Value> assign(Context& context, const ScanWish& wish, std::vector<Found> found, bool keep) {
-  const auto configured =
-      std::stable_partition(found.begin(), found.end(), [](const Found& each) { return !each.node; });
-  const std::span<const Found> all = found;
+Result<Value> assign(Context& context, const ScanWish& wish, std::vector<session::LssFound> found,
+                     bool keep) {
+  const auto configured = std::stable_partition(found.begin(), found.end(),
+                                                [](const session::LssFound& each) { return !each.node; });
+  const std::span<const session::LssFound> all = found;
   const auto todo = all.first(static_cast<std::size_t>(configured - found.begin()));
   for (const auto& each : all.subspan(todo.size()))
     context.notices.push_back(
         fmt::format("node {} answers fastscan, but has a node-ID: it was left alone", *each.node));
   const auto nodes = nodes_from(*wish.first, todo.size());
   if (!nodes) return fail(nodes.error());
-  if (!context.errors.empty() || todo.empty()) return Value(table_of(context, all, {}));
+  if (!context.errors.empty() || todo.empty()) return Value(slaves_table(context, all, {}));
   if (const auto free = settings::refuse_taken(*context.session, *nodes); !free) return fail(free.error());
-  if (context.dry_run) return planned(todo, *nodes, keep);
-  if (const auto sure = context.confirm(question(todo, *nodes)); !sure) return fail(sure.error());
+  if (context.dry_run) return planned_lss_scan(todo, *nodes, keep);
+  if (const auto sure = context.confirm(question_lss_scan(todo, *nodes)); !sure) return fail(sure.error());
   const auto given = give(context, todo, *nodes, keep);
   if (!keep)
     context.notices.push_back(
         "not stored: after power-off they have no node-ID again; `lss store` or --keep keeps it");
-  return Value(table_of(context, all, given));
+  return Value(slaves_table(context, all, given));
 }
 
-Result<Value> run(Context& context, const Arguments& arguments) {
-  const auto wish = wish_of(arguments);
+Result<Value> run_lss_scan(Context& context, const Arguments& arguments) {
+  const auto wish = scan_wish(arguments);
   if (!wish) return fail(wish.error());
   const auto found = find(context, *wish);
   if (!found) return fail(found.error());
   tell_found(context, *wish, *found);
   if (wish->first) return assign(context, *wish, *found, arguments.has("--keep"));
-  return Value(table_of(context, *found, {}));
+  return Value(slaves_table(context, *found, {}));
 }
 
-Result<void> check(Context&, const Arguments& arguments) {
-  const auto wish = wish_of(arguments);
+Result<void> check_lss_scan(Context&, const Arguments& arguments) {
+  const auto wish = scan_wish(arguments);
   return wish ? Result<void>() : fail(wish.error());
 }
 
@@ -250,13 +252,13 @@ const Command kLssScan{
         "question that names each: none of these may be in use. --keep stores them. Two slaves of one identity are "
         "told, and get nothing. For example: lss scan; lss scan --assign 5 --keep; lss scan --vendor 0x445653 "
         "--product 1.",
-    .parameters = kParameters,
+    .parameters = kLssScanParameters,
     .needs = Needs::can,
     .effect = Effect::resets,
     .family = FamilyCheck::never,
     .reads_without = "--assign",
-    .run = run,
-    .check = check,
+    .run = run_lss_scan,
+    .check = check_lss_scan,
     .elsewhere = "a drive on EtherCAT is addressed by its place on the ring: `scan` shows what each is",
 };
 

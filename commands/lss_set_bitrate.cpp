@@ -20,7 +20,7 @@ using namespace command;
 
 using report::Value;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kLssSetBitrateParameters[] = {
     {.name = "rate",
      .help = "1M, 800k, 500k, 250k, 125k, 50k, 20k, 10k, or auto",
      .kind = Kind::text,
@@ -50,7 +50,7 @@ struct BitrateWish {
   }
 };
 
-Result<BitrateWish> wish_of(const Context& context, const Arguments& arguments) {
+Result<BitrateWish> bitrate_wish(const Context& context, const Arguments& arguments) {
   BitrateWish out;
   out.all = arguments.has("--all");
   out.keep = arguments.has("--keep");
@@ -94,7 +94,7 @@ std::vector<canopen::LssRequest> requests_of(const BitrateWish& wish) {
   return out;
 }
 
-std::string question(const BitrateWish& wish) {
+std::string question_lss_set_bitrate(const BitrateWish& wish) {
   auto out = fmt::format("Set {} in {}?", wish.rate_text(),
                          wish.all ? "every LSS slave on the bus" : "one LSS slave");
   if (wish.delay_ms)
@@ -127,7 +127,7 @@ Result<std::size_t> order_all(session::LssDialogue& lss, const canopen::LssReque
   return answers->size();
 }
 
-Result<std::size_t> carry_out(session::LssDialogue& lss, const BitrateWish& wish, Duration patience) {
+Result<std::size_t> change_bitrate(session::LssDialogue& lss, const BitrateWish& wish, Duration patience) {
   const auto slow = std::max(patience, settings::kLssStorePatience);
   std::size_t slaves = wish.all ? 0 : 1;
   for (const auto& request : requests_of(wish)) {
@@ -149,7 +149,7 @@ Result<std::size_t> carry_out(session::LssDialogue& lss, const BitrateWish& wish
 }
 
 /// What holds now, and what somebody has to do.
-void tell(Context& context, const BitrateWish& wish) {
+void tell_bitrate(Context& context, const BitrateWish& wish) {
   const auto url = session::canonical_url(context.session->url());
   const bool has_bitrate = url.find(':') == std::string::npos || url.starts_with("socketcan:");
   if (!wish.delay_ms)
@@ -176,8 +176,8 @@ void tell(Context& context, const BitrateWish& wish) {
       wish.delay_ms ? "now" : "then", name, *wish.bitrate));
 }
 
-Result<Value> run(Context& context, const Arguments& arguments) {
-  const auto wish = wish_of(context, arguments);
+Result<Value> run_lss_set_bitrate(Context& context, const Arguments& arguments) {
+  const auto wish = bitrate_wish(context, arguments);
   if (!wish) return fail(wish.error());
   const auto choice = wish->all ? Result<LssChoice>(LssChoice{}) : lss_choice(context, arguments);
   if (!choice) return fail(choice.error());
@@ -186,7 +186,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
     if (const auto still = settings::refuse_energised_nodes(*context.session, "the bitrate of its bus");
         !still)
       return fail(still.error());
-  if (const auto sure = context.confirm(question(*wish)); !sure) return fail(sure.error());
+  if (const auto sure = context.confirm(question_lss_set_bitrate(*wish)); !sure) return fail(sure.error());
   const auto patience = context.session->options().timeout;
   session::LssDialogue lss(*context.session, patience);
   report::Record out;
@@ -201,7 +201,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
     if (!slave) return fail(slave.error());
     out = lss_identity_record(slave->address);
   }
-  const auto slaves = carry_out(lss, *wish, patience);
+  const auto slaves = change_bitrate(lss, *wish, patience);
   if (!slaves) return fail(slaves.error());
   // Still at the old bitrate: what was activated waits for the delay first.
   if (const auto left = lss.leave(); !left) context.errors.push_back(left.error());
@@ -209,12 +209,12 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   out.push_back({"bitrate", wish->bitrate ? Value(*wish->bitrate) : Value()});
   out.push_back({"kept", wish->keep});
   out.push_back({"active_after_ms", wish->delay_ms ? Value(*wish->delay_ms) : Value()});
-  tell(context, *wish);
+  tell_bitrate(context, *wish);
   return Value(std::move(out));
 }
 
-Result<void> check(Context& context, const Arguments& arguments) {
-  const auto wish = wish_of(context, arguments);
+Result<void> check_lss_set_bitrate(Context& context, const Arguments& arguments) {
+  const auto wish = bitrate_wish(context, arguments);
   return wish ? Result<void>() : fail(wish.error());
 }
 
@@ -231,12 +231,12 @@ const Command kLssSetBitrate{
         "again, and go on: refused while a drive that answers on the bus is energised. The interface is not changed "
         "by this; how is told. A node that keeps its bitrate on a bus with another one disturbs everybody, so change "
         "all of them or none. For example: lss set-bitrate 500k --all --keep --activate 5s.",
-    .parameters = kParameters,
+    .parameters = kLssSetBitrateParameters,
     .needs = Needs::can,
     .effect = Effect::resets,
     .family = FamilyCheck::never,
-    .run = run,
-    .check = check,
+    .run = run_lss_set_bitrate,
+    .check = check_lss_set_bitrate,
     .elsewhere = "EtherCAT has one bitrate",
 };
 

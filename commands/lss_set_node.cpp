@@ -15,7 +15,7 @@ using namespace command;
 using canopen::kUnconfigured;
 using report::Value;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kLssSetNodeParameters[] = {
     {.name = "new", .help = "the new node-ID, 1 to 127; 255: none", .kind = Kind::number, .required = true},
     kVendorOption,
     kProductOption,
@@ -40,7 +40,7 @@ std::string node_text(std::uint8_t node) {
   return node == kUnconfigured ? std::string("no node-ID") : fmt::format("node-ID {}", node);
 }
 
-std::string question(const session::LssSlave& slave, const settings::LssNodeChange& change) {
+std::string question_lss_set_node(const session::LssSlave& slave, const settings::LssNodeChange& change) {
   auto out = fmt::format("Give {} to the LSS slave with {}?", node_text(change.to), to_string(slave.address));
   if (slave.is_unconfigured()) return out + " It has none, and starts with it.";
   if (!slave.node) return out + " It does not tell which it has; the new one holds when it starts again.";
@@ -55,13 +55,13 @@ Value node_value(std::optional<std::uint8_t> node) {
   return node && *node != kUnconfigured ? Value(*node) : Value();
 }
 
-Value planned(const LssChoice& choice, const settings::LssNodeChange& change) {
+Value planned_lss_set_node(const LssChoice& choice, const settings::LssNodeChange& change) {
   std::vector<canopen::LssRequest> requests{canopen::lss_set_node(change.to)};
   if (change.keep) requests.push_back(canopen::lss_store());
   return lss_planned_frames(choice, requests);
 }
 
-Result<Value> run(Context& context, const Arguments& arguments) {
+Result<Value> run_lss_set_node(Context& context, const Arguments& arguments) {
   const auto to = new_node(arguments);
   if (!to) return fail(to.error());
   const auto choice = lss_choice(context, arguments);
@@ -70,11 +70,12 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   if (context.dry_run) {
     context.notices.push_back(
         "a slave that has a node-ID already gets an NMT reset of its communication behind these frames");
-    return planned(*choice, change);
+    return planned_lss_set_node(*choice, change);
   }
   const auto slave = settings::look_at_lss_slave(*context.session, change);
   if (!slave) return fail(slave.error());
-  if (const auto agreed = context.confirm(question(*slave, change)); !agreed) return fail(agreed.error());
+  if (const auto agreed = context.confirm(question_lss_set_node(*slave, change)); !agreed)
+    return fail(agreed.error());
   const auto outcome = settings::give_lss_node(context, *slave, change);
   if (outcome.error) context.errors.push_back(*outcome.error);
   auto out = lss_identity_record(slave->address);
@@ -88,7 +89,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   return Value(std::move(out));
 }
 
-Result<void> check(Context& context, const Arguments& arguments) {
+Result<void> check_lss_set_node(Context& context, const Arguments& arguments) {
   if (const auto to = new_node(arguments); !to) return fail(to.error());
   return check_lss_choice(context, arguments);
 }
@@ -106,12 +107,12 @@ const Command kLssSetNode{
         "all that answer, and all that are heard within 1.5 s. At the end the slave is looked for by its new node-ID "
         "and its 1018h. --keep stores it; where that fails the old node-ID is set again. 255 takes the node-ID away. "
         "For example: lss set-node 5 --only --keep.",
-    .parameters = kParameters,
+    .parameters = kLssSetNodeParameters,
     .needs = Needs::can,
     .effect = Effect::resets,
     .family = FamilyCheck::never,
-    .run = run,
-    .check = check,
+    .run = run_lss_set_node,
+    .check = check_lss_set_node,
     .elsewhere = "a drive on EtherCAT is addressed by its place on the ring; it has no node-ID to change",
 };
 

@@ -10,11 +10,11 @@ using namespace command;
 
 using report::Value;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kLssStoreParameters[] = {
     kVendorOption, kProductOption, kRevisionOption, kSerialOption, kOnlySlaveOption,
 };
 
-Result<Value> run(Context& context, const Arguments& arguments) {
+Result<Value> run_lss_store(Context& context, const Arguments& arguments) {
   const auto choice = lss_choice(context, arguments);
   if (!choice) return fail(choice.error());
   const canopen::LssRequest requests[] = {canopen::lss_store()};
@@ -36,7 +36,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   return Value(std::move(out));
 }
 
-Result<void> check(Context& context, const Arguments& arguments) {
+Result<void> check_lss_store(Context& context, const Arguments& arguments) {
   return check_lss_choice(context, arguments);
 }
 
@@ -50,12 +50,12 @@ const Command kLssStore{
         "What `lss set-node` and `lss set-bitrate` set is lost with the power unless it is stored, by --keep there or "
         "by this. What is stored is what was set last, also where it is not in force yet. Not every slave can; one "
         "that cannot says so. The slave is named as for `lss inquire`.",
-    .parameters = kParameters,
+    .parameters = kLssStoreParameters,
     .needs = Needs::can,
     .effect = Effect::stores,
     .family = FamilyCheck::never,
-    .run = run,
-    .check = check,
+    .run = run_lss_store,
+    .check = check_lss_store,
     .elsewhere = "a drive on EtherCAT is addressed by its place on the ring; `store` keeps its parameters",
 };
 

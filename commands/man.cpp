@@ -7,7 +7,7 @@ namespace {
 
 using namespace command;
 
-Result<report::Value> run(Context&, const Arguments&) {
+Result<report::Value> run_man(Context&, const Arguments&) {
   auto page = man_page(version(), version_date());
   page.pop_back();  // The front end ends the text with a line break.
   return report::Value(std::move(page));
@@ -24,7 +24,7 @@ const Command kMan{
     .parameters = {},
     .needs = Needs::nothing,
     .effect = Effect::none,
-    .run = run,
+    .run = run_man,
 };
 
 }  // namespace servoctl::commands

@@ -17,7 +17,7 @@ using namespace command;
 using report::Show;
 using report::Value;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kModeParameters[] = {
     {.name = "mode",
      .help = "number or name (pp, pv, hm …); without it, shows the present mode",
      .kind = Kind::value},
@@ -40,13 +40,13 @@ Result<std::int8_t> parse_mode(const drive::Profile& profile, std::string_view t
                                 : std::string("`objects 0x6060` lists them"));
 }
 
-struct Wanted {
+struct WantedMode {
   std::uint8_t node;
   std::int8_t mode;
 };
 
 /// Errc::refused where a new mode is none of the drive's, or could move it.
-Result<void> check_change(Context& context, const Wanted& wanted) {
+Result<void> check_change(Context& context, const WantedMode& wanted) {
   auto& session = *context.session;
   const auto& profile = *context.profile;
   if (const auto known = motion::check_mode(session, profile, wanted.node, wanted.mode); !known) return known;
@@ -59,12 +59,12 @@ Result<void> check_change(Context& context, const Wanted& wanted) {
                           "`disable` it first"));
 }
 
-Result<void> change(Context& context, const Wanted& wanted) {
+Result<void> change(Context& context, const WantedMode& wanted) {
   if (const auto possible = check_change(context, wanted); !possible) return possible;
   return motion::set_mode(*context.session, *context.profile, wanted.node, wanted.mode);
 }
 
-Value planned(Context& context, std::int8_t mode) {
+Value planned_mode(Context& context, std::int8_t mode) {
   std::vector<session::PlannedMessage> messages;
   for (const auto node : context.nodes) {
     if (const auto possible = check_change(context, {node, mode}); !possible)
@@ -75,14 +75,14 @@ Value planned(Context& context, std::int8_t mode) {
   return show::planned_messages(context, messages);
 }
 
-Result<Value> run(Context& context, const Arguments& arguments) {
+Result<Value> run_mode(Context& context, const Arguments& arguments) {
   std::optional<std::int8_t> wanted;
   if (arguments.has("mode")) {
     const auto mode = parse_mode(*context.profile, arguments.text("mode"));
     if (!mode) return fail(mode.error());
     wanted = *mode;
   }
-  if (wanted && context.dry_run) return planned(context, *wanted);
+  if (wanted && context.dry_run) return planned_mode(context, *wanted);
   report::Table table;
   table.columns = {{"node"},
                    {"text", "mode", Show::text},
@@ -116,11 +116,11 @@ const Command kMode{
         "Names are the family's own: `mode pv`, `mode \"Profile velocity\"`, `mode 3`. Refused if the family "
         "or the drive (6502h) does not support the mode, and while the drive is energised. Waits until 6061h "
         "shows it.",
-    .parameters = kParameters,
+    .parameters = kModeParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::writes,
     .reads_without = "mode",
-    .run = run,
+    .run = run_mode,
 };
 
 }  // namespace servoctl::commands

@@ -22,7 +22,7 @@ using session::NodeEvent;
 /// ordinary user is given holds those of 25 ms at the least.
 constexpr Duration kDelay = std::chrono::milliseconds(10);
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kMonitorParameters[] = {
     kForOption,
     kServiceOption,
     kObjectOption,
@@ -135,7 +135,7 @@ class Monitor {
   std::size_t lost_ = 0;
 };
 
-Result<Value> run(Context& context, const Arguments& arguments) {
+Result<Value> run_monitor(Context& context, const Arguments& arguments) {
   auto filter = frame_filter(context, arguments);
   if (!filter) return fail(filter.error());
   const auto length = duration_option(arguments, "--for");
@@ -172,10 +172,10 @@ const Command kMonitor{
         "frames, their mean period in ms, and what the last one means (keys: space pauses, s sorts, q quits). At the end (--for, or Ctrl-C) it shows the number of frames, and the "
         "bus load if the bitrate is known from the interface or --bitrate. `-o jsonl` gives one document per "
         "frame.",
-    .parameters = kParameters,
+    .parameters = kMonitorParameters,
     .needs = Needs::can,
     .effect = Effect::reads,
-    .run = run,
+    .run = run_monitor,
     .goes_on = true,
     .elsewhere =
         "`--trace FILE.pcap` writes every frame for Wireshark; what slaves tell is shown by every command",

@@ -6,7 +6,7 @@ namespace {
 
 using namespace command;
 
-constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
+constexpr auto kMoveParameters = with_motion_options(std::to_array<Parameter>({
     {.name = "target",
      .help = "90deg, 2rev, the drive's own counts, or 20mm where the cabinet file tells the load",
      .kind = Kind::value,
@@ -19,7 +19,7 @@ constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
     kCsvOption,
 }));
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
+Result<report::Value> run_move(Context& context, const Arguments& arguments) {
   motion::Move move;
   move.target = arguments.text("target");
   move.relative = arguments.has("--relative");
@@ -40,10 +40,10 @@ const Command kMove{
         "done when the drive reports target reached, is at standstill, and is at the target position; a "
         "distance that the drive's counts cannot represent to 1 % is refused. Afterwards the drive is "
         "disabled: the motor does not hold its position. Example: `move 90deg --speed 30rpm -n 1`.",
-    .parameters = kParameters,
+    .parameters = kMoveParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,
-    .run = run,
+    .run = run_move,
 };
 
 }  // namespace servoctl::commands

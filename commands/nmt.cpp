@@ -19,7 +19,7 @@ using report::Value;
 constexpr Duration kBootPatience = std::chrono::seconds(5);
 constexpr Duration kStatePatience = std::chrono::seconds(2);
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kNmtParameters[] = {
     {.name = "--wait",
      .help = "wait until a heartbeat or the boot-up message confirms it",
      .kind = Kind::flag},
@@ -84,8 +84,7 @@ Error unconfirmed(const Before& before, NmtCommand command, const Heartbeats& he
   return error;
 }
 
-report::Table result_table(Context& context, std::span<const Before> before, NmtCommand command,
-                           bool waited) {
+report::Table nmt_table(Context& context, std::span<const Before> before, NmtCommand command, bool waited) {
   report::Table table;
   table.columns = {{"node"}, {"command"}, {"confirmed"}, {"state"}};
   for (const auto& entry : before) {
@@ -106,18 +105,18 @@ std::string communication_goes() {
                      kSetAndNotStored);
 }
 
-std::string whom(std::span<const std::uint8_t> nodes) {
+std::string whom_nmt(std::span<const std::uint8_t> nodes) {
   if (nodes.front() == 0) return "all nodes";
   return nodes.size() == 1 ? fmt::format("node {}", nodes.front()) : fmt::format("{} nodes", nodes.size());
 }
 
 /// What is to be answered before a reset.
-std::string question(std::span<const std::uint8_t> nodes, NmtCommand command) {
+std::string question_nmt(std::span<const std::uint8_t> nodes, NmtCommand command) {
   if (command == NmtCommand::reset_node)
-    return fmt::format("Reset {}? Drives restart; a moving axis is no longer controlled.", whom(nodes));
+    return fmt::format("Reset {}? Drives restart; a moving axis is no longer controlled.", whom_nmt(nodes));
   return fmt::format(
       "Reset the communication of {}? PDOs and heartbeats pause, so a moving axis may lose its control; {}.",
-      whom(nodes), communication_goes());
+      whom_nmt(nodes), communication_goes());
 }
 
 /// What a reset of the communication has done where its boot-up was seen, and does by the standard elsewhere.
@@ -144,7 +143,7 @@ report::Value planned_frames(Context& context, NmtCommand command) {
   return report::Value(std::move(table));
 }
 
-Result<void> send(session::Session& session, NmtCommand command, std::uint8_t node) {
+Result<void> send_nmt(session::Session& session, NmtCommand command, std::uint8_t node) {
   if (auto* gateway = session.gateway()) return gateway->command(node, command);
   const auto sent = session.can()->send(canopen::nmt_frame(command, node));
   if (sent) session.can()->watch().on_command(node);
@@ -160,23 +159,23 @@ Result<void> check_wait(const Context& context, bool wait) {
   return {};
 }
 
-Result<report::Value> run(Context& context, const Arguments& arguments, NmtCommand command) {
+Result<report::Value> run_nmt(Context& context, const Arguments& arguments, NmtCommand command) {
   if (context.dry_run) return planned_frames(context, command);
   const bool wait = arguments.has("--wait");
   if (const auto may = check_wait(context, wait); !may) return fail(may.error());
   if (is_reset(command))
-    if (const auto answer = context.confirm(question(context.nodes, command)); !answer)
+    if (const auto answer = context.confirm(question_nmt(context.nodes, command)); !answer)
       return fail(answer.error());
   const auto heartbeats = wait && !is_reset(command) ? heartbeats_of(context) : Heartbeats();
   std::vector<Before> before;
   for (const auto node : context.nodes) {
     before.push_back({node, context.session->watch().boots(node), context.session->watch().heartbeats(node)});
-    if (const auto sent = send(*context.session, command, node); !sent) return fail(sent.error());
+    if (const auto sent = send_nmt(*context.session, command, node); !sent) return fail(sent.error());
   }
   const bool tells = command == NmtCommand::reset_communication;
   if (!wait) {
     if (tells) tell_reset(context, before, false);
-    return report::Value(result_table(context, before, command, false));
+    return report::Value(nmt_table(context, before, command, false));
   }
   const auto done = [&] {
     return std::all_of(before.begin(), before.end(),
@@ -191,19 +190,19 @@ Result<report::Value> run(Context& context, const Arguments& arguments, NmtComma
   for (const auto& entry : before)
     if (!confirmed(*context.session, entry, command))
       context.errors.push_back(unconfirmed(entry, command, heartbeats, context.session->can()->watch()));
-  return report::Value(result_table(context, before, command, true));
+  return report::Value(nmt_table(context, before, command, true));
 }
 
 template <NmtCommand command>
-Result<report::Value> run_command(Context& context, const Arguments& arguments) {
-  return run(context, arguments, command);
+Result<report::Value> run_nmt_command(Context& context, const Arguments& arguments) {
+  return run_nmt(context, arguments, command);
 }
 
 constexpr std::string_view kDetails =
     "The command is sent once; nodes do not answer it. With --wait it is done when a heartbeat confirms it; "
     "exit code 4 if none does. `-n all` addresses every node.";
 
-constexpr std::string_view kElsewhere =
+constexpr std::string_view kNmtElsewhere =
     "the AL state of a slave is changed with `state init`, `state preop`, `state safeop` and `state op`";
 
 constexpr std::string_view kResetDetails =
@@ -224,13 +223,13 @@ const Command kNmtStart{
     .path = "nmt start",
     .summary = "Set nodes to operational: PDOs active",
     .details = kDetails,
-    .parameters = kParameters,
+    .parameters = kNmtParameters,
     .needs = Needs::node | Needs::nmt,
     .effect = Effect::writes,
     .family = FamilyCheck::never,
-    .run = run_command<NmtCommand::start>,
+    .run = run_nmt_command<NmtCommand::start>,
     .to_all = true,
-    .elsewhere = kElsewhere,
+    .elsewhere = kNmtElsewhere,
 };
 
 extern const Command kNmtStop;
@@ -238,13 +237,13 @@ const Command kNmtStop{
     .path = "nmt stop",
     .summary = "Set nodes to stopped: no PDO, no SDO",
     .details = kDetails,
-    .parameters = kParameters,
+    .parameters = kNmtParameters,
     .needs = Needs::node | Needs::nmt,
     .effect = Effect::writes,
     .family = FamilyCheck::never,
-    .run = run_command<NmtCommand::stop>,
+    .run = run_nmt_command<NmtCommand::stop>,
     .to_all = true,
-    .elsewhere = kElsewhere,
+    .elsewhere = kNmtElsewhere,
 };
 
 extern const Command kNmtPreop;
@@ -252,14 +251,14 @@ const Command kNmtPreop{
     .path = "nmt preop",
     .summary = "Set nodes to pre-operational: SDO, no PDO",
     .details = kDetails,
-    .parameters = kParameters,
+    .parameters = kNmtParameters,
     .needs = Needs::node | Needs::nmt,
     .effect = Effect::writes,
     .family = FamilyCheck::never,
-    .run = run_command<NmtCommand::enter_pre_operational>,
+    .run = run_nmt_command<NmtCommand::enter_pre_operational>,
     .settings = [](const Arguments&) { return Result<std::vector<settings::NamedValue>>{}; },  // It prepares.
     .to_all = true,
-    .elsewhere = kElsewhere,
+    .elsewhere = kNmtElsewhere,
 };
 
 extern const Command kNmtReset;
@@ -267,13 +266,13 @@ const Command kNmtReset{
     .path = "nmt reset",
     .summary = "Restart nodes (NMT reset node); asks first",
     .details = kResetDetails,
-    .parameters = kParameters,
+    .parameters = kNmtParameters,
     .needs = Needs::node | Needs::nmt,
     .effect = Effect::resets,
     .family = FamilyCheck::never,
-    .run = run_command<NmtCommand::reset_node>,
+    .run = run_nmt_command<NmtCommand::reset_node>,
     .to_all = true,
-    .elsewhere = kElsewhere,
+    .elsewhere = kNmtElsewhere,
 };
 
 extern const Command kNmtResetComm;
@@ -281,13 +280,13 @@ const Command kNmtResetComm{
     .path = "nmt reset-comm",
     .summary = "Reset communication of nodes (NMT); asks first",
     .details = kResetCommDetails,
-    .parameters = kParameters,
+    .parameters = kNmtParameters,
     .needs = Needs::node | Needs::nmt,
     .effect = Effect::resets,
     .family = FamilyCheck::never,
-    .run = run_command<NmtCommand::reset_communication>,
+    .run = run_nmt_command<NmtCommand::reset_communication>,
     .to_all = true,
-    .elsewhere = kElsewhere,
+    .elsewhere = kNmtElsewhere,
 };
 
 }  // namespace servoctl::commands

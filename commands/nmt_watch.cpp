@@ -20,7 +20,7 @@ using session::NodeEvent;
 
 constexpr Duration kSlice = std::chrono::milliseconds(100);
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kNmtWatchParameters[] = {
     kForOption,
     {.name = "--guard", .help = "use node guarding, with this guard time", .kind = Kind::duration},
     {.name = "--life",
@@ -206,7 +206,7 @@ report::Table guarding_frames(std::span<const std::uint8_t> nodes) {
   return table;
 }
 
-Result<Value> run(Context& context, const Arguments& arguments) {
+Result<Value> run_nmt_watch(Context& context, const Arguments& arguments) {
   const auto plan = plan_of(arguments);
   if (!plan) return fail(plan.error());
   // `all` means those that are there now.
@@ -245,12 +245,12 @@ const Command kNmtWatch{
         "the node did not answer, or with --guard, by the latter only. Guarding requests start the drive's "
         "life guarding, so --read-only refuses them. Exit code 1 if a node was lost, never heard, or sends "
         "no heartbeat. Do not guard nodes that send heartbeats: CiA 301 allows only one of the two.",
-    .parameters = kParameters,
+    .parameters = kNmtWatchParameters,
     .needs = Needs::node | Needs::can,
     .effect = Effect::writes,
     .family = FamilyCheck::never,
     .reads_without = "--guard",
-    .run = run,
+    .run = run_nmt_watch,
     .to_all = true,
     .goes_on = true,
     .elsewhere =

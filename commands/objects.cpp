@@ -13,11 +13,11 @@ namespace {
 
 using namespace command;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kObjectsParameters[] = {
     {.name = "pattern", .help = "part of a name, or an index with *: 0x60*", .kind = Kind::text},
 };
 
-bool wanted(std::string_view pattern, const od::Object& object, const od::Entry& entry) {
+bool wanted_object(std::string_view pattern, const od::Object& object, const od::Entry& entry) {
   if (pattern.empty()) return true;
   const auto address = to_string(entry.address);
   const auto name = object.name + " " + entry.name + " " + drive::entry_name(object, entry);
@@ -44,14 +44,14 @@ void add_values(const Context& context, const od::Entry& entry, report::Table& t
   for (const auto& value : values) table.below.push_back("  " + value);
 }
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
+Result<report::Value> run_objects(Context& context, const Arguments& arguments) {
   const auto sheet = data_sheet_of(*context.profile);
   const auto pattern = arguments.text("pattern");
   std::vector<report::Record> records;
   std::vector<const od::Entry*> shown;
   for (const auto& object : context.profile->dictionary.objects())
     for (const auto& entry : object.entries)
-      if (wanted(pattern, object, entry)) {
+      if (wanted_object(pattern, object, entry)) {
         records.push_back(show::object_record(*context.profile, object, entry, sheet.notes, context.chinese));
         shown.push_back(&entry);
       }
@@ -80,10 +80,10 @@ const Command kObjects{
         "an EtherCAT device describes, `-d FILE.xml#2` the second device of several; with a node on EtherCAT, -d online or nothing "
         "lists what the drive says of its own objects. `?` marks what the manual does not "
         "state, `!` what it states inconsistently; --json gives the line numbers.",
-    .parameters = kParameters,
+    .parameters = kObjectsParameters,
     .needs = Needs::dictionary,
     .effect = Effect::none,
-    .run = run,
+    .run = run_objects,
 };
 
 }  // namespace servoctl::commands

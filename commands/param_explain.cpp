@@ -7,11 +7,11 @@ namespace {
 
 using namespace command;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kParamExplainParameters[] = {
     {.name = "id", .help = "panel number or name: Pn0202", .kind = Kind::parameter, .required = true},
 };
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
+Result<report::Value> run_param_explain(Context& context, const Arguments& arguments) {
   const auto parameter = drive::resolve_parameter(*context.profile, arguments.text("id"));
   if (!parameter) return fail(parameter.error());
   return report::Value(show::parameter_record(**parameter, context.chinese));
@@ -26,10 +26,10 @@ const Command kParamExplain{
     .details =
         "Works without a bus. What the manual does not state is marked assumed, what it states "
         "inconsistently contradicted.",
-    .parameters = kParameters,
+    .parameters = kParamExplainParameters,
     .needs = Needs::dictionary,
     .effect = Effect::none,
-    .run = run,
+    .run = run_param_explain,
 };
 
 }  // namespace servoctl::commands

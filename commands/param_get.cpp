@@ -9,7 +9,7 @@ namespace {
 
 using namespace command;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kParamGetParameters[] = {
     {.name = "id",
      .help = "panel numbers: Pn0202, Pn02*, or a name",
      .kind = Kind::parameter,
@@ -17,7 +17,8 @@ constexpr Parameter kParameters[] = {
      .many = true},
 };
 
-Result<std::vector<drive::Target>> wanted(const drive::Profile& profile, std::span<const std::string> words) {
+Result<std::vector<drive::Target>> wanted_parameters(const drive::Profile& profile,
+                                                     std::span<const std::string> words) {
   std::vector<drive::Target> out;
   for (const auto& word : words) {
     if (word.find('*') == std::string::npos) {
@@ -39,14 +40,14 @@ Result<std::vector<drive::Target>> wanted(const drive::Profile& profile, std::sp
   return out;
 }
 
-Result<void> check(Context& context, const Arguments& arguments) {
-  if (const auto targets = wanted(*context.profile, arguments.all("id")); !targets)
+Result<void> check_param_get(Context& context, const Arguments& arguments) {
+  if (const auto targets = wanted_parameters(*context.profile, arguments.all("id")); !targets)
     return fail(targets.error());
   return {};
 }
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
-  const auto targets = wanted(*context.profile, arguments.all("id"));
+Result<report::Value> run_param_get(Context& context, const Arguments& arguments) {
+  const auto targets = wanted_parameters(*context.profile, arguments.all("id"));
   if (!targets) return fail(targets.error());
   std::vector<show::Reading> readings;
   std::vector<session::SdoRequest> requests;
@@ -70,11 +71,11 @@ const Command kParamGet{
     .details =
         "`Pn02*` reads all that match. The value is the number the panel shows; where one step is not one "
         "unit, the value in units follows it. In JSON `raw` is the panel's number and `value` is in `unit`.",
-    .parameters = kParameters,
+    .parameters = kParamGetParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::reads,
-    .run = run,
-    .check = check,
+    .run = run_param_get,
+    .check = check_param_get,
     .on_registers = true,
 };
 

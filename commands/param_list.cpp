@@ -9,11 +9,11 @@ namespace {
 
 using namespace command;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kParamListParameters[] = {
     {.name = "pattern", .help = "a group (gain, terminal), a number with * (Pn02*)", .kind = Kind::text},
 };
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
+Result<report::Value> run_param_list(Context& context, const Arguments& arguments) {
   const auto pattern = arguments.text("pattern");
   std::vector<const od::Parameter*> found;
   std::vector<std::string> groups;
@@ -40,10 +40,10 @@ const Command kParamList{
         "Works without a bus. Range and default are the numbers the panel shows; the unit column gives the "
         "size of one step. `?` marks what the manual does not state, `!` what it states inconsistently; "
         "`param explain` shows which, with line numbers.",
-    .parameters = kParameters,
+    .parameters = kParamListParameters,
     .needs = Needs::dictionary,
     .effect = Effect::none,
-    .run = run,
+    .run = run_param_list,
 };
 
 }  // namespace servoctl::commands

@@ -10,7 +10,7 @@ namespace {
 
 using namespace command;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kParamSearchParameters[] = {
     {.name = "word",
      .help = "one or more words, English or Chinese; all must occur",
      .kind = Kind::text,
@@ -28,7 +28,7 @@ int rank(const od::Parameter& p, std::string_view word) {
   return show::contains_nocase(p.note, word) || show::contains_nocase(p.note_zh, word) ? 2 : 3;
 }
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
+Result<report::Value> run_param_search(Context& context, const Arguments& arguments) {
   std::vector<std::pair<int, const od::Parameter*>> found;
   std::string said;
   for (const auto& word : arguments.all("word")) append(said, word, " ");
@@ -56,10 +56,10 @@ const Command kParamSearch{
     .summary = "Find panel parameters by words, in English or Chinese",
     .details =
         "Searches numbers, names, labels and notes; matches in the name come first. Works without a bus.",
-    .parameters = kParameters,
+    .parameters = kParamSearchParameters,
     .needs = Needs::dictionary,
     .effect = Effect::none,
-    .run = run,
+    .run = run_param_search,
 };
 
 }  // namespace servoctl::commands

@@ -11,7 +11,7 @@ namespace {
 
 using namespace command;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kParamSetParameters[] = {
     {.name = "assignment",
      .help = "ID VALUE, or ID=VALUE ID=VALUE …",
      .kind = Kind::parameter,
@@ -21,7 +21,7 @@ constexpr Parameter kParameters[] = {
     kUnlockOption,
 };
 
-Result<void> check(Context& context, const Arguments& arguments) {
+Result<void> check_param_set(Context& context, const Arguments& arguments) {
   const auto assignments = parse_assignments(arguments.all("assignment"));
   if (!assignments) return fail(assignments.error());
   for (const auto& assignment : *assignments) {
@@ -34,7 +34,7 @@ Result<void> check(Context& context, const Arguments& arguments) {
   return {};
 }
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
+Result<report::Value> run_param_set(Context& context, const Arguments& arguments) {
   const auto assignments = parse_assignments(arguments.all("assignment"));
   if (!assignments) return fail(assignments.error());
   std::vector<settings::Change> changes;
@@ -58,7 +58,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
   return settings::write_changes(context, changes, options);
 }
 
-Result<std::vector<settings::NamedValue>> setting_values(const Arguments& arguments) {
+Result<std::vector<settings::NamedValue>> parameter_values(const Arguments& arguments) {
   const auto assignments = parse_assignments(arguments.all("assignment"));
   if (!assignments) return fail(assignments.error());
   std::vector<settings::NamedValue> out;
@@ -77,12 +77,12 @@ const Command kParamSet{
         "All values are checked before the first frame. A plain number is the number the panel shows (Pn0214 "
         "400), a number with a unit is converted (Pn0214 40Hz), a label stands for its value. Stops at the "
         "first refusal. The result shows whether the value was read back and when it takes effect.",
-    .parameters = kParameters,
+    .parameters = kParamSetParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::writes,
-    .run = run,
-    .check = check,
-    .settings = setting_values,
+    .run = run_param_set,
+    .check = check_param_set,
+    .settings = parameter_values,
     .on_registers = true,
 };
 

@@ -10,7 +10,7 @@ namespace {
 
 using namespace command;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kPdoApplyParameters[] = {
     {.name = "file",
      .help = "pdos.toml or .json of `pdo save`, a backup, an .eds, .dcf or .xml",
      .kind = Kind::file,
@@ -23,12 +23,12 @@ Result<drive::PdoFile> fitting(const Context& context, const Arguments& argument
   return pdo::read_pdo_source(*context.profile, std::filesystem::path(arguments.text("file")));
 }
 
-Result<void> check(Context& context, const Arguments& arguments) {
+Result<void> check_pdo_apply(Context& context, const Arguments& arguments) {
   if (const auto file = fitting(context, arguments); !file) return fail(file.error());
   return {};
 }
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
+Result<report::Value> run_pdo_apply(Context& context, const Arguments& arguments) {
   const auto file = fitting(context, arguments);
   if (!file) return fail(file.error());
   const pdo::PdoEdit edit = [&](const pdo::PresentPdos& present) -> Result<pdo::WantedPdos> {
@@ -54,11 +54,11 @@ const Command kPdoApply{
         "All PDOs of the file are written, or none. The file may come from `pdo save`, or be a backup of the "
         "same family, an EDS, a DCF or an ESI. CAN-IDs that contain the node-ID follow the node. PDOs not in the "
         "file stay unchanged.",
-    .parameters = kParameters,
+    .parameters = kPdoApplyParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::stores,
-    .run = run,
-    .check = check,
+    .run = run_pdo_apply,
+    .check = check_pdo_apply,
 };
 
 }  // namespace servoctl::commands

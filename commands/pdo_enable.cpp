@@ -10,7 +10,7 @@ using namespace command;
 
 using canopen::Pdo;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kPdoEnableParameters[] = {
     {.name = "pdo", .help = "RPDO1, TPDO2, …", .kind = Kind::text, .required = true, .many = true},
     kKeepOption,
     kUnlockOption,
@@ -37,15 +37,15 @@ Result<void> act(const Context& context, const pdo::PresentPdos& present, Action
   return {};
 }
 
-Result<void> check(Context&, const Arguments& arguments) {
+Result<void> check_pdo_enable(Context&, const Arguments& arguments) {
   for (const auto& word : arguments.all("pdo"))
     if (!canopen::parse_pdo_name(word)) return fail(pdo::find_pdo({}, word).error());
   return {};
 }
 
 template <Action action>
-Result<report::Value> run(Context& context, const Arguments& arguments) {
-  if (const auto fits = check(context, arguments); !fits) return fail(fits.error());
+Result<report::Value> run_pdo_enable(Context& context, const Arguments& arguments) {
+  if (const auto fits = check_pdo_enable(context, arguments); !fits) return fail(fits.error());
   const pdo::PdoEdit edit = [&](const pdo::PresentPdos& present) -> Result<pdo::WantedPdos> {
     pdo::WantedPdos out;
     for (const auto& word : arguments.all("pdo")) {
@@ -64,11 +64,11 @@ constexpr Command command(std::string_view path, std::string_view summary, std::
   return {.path = path,
           .summary = summary,
           .details = details,
-          .parameters = kParameters,
+          .parameters = kPdoEnableParameters,
           .needs = Needs::node | Needs::dictionary,
           .effect = Effect::stores,
-          .run = run<action>,
-          .check = check};
+          .run = run_pdo_enable<action>,
+          .check = check_pdo_enable};
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ using namespace command;
 using canopen::Pdo;
 using canopen::PdoEntry;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kPdoMapParameters[] = {
     {.name = "pdo", .help = "RPDO1, TPDO2: as the drive sees it", .kind = Kind::text, .required = true},
     {.name = "object",
      .help = "what it carries, in order: statusword 0x6064, 0x2105:1/16 with its bits, gap8",
@@ -132,7 +132,7 @@ Result<void> settle_event(Context& context, const Options& options, std::uint8_t
   return {};
 }
 
-Result<void> check(Context& context, const Arguments& arguments) {
+Result<void> check_pdo_map(Context& context, const Arguments& arguments) {
   const auto options = parse_options(*context.profile, arguments);
   if (!options) return fail(options.error());
   auto pdo = canopen::parse_pdo_name(arguments.text("pdo"));
@@ -154,8 +154,8 @@ Result<void> check(Context& context, const Arguments& arguments) {
   return show::check_mapping(*context.profile, *pdo);
 }
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
-  if (const auto fits = check(context, arguments); !fits) return fail(fits.error());
+Result<report::Value> run_pdo_map(Context& context, const Arguments& arguments) {
+  if (const auto fits = check_pdo_map(context, arguments); !fits) return fail(fits.error());
   const auto options = parse_options(*context.profile, arguments);
   if (!options) return fail(options.error());
   const bool absolute = !options->cob_id.empty() && options->cob_id.front() != '$';
@@ -196,11 +196,11 @@ const Command kPdoMap{
         "Everything is checked before the first frame; then the PDO is switched off, mapped, switched on and "
         "read back, by the family's own procedure. If the drive refuses a step, the old PDO is written back. "
         "What is not given stays unchanged. Refused while the drive is energised. --dry-run shows the frames.",
-    .parameters = kParameters,
+    .parameters = kPdoMapParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::stores,
-    .run = run,
-    .check = check,
+    .run = run_pdo_map,
+    .check = check_pdo_map,
 };
 
 }  // namespace servoctl::commands

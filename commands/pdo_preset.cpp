@@ -11,7 +11,7 @@ namespace {
 
 using namespace command;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kPdoPresetParameters[] = {
     {.name = "preset", .help = "pp, pv, pt, home, ip, csp, csv, cst: what the family has", .required = true},
     kKeepOption,
     kUnlockOption,
@@ -30,12 +30,12 @@ Result<const drive::PdoPreset*> preset_of(const Context& context, const Argument
               names.empty() ? "it has none; `pdo map` makes one" : "use " + one_of(names));
 }
 
-Result<void> check(Context& context, const Arguments& arguments) {
+Result<void> check_pdo_preset(Context& context, const Arguments& arguments) {
   if (const auto preset = preset_of(context, arguments); !preset) return fail(preset.error());
   return {};
 }
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
+Result<report::Value> run_pdo_preset(Context& context, const Arguments& arguments) {
   const auto preset = preset_of(context, arguments);
   if (!preset) return fail(preset.error());
   const pdo::PdoEdit edit = [&](const pdo::PresentPdos& present) {
@@ -54,11 +54,11 @@ const Command kPdoPreset{
     .details =
         "The mappings in the family's manual for profile position (pp), profile velocity (pv), torque (pt), "
         "homing (home) and others; other PDOs stay unchanged. As safe as `pdo map`.",
-    .parameters = kParameters,
+    .parameters = kPdoPresetParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::stores,
-    .run = run,
-    .check = check,
+    .run = run_pdo_preset,
+    .check = check_pdo_preset,
 };
 
 }  // namespace servoctl::commands

@@ -12,11 +12,11 @@ namespace {
 
 using namespace command;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kPdoSaveParameters[] = {
     {.name = "file", .help = "pdos.toml or pdos.json", .kind = Kind::file, .required = true},
 };
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
+Result<report::Value> run_pdo_save(Context& context, const Arguments& arguments) {
   const std::filesystem::path path(arguments.text("file"));
   const auto extension = lower(path.extension().string());
   if (extension != ".toml" && extension != ".json")
@@ -43,10 +43,10 @@ const Command kPdoSave{
     .details =
         "TOML, to read and edit, or JSON, by the extension. CAN-IDs that contain the node-ID are written "
         "with $NODEID, so that the file fits other nodes. `pdo apply` writes it to a drive.",
-    .parameters = kParameters,
+    .parameters = kPdoSaveParameters,
     .needs = Needs::node,
     .effect = Effect::reads,
-    .run = run,
+    .run = run_pdo_save,
 };
 
 }  // namespace servoctl::commands

@@ -17,7 +17,7 @@ using report::Value;
 
 constexpr std::uint8_t kLastSynchronous = 240;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kPdoSendParameters[] = {
     {.name = "pdo", .help = "RPDO1 …", .kind = Kind::text, .required = true},
     {.name = "value",
      .help = "one for each mapped object, in their order; with units where known",
@@ -102,7 +102,7 @@ report::Written written_values(const show::PdoView& view, const can::Frame& fram
   return out;
 }
 
-Result<Value> run(Context& context, const Arguments& arguments) {
+Result<Value> run_pdo_send(Context& context, const Arguments& arguments) {
   if (context.nodes.size() != 1)
     return fail(Errc::usage, "`pdo send` is for one node at a time", "name one node, such as -n 1");
   const auto views = pdo::read_views(context, context.nodes.front());
@@ -145,10 +145,10 @@ const Command kPdoSend{
         "RPDO1 0x0F 1000rpm`. Types, limits and units are checked as for `write`. Refused if the PDO is not "
         "in use or the node is not operational. PDOs are not answered: `status` or `pdo watch` show the "
         "effect.",
-    .parameters = kParameters,
+    .parameters = kPdoSendParameters,
     .needs = Needs::node | Needs::can,
     .effect = Effect::moves,
-    .run = run,
+    .run = run_pdo_send,
     .elsewhere = "`state op`, then `write`: what is mapped goes out with the next cycle",
 };
 

@@ -31,7 +31,7 @@ struct NodePdos {
 };
 
 /// A field that is not as the drive left the factory.
-struct Difference {
+struct PdoDifference {
   std::string_view key;
   std::string factory;  ///< What it was there, in words.
 };
@@ -56,7 +56,7 @@ std::string factory_mapping(const Context& context, const Pdo& factory) {
   return out.empty() ? "nothing mapped" : out;
 }
 
-std::vector<Difference> differences(const Context& context, const NodePdos& node, const Pdo& pdo) {
+std::vector<PdoDifference> differences(const Context& context, const NodePdos& node, const Pdo& pdo) {
   const auto all = session::pdos_of(node.factory);
   const auto same = [&](const Pdo& f) { return f.direction == pdo.direction && f.number == pdo.number; };
   const auto found = std::find_if(all.begin(), all.end(), same);
@@ -65,7 +65,7 @@ std::vector<Difference> differences(const Context& context, const NodePdos& node
   const auto other = [&](std::uint8_t sub) {
     return differs(node.values, node.factory, {pdo.communication_index(), sub});
   };
-  std::vector<Difference> out;
+  std::vector<PdoDifference> out;
   if (other(1))
     out.push_back({"cob_id", fmt::format("{} {}", show::can_id_text(factory, node.node),
                                          factory.is_valid() ? "valid" : "not valid")});
@@ -136,7 +136,7 @@ Record node_record(const Context& context, const NodePdos& mine, const std::vect
   return out;
 }
 
-Result<Value> run(Context& context, const Arguments&) {
+Result<Value> run_pdo_show(Context& context, const Arguments&) {
   const auto read = session::read_pdo_values(*context.session, context.profile, context.nodes);
   pdo::tell_cut_off_changes(context);
   std::vector<NodePdos> all;
@@ -170,7 +170,7 @@ const Command kPdoShow{
     .parameters = {},
     .needs = Needs::node,
     .effect = Effect::reads,
-    .run = run,
+    .run = run_pdo_show,
 };
 
 }  // namespace servoctl::commands

@@ -21,7 +21,7 @@ using namespace command;
 
 using report::Value;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kPdoWatchParameters[] = {
     {.name = "pdo",
      .help = "RPDO1, TPDO2 … (default: all that are in use)",
      .kind = Kind::text,
@@ -57,7 +57,7 @@ Result<void> add_pdos(Context& context, const Arguments& arguments, std::uint8_t
   return {};
 }
 
-Result<std::vector<Watched>> pdos_of(Context& context, const Arguments& arguments) {
+Result<std::vector<Watched>> watched_pdos(Context& context, const Arguments& arguments) {
   std::vector<Watched> out;
   for (const auto node : context.nodes)
     if (const auto added = add_pdos(context, arguments, node, out); !added) return fail(added.error());
@@ -165,14 +165,14 @@ Result<void> listen(Context& context, show::SampleWriter& writer, std::span<Watc
   return ended;
 }
 
-Result<Value> run(Context& context, const Arguments& arguments) {
+Result<Value> run_pdo_watch(Context& context, const Arguments& arguments) {
   const auto length = duration_option(arguments, "--for");
   if (!length) return fail(length.error());
   if (context.session->gateway() != nullptr)
     return fail(Errc::usage,
                 fmt::format("'pdo watch' needs CAN or EtherCAT, {} is neither", context.session->url()),
                 "`watch` reads objects there, again and again");
-  auto watched = pdos_of(context, arguments);
+  auto watched = watched_pdos(context, arguments);
   if (!watched) return fail(watched.error());
   if (watched->empty())
     return fail(Errc::negative, "none of the PDOs is in use",
@@ -200,10 +200,10 @@ const Command kPdoWatch{
         "periods: mean, shortest, longest, standard deviation. RPDOs are shown if a master sends them. Over "
         "EtherCAT a drive has to be in OP (`state op` before, at the prompt or in a batch file): shown are the "
         "PDOs assigned, one line per change, and every cycle is counted.",
-    .parameters = kParameters,
+    .parameters = kPdoWatchParameters,
     .needs = Needs::node,
     .effect = Effect::reads,
-    .run = run,
+    .run = run_pdo_watch,
     .goes_on = true,
 };
 

@@ -11,7 +11,7 @@ namespace {
 
 using namespace command;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kReadParameters[] = {
     {.name = "object",
      .help = "0x6041, 6099h.1, statusword, Pn0202, 0x1018 (a record), '0x60*'",
      .kind = Kind::object,
@@ -87,7 +87,7 @@ Result<std::vector<drive::Target>> targets_of(const Context& context, std::uint8
   return std::vector{std::move(*target)};
 }
 
-Result<void> check(Context& context, const Arguments& arguments) {
+Result<void> check_read(Context& context, const Arguments& arguments) {
   if (const auto type = parse_type_option(arguments); !type) return fail(type.error());
   for (const auto node : context.nodes)
     for (const auto& word : arguments.all("object"))
@@ -109,7 +109,7 @@ Result<report::Value> run_to_file(Context& context, const Arguments& arguments) 
                                 read_transfer(context, arguments, true), arguments.text("--to"));
 }
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
+Result<report::Value> run_read(Context& context, const Arguments& arguments) {
   if (arguments.has("--to")) return run_to_file(context, arguments);
   const auto type = parse_type_option(arguments);
   if (!type) return fail(type.error());
@@ -145,11 +145,11 @@ const Command kRead{
         "reads all of it, and a pattern ('0x60*', '*velocity*') every object that fits; what the drive refuses of "
         "them is shown with its abort, and what cannot be read is left out. With --to the bytes of one object of any size go to a "
         "file; block transfer is tried first where the drive may support it.",
-    .parameters = kParameters,
+    .parameters = kReadParameters,
     .needs = Needs::node,
     .effect = Effect::reads,
-    .run = run,
-    .check = check,
+    .run = run_read,
+    .check = check_read,
     .on_registers = true,
 };
 

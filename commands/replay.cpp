@@ -18,7 +18,7 @@ using namespace command;
 
 using report::Value;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kReplayParameters[] = {
     {.name = "file", .help = "a recording, as `decode` reads it", .kind = Kind::file, .required = true},
     {.name = "--speed", .help = "2 is twice as fast as recorded (default 1)", .kind = Kind::number},
     {.name = "--only",
@@ -31,7 +31,7 @@ constexpr Parameter kParameters[] = {
      .kind = Kind::flag},
 };
 
-std::string question(const traffic::ReplayPlan& plan, std::string_view file, std::string_view bus) {
+std::string question_replay(const traffic::ReplayPlan& plan, std::string_view file, std::string_view bus) {
   std::string services;
   for (const auto& [service, count] : plan.services) append(services, fmt::format("{} {}", count, service));
   auto out =
@@ -44,7 +44,7 @@ std::string question(const traffic::ReplayPlan& plan, std::string_view file, std
   return out;
 }
 
-Result<double> speed_of(const Arguments& arguments) {
+Result<double> replay_speed(const Arguments& arguments) {
   if (!arguments.has("--speed")) return 1.0;
   const auto speed = parse_real(arguments.text("--speed"));
   if (!speed || *speed < 0.001 || *speed > 1000)
@@ -124,8 +124,8 @@ void remember_energised(Context& context, const traffic::ReplayPlan& plan,
   }
 }
 
-Result<void> send(Context& context, const traffic::ReplayPlan& plan, const traffic::ReplayDrives& drives,
-                  double speed, report::Record& answer) {
+Result<void> send_recorded(Context& context, const traffic::ReplayPlan& plan,
+                           const traffic::ReplayDrives& drives, double speed, report::Record& answer) {
   auto& session = *context.session;
   const auto hold = session.protect(plan.moving.empty() ? session::Care::none : session::Care::guarded);
   remember_energised(context, plan, drives);
@@ -168,9 +168,9 @@ void tell_plan(Context& context, const traffic::ReplayPlan& plan, std::string_vi
         "left out, taken as TPDOs by CAN-ID only (not confirmed by a drive or family): {}", dropped));
 }
 
-Result<Value> run(Context& context, const Arguments& arguments) {
+Result<Value> run_replay(Context& context, const Arguments& arguments) {
   const auto file = arguments.text("file");
-  const auto speed = speed_of(arguments);
+  const auto speed = replay_speed(arguments);
   if (!speed) return fail(speed.error());
   const auto text = traffic::read_recording(file);
   if (!text) return fail(text.error());
@@ -194,9 +194,10 @@ Result<Value> run(Context& context, const Arguments& arguments) {
                         {"can_move", plan.dangerous(), report::Show::everywhere, "can move a motor"}};
   if (!context.dry_run) {
     if (const auto right = hold_drives(context, *drives); !right) return fail(right.error());
-    if (const auto sure = context.confirm(question(plan, file, context.session->url())); !sure)
+    if (const auto sure = context.confirm(question_replay(plan, file, context.session->url())); !sure)
       return fail(sure.error());
-    if (const auto done = send(context, plan, *drives, *speed, answer); !done) return fail(done.error());
+    if (const auto done = send_recorded(context, plan, *drives, *speed, answer); !done)
+      return fail(done.error());
   } else {
     for (const auto* key : {"sent", "failures"}) answer.push_back({key, Value(), report::Show::json});
   }
@@ -224,10 +225,10 @@ const Command kReplay{
         "are stopped and disabled; any that a complete replay leaves energised is listed. Exit code 1 if a "
         "drive refused an SDO request or did not answer it. To have commands answered by a recording "
         "instead, use --bus replay:FILE.",
-    .parameters = kParameters,
+    .parameters = kReplayParameters,
     .needs = Needs::can,
     .effect = Effect::moves,
-    .run = run,
+    .run = run_replay,
 };
 
 }  // namespace servoctl::commands

@@ -27,7 +27,7 @@ using report::Show;
 using report::TestResult;
 using report::Value;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kReportParameters[] = {
     {.name = "file", .help = "FILE.html, or FILE.json for programs", .kind = Kind::file},
     {.name = "--output",
      .help = "the file, like FILE; or the output format: text, json, jsonl",
@@ -232,7 +232,7 @@ class Collection {
   std::size_t failed_ = 0;
 };
 
-Result<Value> run(Context& context, const Arguments& arguments) {
+Result<Value> run_report(Context& context, const Arguments& arguments) {
   const auto named = file_of(arguments);
   if (!named) return fail(named.error());
   const auto& file = *named;
@@ -273,11 +273,11 @@ const Command kReport{
         "refused if they are from another drive. The page needs no network and prints on A4; --lang zh makes "
         "it Chinese. Moves nothing and changes nothing. The file is written whole or not at all; exit code 1 "
         "when a test in it failed.",
-    .parameters = kParameters,
+    .parameters = kReportParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::reads,
     .family = FamilyCheck::always,
-    .run = run,
+    .run = run_report,
 };
 
 }  // namespace servoctl::commands

@@ -13,7 +13,7 @@ using namespace command;
 
 using report::Value;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kRestoreParameters[] = {
     {.name = "file", .help = "a backup, of any format", .kind = Kind::file, .required = true},
     kOnlyOption,
     {.name = "--with-address", .help = "node-ID and bitrate as well", .kind = Kind::flag},
@@ -36,7 +36,7 @@ Result<void> keep_part(const Context& context, settings::Backup& backup, const s
   return fail(Errc::usage, fmt::format("{} contains nothing of '{}'", file, only));
 }
 
-Result<Value> run(Context& context, const Arguments& arguments) {
+Result<Value> run_restore(Context& context, const Arguments& arguments) {
   if (context.nodes.size() != 1 || context.nodes.front() == 0)
     return fail(Errc::usage, "restore takes one node: each drive has a backup of its own", "-n 1");
   if (const auto alone = check_resume(arguments); !alone) return fail(alone.error());
@@ -80,10 +80,10 @@ const Command kRestore{
         "refused. A value of a servoctl backup outside its limits is listed and not written (exit code 1), "
         "the rest restored; another tool's file with unusable entries, or entries this drive cannot take, is "
         "refused; --skip-invalid lists and skips them.",
-    .parameters = kParameters,
+    .parameters = kRestoreParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::stores,
-    .run = run,
+    .run = run_restore,
     .on_registers = true,
 };
 

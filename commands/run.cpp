@@ -5,7 +5,7 @@ namespace {
 
 using namespace command;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kRunParameters[] = {
     {.name = "file",
      .help = "file of command lines; - is standard input",
      .kind = Kind::file,
@@ -36,7 +36,7 @@ const Command kRun{
         "with their variables filled in and sends nothing; with --frames every line that changes a drive "
         "also shows its frames, as its own --dry-run would, or why it would be refused, against the drives "
         "as they are before the first line. `servoctl -` reads standard input.",
-    .parameters = kParameters,
+    .parameters = kRunParameters,
     .of_front_end = true,
 };
 

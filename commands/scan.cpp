@@ -22,7 +22,7 @@ namespace {
 
 using namespace command;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kScanParameters[] = {
     {.name = "--long", .help = "the identity in numbers, instead of the drives' state", .kind = Kind::flag},
     {.name = "--all-bitrates",
      .help = "ask at each bitrate in turn, where nobody talks; asks first",
@@ -82,7 +82,7 @@ Result<report::Value> run_ring(Context& context, session::EtherCatNetwork& netwo
 }
 
 /// All addresses in turn, or those that were named.
-Result<report::Value> run_registers(Context& context) {
+Result<report::Value> scan_registers(Context& context) {
   const bool all = !context.nodes_typed || context.nodes.empty() || context.nodes.front() == 0;
   const auto nodes = all ? canopen::every_node_id() : context.nodes;
   const auto found = session::scan(*context.session, nodes);
@@ -101,11 +101,11 @@ Result<report::Value> planned_bitrates(const Context& context) {
   return report::Value(std::move(table));
 }
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
+Result<report::Value> run_scan(Context& context, const Arguments& arguments) {
   const bool all_bitrates = arguments.has("--all-bitrates");
   if (auto* ring = context.session->ethercat(); ring != nullptr && !all_bitrates)
     return run_ring(context, *ring, arguments.has("--long"));
-  if (context.session->modbus() != nullptr && !all_bitrates) return run_registers(context);
+  if (context.session->modbus() != nullptr && !all_bitrates) return scan_registers(context);
   auto nodes = context.nodes_typed ? context.nodes : std::vector<std::uint8_t>();
   if (nodes.empty() || nodes.front() == 0) nodes = canopen::every_node_id();
   if (all_bitrates && context.dry_run) return planned_bitrates(context);
@@ -148,11 +148,11 @@ const Command kScan{
         "all` takes the others there). Nothing is changed: no state is entered, no address given, and a ring that "
         "another master works with is only looked at. On Modbus, asks the addresses 1 to 127 one after the other; with -d "
         "FAMILY it shows the alarm of each that answers: registers do not say what a device is.",
-    .parameters = kParameters,
+    .parameters = kScanParameters,
     .needs = Needs::bus,
     .effect = Effect::links,
     .reads_without = "--all-bitrates",
-    .run = run,
+    .run = run_scan,
     .on_registers = true,
 };
 

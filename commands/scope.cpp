@@ -22,9 +22,9 @@ using namespace command;
 using report::Value;
 
 constexpr Duration kDefaultLength = std::chrono::seconds(2);
-constexpr Duration kDefaultPeriod = std::chrono::milliseconds(1);
+constexpr Duration kScopePeriod = std::chrono::milliseconds(1);
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kScopeParameters[] = {
     {.name = "object",
      .help = "address, name or parameter number",
      .kind = Kind::object,
@@ -157,7 +157,7 @@ Result<std::vector<std::unique_ptr<pdo::ScopeMapping>>> map_objects(Context& con
     return fail(sure.error());
   for (const auto node : context.nodes) {
     out.push_back(std::make_unique<pdo::ScopeMapping>(context, node));
-    const auto mapped = out.back()->begin(arguments.all("object"), period->value_or(kDefaultPeriod));
+    const auto mapped = out.back()->begin(arguments.all("object"), period->value_or(kScopePeriod));
     if (mapped) continue;
     if (mapped.error().code == Errc::interrupted) return fail(mapped.error());
     context.notices.push_back(
@@ -190,7 +190,7 @@ Result<void> write_files(const Arguments& arguments, std::span<const Series> ser
   return {};
 }
 
-Result<Value> run(Context& context, const Arguments& arguments) {
+Result<Value> run_scope(Context& context, const Arguments& arguments) {
   const auto length = duration_option(arguments, "--for");
   if (!length) return fail(length.error());
   if (const auto numbers = check_names(context, arguments.all("object")); !numbers)
@@ -233,10 +233,10 @@ const Command kScope{
         "value has the arrival time of its own frame. The samples go to a file (--csv, with empty cells "
         "where there is no value at that time; --svg) or are plotted (--plot); with --json they are in the "
         "result. A drive that no longer answers at the end sets the exit code.",
-    .parameters = kParameters,
+    .parameters = kScopeParameters,
     .needs = Needs::node,
     .effect = Effect::reads,
-    .run = run,
+    .run = run_scope,
     .goes_on = true,
     .on_registers = true,
 };

@@ -13,11 +13,11 @@ namespace {
 
 using namespace command;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kSimParameters[] = {
     {.name = "drives", .help = "gsd600@1,gsd600@2?state=FILE", .kind = Kind::text, .required = true},
 };
 
-void tell(const Context& context, std::string_view url, report::List nodes) {
+void tell_simulated(const Context& context, std::string_view url, report::List nodes) {
   const auto count = nodes.size();
   context.emit({{"bus", std::string(url)}, {"nodes", std::move(nodes)}},
                fmt::format("{} drive{} on {}; Ctrl-C ends it", count, count == 1 ? "" : "s", url));
@@ -30,7 +30,7 @@ Result<void> run_on_can(Context& context, std::string_view drives) {
   if (!cell) return fail(cell.error());
   report::List nodes;
   for (const auto& drive : cell->drives) nodes.emplace_back(drive->node());
-  tell(context, (*session)->url(), std::move(nodes));
+  tell_simulated(context, (*session)->url(), std::move(nodes));
   if (context.dry_run) return {};
   return session::serve(**session, *cell);
 }
@@ -42,7 +42,7 @@ Result<void> run_on_ethercat(Context& context, std::string_view drives, std::str
   if (!cell) return fail(cell.error());
   report::List nodes;
   for (const auto& slave : cell->slaves) nodes.emplace_back(slave->model().node());
-  tell(context, url, std::move(nodes));
+  tell_simulated(context, url, std::move(nodes));
   if (context.dry_run) return {};
   return (*end)->serve(*cell);
 }
@@ -54,12 +54,12 @@ Result<void> run_on_modbus(Context& context, std::string_view drives, std::strin
   if (!cell) return fail(cell.error());
   report::List nodes;
   for (const auto& unit : cell->units) nodes.emplace_back(unit->unit());
-  tell(context, url, std::move(nodes));
+  tell_simulated(context, url, std::move(nodes));
   if (context.dry_run) return {};
   return (*end)->serve(*cell);
 }
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
+Result<report::Value> run_sim(Context& context, const Arguments& arguments) {
   const auto url = context.front_end->bus_url();
   if (url.starts_with("sim:"))
     return fail(Errc::usage, "a simulated drive cannot be put on a bus that is simulated itself",
@@ -91,10 +91,10 @@ const Command kSim{
         "sends emergencies before 3 answers, and the SII is bad by sii=checksum, blank, cut-short, mailboxes "
         "or mute. On Modbus, `servoctl sim ts@1 --bus modbus:/dev/pts/4` stands at one end of a serial line, and "
         "--bus modbus://127.0.0.1:1502 listens there; damage=10 damages every 10th answer.",
-    .parameters = kParameters,
+    .parameters = kSimParameters,
     .needs = Needs::bus,
     .effect = Effect::none,
-    .run = run,
+    .run = run_sim,
     .opens_bus = true,
 };
 

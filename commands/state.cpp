@@ -21,7 +21,7 @@ using report::Show;
 using report::Value;
 using session::NodeState;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kStateParameters[] = {
     {.name = "--take-over",
      .help = "take slaves that another master has left in SAFE-OP or OP; asks first",
      .kind = Kind::flag},
@@ -50,7 +50,7 @@ Result<void> take_over(Context& context, session::EtherCatNetwork& ring) {
   return {};
 }
 
-Value planned(const Context& context, NodeState target) {
+Value planned_state(const Context& context, NodeState target) {
   std::vector<session::PlannedMessage> messages;
   const auto when = "outputs preset: 607Ah from 6064h, 6040h 60FFh 6071h zero";
   for (const auto node : context.nodes) {
@@ -65,7 +65,7 @@ Value planned(const Context& context, NodeState target) {
   return show::planned_messages(context, messages);
 }
 
-report::List row_of(std::uint8_t node, const ethercat::AlStatus* al, const Result<void>& done) {
+report::List state_row(std::uint8_t node, const ethercat::AlStatus* al, const Result<void>& done) {
   report::List row{node, al != nullptr ? Value(show::al_text(*al)) : Value()};
   for (auto& field : show::al_fields(al != nullptr ? *al : ethercat::AlStatus{}))
     row.push_back(al != nullptr ? std::move(field.value) : Value());
@@ -74,8 +74,8 @@ report::List row_of(std::uint8_t node, const ethercat::AlStatus* al, const Resul
   return row;
 }
 
-Result<Value> run(Context& context, const Arguments& arguments, NodeState target) {
-  if (context.dry_run) return planned(context, target);
+Result<Value> run_state(Context& context, const Arguments& arguments, NodeState target) {
+  if (context.dry_run) return planned_state(context, target);
   auto& ring = *context.session->ethercat();
   if (arguments.has("--take-over"))
     if (const auto taken = take_over(context, ring); !taken) return fail(taken.error());
@@ -92,14 +92,14 @@ Result<Value> run(Context& context, const Arguments& arguments, NodeState target
     const auto done = session::change_al_state(*context.session, ring, node, target);
     if (!done) context.errors.push_back(done.error());
     if (done && target == NodeState::operational) ring.keep_operational(node);
-    table.rows.push_back(row_of(node, ring.al_of(node), done));
+    table.rows.push_back(state_row(node, ring.al_of(node), done));
   }
   return Value(std::move(table));
 }
 
 template <NodeState target>
-Result<Value> run_command(Context& context, const Arguments& arguments) {
-  return run(context, arguments, target);
+Result<Value> run_state_command(Context& context, const Arguments& arguments) {
+  return run_state(context, arguments, target);
 }
 
 constexpr std::string_view kDown =
@@ -115,7 +115,7 @@ constexpr std::string_view kUp =
     "back to PRE-OP. With --take-over, slaves that a master which is gone left in SAFE-OP or OP are taken; asks "
     "first, and takes their power away.";
 
-constexpr std::string_view kElsewhere =
+constexpr std::string_view kStateElsewhere =
     "on CAN `nmt start`, `nmt stop` and `nmt preop` change the state of a node";
 
 }  // namespace
@@ -125,12 +125,12 @@ const Command kStateInit{
     .path = "state init",
     .summary = "Set EtherCAT slaves to INIT: no objects, no process data",
     .details = kDown,
-    .parameters = kParameters,
+    .parameters = kStateParameters,
     .needs = Needs::node | Needs::ethercat,
     .effect = Effect::writes,
     .family = FamilyCheck::never,
-    .run = run_command<NodeState::initialising>,
-    .elsewhere = kElsewhere,
+    .run = run_state_command<NodeState::initialising>,
+    .elsewhere = kStateElsewhere,
 };
 
 extern const Command kStatePreop;
@@ -138,12 +138,12 @@ const Command kStatePreop{
     .path = "state preop",
     .summary = "Set EtherCAT slaves to PRE-OP: objects, no process data",
     .details = kDown,
-    .parameters = kParameters,
+    .parameters = kStateParameters,
     .needs = Needs::node | Needs::ethercat,
     .effect = Effect::writes,
     .family = FamilyCheck::never,
-    .run = run_command<NodeState::pre_operational>,
-    .elsewhere = kElsewhere,
+    .run = run_state_command<NodeState::pre_operational>,
+    .elsewhere = kStateElsewhere,
 };
 
 extern const Command kStateSafeop;
@@ -151,12 +151,12 @@ const Command kStateSafeop{
     .path = "state safeop",
     .summary = "Set EtherCAT slaves to SAFE-OP: inputs only; holds it",
     .details = kUp,
-    .parameters = kParameters,
+    .parameters = kStateParameters,
     .needs = Needs::node | Needs::ethercat,
     .effect = Effect::writes,
     .family = FamilyCheck::never,
-    .run = run_command<NodeState::safe_operational>,
-    .elsewhere = kElsewhere,
+    .run = run_state_command<NodeState::safe_operational>,
+    .elsewhere = kStateElsewhere,
 };
 
 extern const Command kStateOp;
@@ -164,12 +164,12 @@ const Command kStateOp{
     .path = "state op",
     .summary = "Set EtherCAT slaves to OP: process data; holds it",
     .details = kUp,
-    .parameters = kParameters,
+    .parameters = kStateParameters,
     .needs = Needs::node | Needs::ethercat,
     .effect = Effect::writes,
     .family = FamilyCheck::never,
-    .run = run_command<NodeState::operational>,
-    .elsewhere = kElsewhere,
+    .run = run_state_command<NodeState::operational>,
+    .elsewhere = kStateElsewhere,
 };
 
 }  // namespace servoctl::commands

@@ -25,7 +25,7 @@ using report::Record;
 using report::Show;
 using report::Value;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kStatusParameters[] = {
     {.name = "--long",
      .help = "every bit of the statusword, and more, in several lines a node",
      .kind = Kind::flag},
@@ -177,7 +177,7 @@ void add_al_state(Record& out, const session::EtherCatNetwork& ring, std::uint8_
     out.push_back({"process_data", Value(), Show::json});
 }
 
-Record one(Context& context, std::uint8_t node, std::span<const Result<Bytes>> answers) {
+Record status_record(Context& context, std::uint8_t node, std::span<const Result<Bytes>> answers) {
   Record out{{"node", node}};
   if (const auto* ring = context.session->ethercat())
     add_al_state(out, *ring, node);
@@ -227,7 +227,7 @@ List overview_row(const Context& context, std::uint8_t node, std::span<const Res
           fault_of(context, answers).cell(kFaultWords)};
 }
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
+Result<report::Value> run_status(Context& context, const Arguments& arguments) {
   std::vector<session::SdoRequest> requests;
   for (const auto node : context.nodes)
     for (std::size_t i = 0; i < kCount; ++i)
@@ -247,7 +247,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
       context.errors.push_back(mine[0].error());
       continue;
     }
-    out.documents.emplace_back(one(context, context.nodes[i], mine));
+    out.documents.emplace_back(status_record(context, context.nodes[i], mine));
     out.rows.push_back(overview_row(context, context.nodes[i], mine));
   }
   out.json_only = out.rows.empty();
@@ -267,10 +267,10 @@ const Command kStatus{
         "full; JSON always has all of it. The NMT state comes from the heartbeat; if "
         "the node sends one, status waits for it. On EtherCAT the slave is asked for its AL state; in SAFE-OP and "
         "OP --long shows the counts of process data as well.",
-    .parameters = kParameters,
+    .parameters = kStatusParameters,
     .needs = Needs::node,
     .effect = Effect::reads,
-    .run = run,
+    .run = run_status,
 };
 
 }  // namespace servoctl::commands

@@ -18,7 +18,7 @@ using session::ParameterGroup;
 
 constexpr std::array<std::string_view, 4> kGroups{"all", "communication", "application", "vendor"};
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kStoreParameters[] = {
     {.name = "group", .help = "all (default), or a part", .kind = Kind::choice, .choices = kGroups},
 };
 
@@ -34,15 +34,15 @@ struct Words {
   std::string_view question, done;
 };
 
-struct Action {
+struct Method {
   Result<void> (*carry_out)(session::Session&, const drive::Profile*, std::uint8_t, ParameterGroup);
   Result<std::vector<session::SdoRequest>> (*writes)(const drive::Profile*, std::uint8_t, ParameterGroup);
 };
 
-Value planned(Context& context, ParameterGroup group, const Action& action) {
+Value planned_store(Context& context, ParameterGroup group, const Method& method) {
   std::vector<session::PlannedMessage> messages;
   for (const auto node : context.nodes) {
-    const auto writes = action.writes(context.profile, node, group);
+    const auto writes = method.writes(context.profile, node, group);
     if (!writes) context.errors.push_back(writes.error());
     if (!writes) continue;
     for (const auto& write : *writes) messages.push_back(session::planned_write(write));
@@ -50,10 +50,11 @@ Value planned(Context& context, ParameterGroup group, const Action& action) {
   return show::planned_messages(context, messages);
 }
 
-Result<Value> run(Context& context, const Arguments& arguments, const Action& action, const Words& words) {
+Result<Value> carry_out(Context& context, const Arguments& arguments, const Method& method,
+                        const Words& words) {
   const auto group = group_of(arguments);
   if (!group) return fail(group.error());
-  if (context.dry_run) return planned(context, *group, action);
+  if (context.dry_run) return planned_store(context, *group, method);
   const auto whom = context.nodes.size() == 1 ? fmt::format("node {}", context.nodes.front())
                                               : fmt::format("{} nodes", context.nodes.size());
   if (const auto answer = context.confirm(fmt::format(fmt::runtime(words.question), whom)); !answer)
@@ -61,7 +62,7 @@ Result<Value> run(Context& context, const Arguments& arguments, const Action& ac
   report::Table table;
   table.columns = {{"node"}, {"result"}, {"error", "", Show::json}};
   for (const auto node : context.nodes) {
-    const auto done = action.carry_out(*context.session, context.profile, node, *group);
+    const auto done = method.carry_out(*context.session, context.profile, node, *group);
     if (!done) context.errors.push_back(done.error());
     table.rows.push_back(
         {node, done ? words.done : "failed", done ? Value() : show::error_record(done.error())});
@@ -70,14 +71,14 @@ Result<Value> run(Context& context, const Arguments& arguments, const Action& ac
 }
 
 Result<Value> run_store(Context& context, const Arguments& arguments) {
-  return run(context, arguments, {session::store_parameters, session::store_writes},
-             {"Store the present values of {}? They replace the power-on values.", "stored"});
+  return carry_out(context, arguments, {session::store_parameters, session::store_writes},
+                   {"Store the present values of {}? They replace the power-on values.", "stored"});
 }
 
 Result<Value> run_defaults(Context& context, const Arguments& arguments) {
-  return run(context, arguments, {session::restore_defaults, session::restore_writes},
-             {"Restore the factory values of {}? What is set now is lost (`backup` keeps it).",
-              "restored; takes effect after a restart of the drive"});
+  return carry_out(context, arguments, {session::restore_defaults, session::restore_writes},
+                   {"Restore the factory values of {}? What is set now is lost (`backup` keeps it).",
+                    "restored; takes effect after a restart of the drive"});
 }
 
 }  // namespace
@@ -89,7 +90,7 @@ const Command kStore{
     .details =
         "Writes \"save\" to 1010h, or uses the family's own method. Waits up to 10 s for the drive. Where "
         "values can be kept only at the moment they are written, store says so: use `param set … --keep`.",
-    .parameters = kParameters,
+    .parameters = kStoreParameters,
     .needs = Needs::node,
     .effect = Effect::stores,
     .run = run_store,
@@ -100,7 +101,7 @@ const Command kDefaults{
     .path = "defaults",
     .summary = "Restore the factory values of a drive",
     .details = "Writes \"load\" to 1011h, or uses the family's own method. Takes effect after a restart.",
-    .parameters = kParameters,
+    .parameters = kStoreParameters,
     .needs = Needs::node,
     .effect = Effect::resets,
     .run = run_defaults,

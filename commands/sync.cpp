@@ -18,7 +18,7 @@ using namespace command;
 
 using report::Value;
 
-constexpr Duration kDefaultPeriod = std::chrono::milliseconds(10);
+constexpr Duration kSyncPeriod = std::chrono::milliseconds(10);
 constexpr Duration kShortestPeriod = std::chrono::microseconds(200);
 
 constexpr Parameter kStartParameters[] = {
@@ -70,11 +70,11 @@ Result<Value> run_once(Context& context, const Arguments&) {
   return Value(report::Record{{"sent", 1}});
 }
 
-Result<canopen::SyncProducer::Options> options_of(const Arguments& arguments) {
+Result<canopen::SyncProducer::Options> sync_options(const Arguments& arguments) {
   canopen::SyncProducer::Options out;
   const auto period = duration_option(arguments, "--period");
   if (!period) return fail(period.error());
-  out.period = period->value_or(kDefaultPeriod);
+  out.period = period->value_or(kSyncPeriod);
   if (out.period < kShortestPeriod)
     return fail(Errc::usage, fmt::format("a period of {} is too short", to_string(out.period)),
                 "the minimum is 200us; drives need 1ms or more");
@@ -88,7 +88,7 @@ Result<canopen::SyncProducer::Options> options_of(const Arguments& arguments) {
 }
 
 Result<Value> run_start(Context& context, const Arguments& arguments) {
-  const auto options = options_of(arguments);
+  const auto options = sync_options(arguments);
   if (!options) return fail(options.error());
   const auto length = duration_option(arguments, "--for");
   if (!length) return fail(length.error());

@@ -16,7 +16,7 @@ using namespace command;
 
 using report::TestResult;
 
-constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
+constexpr auto kTestAllParameters = with_motion_options(std::to_array<Parameter>({
     {.name = "speed", .help = "for `test jog`: 60rpm", .kind = Kind::value, .required = true},
     {.name = "--expect", .help = "inputs for `test io`; without it, no `test io`", .kind = Kind::text},
     {.name = "--for", .help = "how long in each direction (default 2s)", .kind = Kind::duration},
@@ -124,7 +124,7 @@ class AllTests {
   report::List plans_;
 };
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
+Result<report::Value> run_test_all(Context& context, const Arguments& arguments) {
   for (const auto* option : {"--repeat", "--spread"})
     if (arguments.has("--no-home") && arguments.has(option))
       return fail(Errc::usage, fmt::format("{} is for `test home`, which --no-home skips", option),
@@ -145,11 +145,11 @@ const Command kTestAll{
         "its preflight checks and asks, as it would alone. Exit code 1 if a test fails. Example: `test all "
         "60rpm -n 1 -d gsd600 --yes --json >axis-1.json`, then `report axis-1.html --tests axis-1.json -n 1 "
         "-d gsd600`.",
-    .parameters = kParameters,
+    .parameters = kTestAllParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,
     .family = FamilyCheck::never,
-    .run = run,
+    .run = run_test_all,
 };
 
 }  // namespace servoctl::commands

@@ -9,13 +9,13 @@ namespace {
 
 using namespace command;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kTestCommParameters[] = {
     {.name = "--count", .help = "reads to make (default 200)", .kind = Kind::number},
     {.name = "--longest", .help = "longest round trip that passes (default 100ms)", .kind = Kind::duration},
     kJunitOption,
 };
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
+Result<report::Value> run_test_comm(Context& context, const Arguments& arguments) {
   trial::CommTrial test;
   const auto count = count_option(arguments, "--count", 1, 1'000'000, test.count);
   if (!count) return fail(count.error());
@@ -43,10 +43,10 @@ const Command kTestComm{
         "1017h, and there was no emergency, no restart and no error report of the CAN controller. Exit code "
         "1 if it fails. On EtherCAT no frame may be lost instead: there is no heartbeat. Changes nothing and moves "
         "nothing.",
-    .parameters = kParameters,
+    .parameters = kTestCommParameters,
     .needs = Needs::node,
     .effect = Effect::reads,
-    .run = run,
+    .run = run_test_comm,
 };
 
 }  // namespace servoctl::commands

@@ -9,7 +9,7 @@ namespace {
 
 using namespace command;
 
-constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
+constexpr auto kTestHomeParameters = with_motion_options(std::to_array<Parameter>({
     {.name = "method", .help = "number in 6098h (default: the present one)", .kind = Kind::value},
     {.name = "--repeat", .help = "runs (default 5)", .kind = Kind::number},
     {.name = "--spread",
@@ -20,7 +20,7 @@ constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
     kJunitOption,
 }));
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
+Result<report::Value> run_test_home(Context& context, const Arguments& arguments) {
   const auto test = parse_home_test(arguments, arguments.text("method"));
   if (!test) return fail(test.error());
   const auto request = motion_request(context, arguments);
@@ -43,10 +43,10 @@ const Command kTestHome{
         "object) spreads by more than --spread. --encoder gives the encoder counts per revolution if the "
         "drive does not report them; a drive that also zeroes the encoder count shows no spread there. Exit "
         "code 1 when it fails. Example: `test home 33 --repeat 5 --spread 0.5 -n 1 -d gsd600 --yes`.",
-    .parameters = kParameters,
+    .parameters = kTestHomeParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,
-    .run = run,
+    .run = run_test_home,
 };
 
 }  // namespace servoctl::commands

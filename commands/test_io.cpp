@@ -9,7 +9,7 @@ namespace {
 
 using namespace command;
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kTestIoParameters[] = {
     {.name = "--expect",
      .help = "inputs that must be seen at 0 and at 1: negative-limit, positive-limit, home, bit16, …",
      .kind = Kind::text},
@@ -17,7 +17,7 @@ constexpr Parameter kParameters[] = {
     kJunitOption,
 };
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
+Result<report::Value> run_test_io(Context& context, const Arguments& arguments) {
   if (context.nodes.size() != 1) return fail(Errc::usage, "'test io' watches one drive", "name it: -n 1");
   trial::InputTrial test;
   auto expected = trial::parse_inputs(context, arguments.text("--expect"));
@@ -42,11 +42,11 @@ const Command kTestIo{
         "input named has been seen at 0 and at 1; without, it watches until the time is over (or Ctrl-C) and "
         "passes if any input changed. 0 and 1 are the bits as the drive sends them: whether 1 means actuated "
         "depends on the family and on the wiring. Exit code 1 if it fails. Moves nothing.",
-    .parameters = kParameters,
+    .parameters = kTestIoParameters,
     .needs = Needs::node,
     .effect = Effect::reads,
     .family = FamilyCheck::always,
-    .run = run,
+    .run = run_test_io,
     .goes_on = true,
 };
 

@@ -12,7 +12,7 @@ namespace {
 
 using namespace command;
 
-constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
+constexpr auto kTestJogParameters = with_motion_options(std::to_array<Parameter>({
     {.name = "speed",
      .help = "60rpm; the sign is the first direction",
      .kind = Kind::value,
@@ -25,7 +25,7 @@ constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
     kJunitOption,
 }));
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
+Result<report::Value> run_test_jog(Context& context, const Arguments& arguments) {
   const auto test = parse_jog_test(arguments, arguments.text("speed"));
   if (!test) return fail(test.error());
   const auto request = motion_request(context, arguments);
@@ -49,10 +49,10 @@ const Command kTestJog{
         "stop command, and the drive was left disabled. What a drive does not report is skipped. --plot "
         "plots, --csv saves the samples. Exit code 1 if it fails. Example: `test jog 60rpm -n 1 -d gsd600 "
         "--yes --junit jog.xml`.",
-    .parameters = kParameters,
+    .parameters = kTestJogParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,
-    .run = run,
+    .run = run_test_jog,
 };
 
 }  // namespace servoctl::commands

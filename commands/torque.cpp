@@ -6,13 +6,13 @@ namespace {
 
 using namespace command;
 
-constexpr auto kParameters = with_motion_options(std::to_array<Parameter>({
+constexpr auto kTorqueParameters = with_motion_options(std::to_array<Parameter>({
     {.name = "torque", .help = "5%, 0.2Nm; the sign is the direction", .kind = Kind::value, .required = true},
     {.name = "--for", .help = "how long", .kind = Kind::duration, .required = true},
     kCsvOption,
 }));
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
+Result<report::Value> run_torque(Context& context, const Arguments& arguments) {
   if (!arguments.has("--limit"))
     return fail(Errc::usage, "an unloaded motor runs away in torque mode: a speed limit is needed",
                 "add --limit 60rpm");
@@ -39,10 +39,10 @@ const Command kTorque{
         "where the family has one for this mode, and servoctl always stops a motor that exceeds 1.2 times "
         "it. Above the rated torque --max-torque is needed; above 6072h is refused. Example: `torque 5% "
         "--limit 60rpm --for 1s -n 1`.",
-    .parameters = kParameters,
+    .parameters = kTorqueParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,
-    .run = run,
+    .run = run_torque,
 };
 
 }  // namespace servoctl::commands

@@ -11,7 +11,7 @@ using namespace command;
 using report::Show;
 using report::Value;
 
-Result<Value> run(Context& context, const Arguments& /*unused*/) {
+Result<Value> run_units_forget(Context& context, const Arguments& /*unused*/) {
   report::Table table;
   table.columns = {
       {"node"}, {"text", "kept counts per revolution", Show::text}, {"forgotten", "", Show::json}};
@@ -44,7 +44,7 @@ const Command kUnitsForget{
     .parameters = {},
     .needs = Needs::node,
     .effect = Effect::none,
-    .run = run,
+    .run = run_units_forget,
 };
 
 }  // namespace servoctl::commands

@@ -25,7 +25,7 @@ using report::Value;
 constexpr Duration kShortest = std::chrono::seconds(2);
 constexpr Duration kLongest = std::chrono::seconds(60);
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kUnitsLearnParameters[] = {
     {.name = "--speed",
      .help = "motor speed: 15rpm to 30rpm (default 30rpm); the sign is the direction",
      .kind = Kind::value},
@@ -41,7 +41,7 @@ constexpr Parameter kParameters[] = {
     kCsvOption,
 };
 
-Result<double> speed_of(const Arguments& arguments) {
+Result<double> learning_speed(const Arguments& arguments) {
   if (!arguments.has("--speed")) return Learn{}.rpm;
   auto text = arguments.text("--speed");
   const auto unit = lower(text).rfind("rpm");
@@ -130,7 +130,7 @@ Result<Learn> learn_of(Context& context, const Arguments& arguments, std::uint8_
   if (!monitor) return fail(monitor.error());
   const auto gear = read_gear(context, node);
   if (!gear) return fail(gear.error());
-  const auto rpm = speed_of(arguments);
+  const auto rpm = learning_speed(arguments);
   if (!rpm) return fail(rpm.error());
   const auto length = length_of(arguments);
   if (!length) return fail(length.error());
@@ -210,7 +210,7 @@ void add_measurement(Value& answer, const motion::LearnReport& done, double gear
   record->insert(record->begin() + static_cast<std::ptrdiff_t>(at), found.begin(), found.end());
 }
 
-Result<Value> run(Context& context, const Arguments& arguments) {
+Result<Value> run_units_learn(Context& context, const Arguments& arguments) {
   const auto request = motion_request(context, arguments);
   if (!request) return fail(request.error());
   const auto node = request->node;
@@ -262,10 +262,10 @@ const Command kUnitsLearn{
         "the manual prints two scales for the monitor: then --nameplate COUNTS is compared with the result). "
         "It is kept for this bus, node and identity (1000h, 1008h, 1018h) and used by every motion without "
         "--turn, with a notice; the drive's own parameters take precedence. Example: `units learn -n 1`.",
-    .parameters = kParameters,
+    .parameters = kUnitsLearnParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,
-    .run = run,
+    .run = run_units_learn,
 };
 
 }  // namespace servoctl::commands

@@ -20,7 +20,7 @@ using report::Record;
 using report::Show;
 using report::Value;
 
-constexpr Parameter kParameters[] = {kTurnOption};
+constexpr Parameter kUnitsShowParameters[] = {kTurnOption};
 
 constexpr std::pair<Measure, std::string_view> kMeasures[] = {
     {Measure::increments_per_turn, "increments_per_turn"},
@@ -90,7 +90,7 @@ List row(const Context& context, std::uint8_t node, Measure measure, std::string
           of_turn ? kept_record(known) : Value()};
 }
 
-Result<Value> run(Context& context, const Arguments& arguments) {
+Result<Value> run_units_show(Context& context, const Arguments& arguments) {
   const auto options = motion_options(context, arguments);
   if (!options) return fail(options.error());
   report::Table table;
@@ -129,11 +129,11 @@ const Command kUnitsShow{
         "Increments (6064h) and encoder pulses per revolution and rated torque, as far as the family's rules "
         "give them: from the drive's parameters, from what `units learn` kept, or from --turn. In JSON "
         "`source` is drive, kept, --turn or null. What is kept but not used is shown with the reason.",
-    .parameters = kParameters,
+    .parameters = kUnitsShowParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::reads,
     .family = FamilyCheck::always,
-    .run = run,
+    .run = run_units_show,
 };
 
 }  // namespace servoctl::commands

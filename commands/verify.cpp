@@ -11,17 +11,17 @@ using namespace command;
 
 using report::Value;
 
-constexpr std::string_view kFactory = "factory";
+constexpr std::string_view kFactoryValues = "factory";
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kVerifyParameters[] = {
     {.name = "file", .help = "a backup of any format, or factory", .kind = Kind::file, .required = true},
     kSkipInvalidOption,
 };
 
-Result<Value> run(Context& context, const Arguments& arguments) {
+Result<Value> run_verify(Context& context, const Arguments& arguments) {
   const auto name = arguments.text("file");
   std::optional<settings::Backup> backup;
-  if (name != kFactory) {
+  if (name != kFactoryValues) {
     auto read = settings::read_backup(context, name, context.front_end, context.nodes.front(),
                                       arguments.has("--skip-invalid"));
     if (!read) return fail(read.error());
@@ -66,11 +66,11 @@ const Command kVerify{
         "Reads every value of the backup from the drive; exit code 1 if one differs or is missing. A file in "
         "another format is refused if it has an unusable entry; --skip-invalid verifies the rest, exit code "
         "1.",
-    .parameters = kParameters,
+    .parameters = kVerifyParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::reads,
     .family = FamilyCheck::always,
-    .run = run,
+    .run = run_verify,
     .on_registers = true,
 };
 

@@ -18,7 +18,7 @@ using report::Value;
 
 constexpr Duration kDefaultEvery = std::chrono::milliseconds(100);
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kWatchParameters[] = {
     {.name = "object",
      .help = "address, name or parameter number; several are shown side by side",
      .kind = Kind::object,
@@ -31,9 +31,9 @@ constexpr Parameter kParameters[] = {
 };
 
 /// Samples as they are shown: the values of one node at one time.
-class Watching {
+class WatchingValues {
  public:
-  Watching(Context& context, traffic::Sampler& sampler, bool changes)
+  WatchingValues(Context& context, traffic::Sampler& sampler, bool changes)
       : context_(&context), sampler_(&sampler), changes_(changes), writer_(context) {
     for (const auto& channel : sampler.channels()) records_.emplace_back(channel);
     if (!changes)
@@ -160,7 +160,7 @@ class Watching {
   std::size_t looks_ = 0;
 };
 
-Result<Value> run(Context& context, const Arguments& arguments) {
+Result<Value> run_watch(Context& context, const Arguments& arguments) {
   const auto every = duration_option(arguments, "--every");
   if (!every) return fail(every.error());
   const auto length = duration_option(arguments, "--for");
@@ -169,7 +169,7 @@ Result<Value> run(Context& context, const Arguments& arguments) {
   if (!sampler) return fail(sampler.error());
   auto& session = *context.session;
   const auto period = every->value_or(kDefaultEvery);
-  Watching watching(context, *sampler, arguments.has("--changes"));
+  WatchingValues watching(context, *sampler, arguments.has("--changes"));
   const auto begin = session.now();
   auto next = begin;
   traffic::Listener listener;
@@ -200,10 +200,10 @@ const Command kWatch{
         "it; the rest is read by SDO. At the end it shows the number of values of each object, the minimum, "
         "mean and maximum; --plot plots them. `-o jsonl` gives one document per sample. A drive that no "
         "longer answers at the end sets the exit code.",
-    .parameters = kParameters,
+    .parameters = kWatchParameters,
     .needs = Needs::node,
     .effect = Effect::reads,
-    .run = run,
+    .run = run_watch,
     .goes_on = true,
     .on_registers = true,
 };

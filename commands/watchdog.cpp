@@ -34,7 +34,7 @@ std::string reaction_text(const WatchdogReport& one) {
   return out.empty() ? std::string("not known") : out;
 }
 
-report::Record record_of(const WatchdogReport& one) {
+report::Record watchdog_record(const WatchdogReport& one) {
   auto remarks = one.remarks;
   if (one.assumed) remarks.emplace_back("ASSUMED: the manual does not say what the motor then does");
   return {{"node", one.node},
@@ -52,11 +52,11 @@ report::Record record_of(const WatchdogReport& one) {
           {"assumed", one.assumed, Show::json}};
 }
 
-Result<Value> run(Context& context, const Arguments&) {
+Result<Value> run_watchdog(Context& context, const Arguments&) {
   report::List out;
   for (const auto& one : motion::read_watchdogs(*context.session, *context.profile, context.nodes)) {
     if (one)
-      out.emplace_back(record_of(*one));
+      out.emplace_back(watchdog_record(*one));
     else
       context.errors.push_back(one.error());
   }
@@ -79,7 +79,7 @@ const Command kWatchdog{
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::reads,
     .family = FamilyCheck::always,
-    .run = run,
+    .run = run_watchdog,
 };
 
 }  // namespace servoctl::commands

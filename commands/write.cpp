@@ -12,7 +12,7 @@ using namespace command;
 
 constexpr std::string_view kPath = "write";
 
-constexpr Parameter kParameters[] = {
+constexpr Parameter kWriteParameters[] = {
     {.name = "object",
      .help = "0x6060, 6099h.1, modes_of_operation, Pn0202",
      .kind = Kind::object,
@@ -48,7 +48,7 @@ Result<settings::Change> change_of(Context& context, const Arguments& arguments,
   return change;
 }
 
-Result<void> check(Context& context, const Arguments& arguments) {
+Result<void> check_write(Context& context, const Arguments& arguments) {
   const auto type = parse_type_option(arguments);
   if (!type) return fail(type.error());
   if (const auto one = check_one_source(arguments); !one) return one;
@@ -62,7 +62,7 @@ Result<void> check(Context& context, const Arguments& arguments) {
   return {};
 }
 
-Result<report::Value> run(Context& context, const Arguments& arguments) {
+Result<report::Value> run_write(Context& context, const Arguments& arguments) {
   const auto type = parse_type_option(arguments);
   if (!type) return fail(type.error());
   if (const auto one = check_one_source(arguments); !one) return fail(one.error());
@@ -84,7 +84,7 @@ Result<report::Value> run(Context& context, const Arguments& arguments) {
              : settings::write_changes(context, changes, options);
 }
 
-Result<std::vector<settings::NamedValue>> setting_values(const Arguments& arguments) {
+Result<std::vector<settings::NamedValue>> object_values(const Arguments& arguments) {
   if (!arguments.has("value")) return settings::writes_no_value(kPath);
   return std::vector<settings::NamedValue>{{.name = std::string(arguments.text("object")),
                                             .value = std::string(arguments.text("value")),
@@ -105,12 +105,12 @@ const Command kWrite{
         "of any size is written, by block transfer if the drive supports it; --keep keeps it too. A COB-ID "
         "that CiA 301 reserves for another service (NMT, SYNC, EMCY, SDO, error control, restricted) is "
         "refused. A value that begins with - and is not a number goes after --: write 0x2000 -- \"--text\".",
-    .parameters = kParameters,
+    .parameters = kWriteParameters,
     .needs = Needs::node,
     .effect = Effect::writes,
-    .run = run,
-    .check = check,
-    .settings = setting_values,
+    .run = run_write,
+    .check = check_write,
+    .settings = object_values,
     .on_registers = true,
 };
 
