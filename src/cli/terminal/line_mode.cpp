@@ -1,6 +1,6 @@
 #include "cli/terminal/line_mode.hpp"
 
-#include <unistd.h>
+#include "cli/terminal/signals.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -20,7 +20,10 @@ termios byte_by_byte(termios mode) {
 bool LineMode::enter() {
   termios now{};
   if (::tcgetattr(descriptor_, &now) != 0) return false;
-  if (!before_) before_ = now;
+  if (!before_) {
+    before_ = now;
+    keep_terminal_mode(descriptor_, now);
+  }
   const auto wanted = byte_by_byte(now);
   return ::tcsetattr(descriptor_, TCSANOW, &wanted) == 0;
 }
@@ -28,6 +31,7 @@ bool LineMode::enter() {
 void LineMode::leave() {
   if (!before_) return;
   (void)::tcsetattr(descriptor_, TCSANOW, &*before_);
+  forget_terminal_mode();
   before_.reset();
 }
 

@@ -88,6 +88,7 @@ class Prompt {
   void run_line();
   void keep_place();
   void draw();
+  void say(std::string_view text);
 
   Shell* shell_;
   Console* console_;
@@ -96,8 +97,9 @@ class Prompt {
   LineEditor editor_;
   LineMode mode_{STDIN_FILENO};
   std::filesystem::path folder_ = state_folder();
-  std::string kept_;             ///< The place that was.
-  bool edits_ = moves_cursor();  ///< Else the terminal edits the line, as far as it does.
+  std::string kept_;  ///< The place that was.
+  bool shows_output_ = ::isatty(STDOUT_FILENO) == 1;
+  bool edits_ = shows_output_ && moves_cursor();  ///< Else the terminal edits the line, as far as it does.
   bool colours_ = shows_colours();
   bool editing_ = false;  ///< A line is being typed.
   bool done_ = false;
@@ -117,12 +119,21 @@ void Prompt::draw() {
   if (edits_) console_->draw(editor_.draw());
 }
 
+/// What is no result stays out of a file that takes the results.
+void Prompt::say(std::string_view text) {
+  if (shows_output_)
+    console_->out(text);
+  else
+    console_->err(text);
+}
+
 void Prompt::begin_line() {
   editor_.set_prompt(prompt());
   editor_.begin();
   editing_ = true;
-  if (!edits_) return console_->out(editor_.prompt().text);
+  if (!edits_) return say(editor_.prompt().text);
   mode_.enter();
+  keep_last_words(kMarkNoPastes);
   console_->draw(kMarkPastes);
   draw();
 }
@@ -131,6 +142,7 @@ void Prompt::begin_line() {
 void Prompt::rest() {
   if (editing_ && edits_) console_->draw(kMarkNoPastes);
   editing_ = false;
+  keep_last_words("");
   mode_.leave();
 }
 
@@ -178,7 +190,7 @@ bool Prompt::key_waits() const {
 /// All that were typed, but for what comes behind Enter: that is for whoever asks next.
 void Prompt::take_keys() {
   constexpr int kAtOnce = 4096;
-  for (int i = 0; i < kAtOnce && !done_ && (i == 0 || key_waits()); ++i) {
+  for (int i = 0; i < kAtOnce && !done_ && key_waits(); ++i) {
     char byte = 0;
     last_key_ = std::chrono::steady_clock::now();
     if (::read(STDIN_FILENO, &byte, 1) != 1) {
@@ -222,7 +234,7 @@ void Prompt::show_notices() {
   const auto notices = shell_->take_notices(loaded ? *loaded : nullptr, settings.chinese);
   if (notices.empty()) return;
   if (edits_) console_->draw(editor_.wipe());
-  for (const auto& notice : notices) console_->out("* " + printable(notice) + "\n");
+  for (const auto& notice : notices) say("* " + printable(notice) + "\n");
   draw();
 }
 
@@ -231,7 +243,7 @@ void Prompt::drop_line() {
   if (edits_)
     console_->draw(editor_.leave("^C"));
   else
-    console_->out("^C\n");
+    say("^C\n");
   editor_.drop();
   gives_up_paste_ = editor_.is_inside_key();
   rest();

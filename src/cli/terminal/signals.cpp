@@ -25,6 +25,17 @@ using Handler = void (*)(int);
 constexpr int kNudge = SIGURG;
 constexpr long kNudgeEvery = 100'000'000;  ///< Nanoseconds.
 
+volatile std::sig_atomic_t g_has_mode = 0;
+int g_terminal = -1;
+termios g_mode{};
+std::string_view g_last_words;
+
+/// tcsetattr() and write() may be called by a handler.
+void give_terminal_back() {
+  if (g_has_mode != 0) (void)::tcsetattr(g_terminal, TCSANOW, &g_mode);
+  if (!g_last_words.empty()) (void)!::write(STDOUT_FILENO, g_last_words.data(), g_last_words.size());
+}
+
 bool is_of_keyboard(int signal) { return signal == SIGINT || signal == SIGQUIT; }
 
 /// timer_settime() may be called by a handler.
@@ -36,7 +47,10 @@ void nudge(bool on) {
 }
 
 extern "C" void on_signal(int signal) {
-  if (g_interrupted != 0 && is_of_keyboard(signal) && g_protected == 0) ::_exit(130);
+  if (g_interrupted != 0 && is_of_keyboard(signal) && g_protected == 0) {
+    give_terminal_back();
+    ::_exit(130);
+  }
   const int error = errno;
   g_interrupted = 1;
   if (signal != SIGINT && signal != SIGTSTP) g_terminated = 1;
@@ -100,6 +114,23 @@ void install_signal_handlers() {
     catch_if_deadly(signal);
   // The write fails instead, and is told.
   for (const int signal : {SIGPIPE, SIGXFSZ}) set_handler(signal, SIG_IGN);
+}
+
+void keep_terminal_mode(int descriptor, const termios& before) {
+  const Quiet quiet;
+  g_terminal = descriptor;
+  g_mode = before;
+  g_has_mode = 1;
+}
+
+void forget_terminal_mode() {
+  const Quiet quiet;
+  g_has_mode = 0;
+}
+
+void keep_last_words(std::string_view words) {
+  const Quiet quiet;
+  g_last_words = words;
 }
 
 void protect_from_signals(bool energised) {

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <termios.h>
+
+#include <string_view>
+
 namespace servoctl::cli {
 
 /// Catches every signal that ends a program and can be caught, but for those of a crash, so that every wait
@@ -19,5 +23,13 @@ bool interrupted();
 /// Whether another than Ctrl-C came: the program has to end, not only what it is doing.
 bool terminated();
 void clear_interrupt();
+
+/// What a second Ctrl-C gives the terminal at `descriptor` back before it ends the process, until
+/// forget_terminal_mode().
+void keep_terminal_mode(int descriptor, const termios& before);
+void forget_terminal_mode();
+/// What it writes to the standard output then: what ends the marks of pastes, or the alternate screen. The
+/// text has to stay where it is; "" for nothing.
+void keep_last_words(std::string_view words);
 
 }  // namespace servoctl::cli

@@ -3,6 +3,8 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include "cli/terminal/signals.hpp"
+
 namespace servoctl::cli {
 namespace {
 
@@ -21,12 +23,19 @@ std::unique_ptr<command::Keys> TerminalKeys::open(int descriptor) {
   raw.c_iflag &= ~static_cast<tcflag_t>(IXON);
   raw.c_cc[VMIN] = 0;
   raw.c_cc[VTIME] = 0;
+  keep_terminal_mode(descriptor, before);
   // What was typed before nobody meant as a key that moves something.
-  if (::tcsetattr(descriptor, TCSAFLUSH, &raw) != 0) return nullptr;
+  if (::tcsetattr(descriptor, TCSAFLUSH, &raw) != 0) {
+    forget_terminal_mode();
+    return nullptr;
+  }
   return std::unique_ptr<command::Keys>(new TerminalKeys(descriptor, before));
 }
 
-TerminalKeys::~TerminalKeys() { (void)::tcsetattr(descriptor_, TCSAFLUSH, &before_); }
+TerminalKeys::~TerminalKeys() {
+  (void)::tcsetattr(descriptor_, TCSAFLUSH, &before_);
+  forget_terminal_mode();
+}
 
 int TerminalKeys::next_byte() {
   pollfd input{descriptor_, POLLIN, 0};

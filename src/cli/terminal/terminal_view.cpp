@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/number.hpp"
+#include "cli/terminal/signals.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -28,14 +29,18 @@ TerminalView::TerminalView(Layout layout, Screen screen, std::unique_ptr<Keys> k
       screen_(std::move(screen)),
       keys_(std::move(keys)) {
   for (const auto& column : layout.columns) titles_.push_back(column.title);
-  if (alternate_) screen_.write(kToAlternate);
+  if (!alternate_) return;
+  keep_last_words(kFromAlternate);
+  screen_.write(kToAlternate);
 }
 
 TerminalView::~TerminalView() {
-  if (alternate_)
+  if (alternate_) {
     screen_.write(kFromAlternate);
-  else
+    keep_last_words("");
+  } else {
     draw();
+  }
   if (screen_.closed) screen_.closed();
 }
 
