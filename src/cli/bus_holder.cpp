@@ -93,8 +93,13 @@ const show::AxisNames& BusHolder::names(const session::Session& session) const {
 }
 
 HeardStates::State BusHolder::heard_state(const session::Session& session, std::uint8_t node) const {
-  const auto found = heard_.find(&session);
-  return found == heard_.end() ? HeardStates::State() : found->second->state(node);
+  const auto found = opened_.find(&session);
+  return found == opened_.end() ? HeardStates::State() : found->second.heard->state(node);
+}
+
+std::uint64_t BusHolder::opening(const session::Session& session) const {
+  const auto found = opened_.find(&session);
+  return found == opened_.end() ? 0 : found->second.number;
 }
 
 Result<std::unique_ptr<session::RingEnd>> BusHolder::open_ring_end(const Settings& settings) {
@@ -112,16 +117,16 @@ Result<void> BusHolder::connect(const std::string& url) {
   if (!network) return fail(network.error());
   auto session = std::make_unique<session::Session>(std::move(*network), url, options_);
   session->options().beside = [this] { return serve_beside(); };
-  // Boot-ups of drives that are simulated in this process are no news.
   // Ctrl-C closes no bus that was just opened where a drive is to be stopped behind it.
   const bool must_stop = left_energised_.count(session::canonical_url(url)) > 0;
   if (auto heard = session->listen(); !heard && !(must_stop && heard.error().code == Errc::interrupted))
     return heard;
+  // Boot-ups of drives that are simulated in this process are no news.
   (void)session->take_events();
   if (auto left = left_energised_.extract(session::canonical_url(url)))
     session->energised() = std::move(left.mapped());
   session_ = session.get();
-  heard_[session_] = std::make_unique<HeardStates>(*session_);
+  opened_[session_] = {std::make_unique<HeardStates>(*session_), ++openings_};
   open_[session::canonical_url(url)] = std::move(session);
   return {};
 }
@@ -149,7 +154,7 @@ void BusHolder::drop(session::Session& session) {
   const auto url = session::canonical_url(session.url());
   if (!session.energised().empty()) left_energised_.insert_or_assign(url, std::move(session.energised()));
   flushing_ = true;  // What the trace could not take to the last is told by who takes its failure.
-  heard_.erase(&session);
+  opened_.erase(&session);
   open_.erase(url);
   flushing_ = false;
   session_ = open_.empty() ? nullptr : open_.begin()->second.get();

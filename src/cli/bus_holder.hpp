@@ -64,6 +64,9 @@ class BusHolder {
 
   /// What the node of the session's bus was last heard to say of its state.
   HeardStates::State heard_state(const session::Session& session, std::uint8_t node) const;
+  /// Tells one opening of a bus from every other one: what was counted since the other, such as restarts of
+  /// its nodes, began anew. 0: it is not open.
+  std::uint64_t opening(const session::Session& session) const;
 
   /// Waits for what `wanted` asks of its descriptor, at most so long, while all buses are served. False after
   /// a signal. `lost` is told of each bus that is lost, and gone then.
@@ -112,10 +115,15 @@ class BusHolder {
   std::optional<Error> trace_failure_;  ///< Outlives the bus, which may tell of it at its very end.
   bool flushing_ = false;
   bool serving_beside_ = false;
-  std::map<std::string, std::unique_ptr<session::Session>> open_;          ///< By canonical_url().
-  session::Session* session_ = nullptr;                                    ///< Of them that was used last.
-  std::map<std::string, show::AxisNames> names_;                           ///< By canonical_url().
-  std::map<const session::Session*, std::unique_ptr<HeardStates>> heard_;  ///< Of those that are open.
+  std::map<std::string, std::unique_ptr<session::Session>> open_;  ///< By canonical_url().
+  session::Session* session_ = nullptr;                            ///< Of them that was used last.
+  std::map<std::string, show::AxisNames> names_;                   ///< By canonical_url().
+  struct Opened {
+    std::unique_ptr<HeardStates> heard;
+    std::uint64_t number = 0;
+  };
+  std::map<const session::Session*, Opened> opened_;  ///< Those that are open.
+  std::uint64_t openings_ = 0;
   std::map<std::string, session::EnergisedNodes> left_energised_;  ///< By canonical_url() of one not open.
 };
 

@@ -9,6 +9,7 @@
 #include "drive/standard_objects.hpp"
 #include "session/identify.hpp"
 #include "session/pdo_change.hpp"
+#include "settings/change.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -45,6 +46,13 @@ std::string text_of(const drive::Meaning& meaning, const Bytes& bytes) {
   return again && *again == bytes ? text : std::string();
 }
 
+/// As the line that writes it takes it; what fits no type is told by that.
+drive::Meaning with_known_type(std::uint8_t node, const drive::Target& target, const drive::Meaning& meaning,
+                               const Bytes& bytes) {
+  if (meaning.type_known && meaning.size_known) return meaning;
+  return settings::learned_meaning(node, target, meaning, bytes).value_or(meaning);
+}
+
 std::string name_of_node(const Context& context, std::uint8_t node) {
   for (const auto* axis : context.axes)
     if (axis->node == node) return axis->name;
@@ -55,7 +63,7 @@ std::string name_of_node(const Context& context, std::uint8_t node) {
 
 /// Asked for once between two restarts.
 const session::Identity* LastWrite::identity_of(session::Session& session, std::uint8_t node) {
-  const auto key = std::pair(session.url(), std::pair(node, session.watch().boots(node)));
+  const auto key = std::tuple(opening_, node, session.watch().boots(node));
   auto found = identities_.find(key);
   if (found == identities_.end()) {
     auto identity = session::read_identity(session, node);
@@ -66,8 +74,9 @@ const session::Identity* LastWrite::identity_of(session::Session& session, std::
 }
 
 void LastWrite::look(const command::Command& command, const command::Arguments& arguments,
-                     const Context& context, const Settings& settings) {
+                     const Context& context, const Settings& settings, std::uint64_t opening) {
   pending_.reset();
+  opening_ = opening;
   const bool writes = command.path == "param set" || command.path == "write";
   if (!enabled_ || !writes || context.dry_run || context.session == nullptr) return;
   pending_ = Line{.command = std::string(command.path),
@@ -96,9 +105,8 @@ void LastWrite::look_at(const Context& context, const settings::NamedValue& name
   auto meaning = drive::meaning(*target, node);
   if (named.type) meaning.type = *named.type;
   auto why = why_not_back(*target, meaning);
-  if (why.empty() && !named.type && !(meaning.type_known && meaning.size_known))
-    why = "its type is not known; `--type` says it";
   const auto before = why.empty() ? context.session->upload(node, target->address) : Result<Bytes>(Bytes());
+  if (why.empty() && before && !named.type) meaning = with_known_type(node, *target, meaning, *before);
   if (why.empty() && before && pending_->keep && context.profile != nullptr) {
     session::Values both{{target->address, *before}};
     session::add_stored_copies(*context.profile, node, both);
@@ -122,6 +130,7 @@ void LastWrite::look_at(const Context& context, const settings::NamedValue& name
                               .before_text = text,
                               .after_text = {},
                               .identity = *identity,
+                              .opening = opening_,
                               .boots = context.session->watch().boots(node)});
 }
 
@@ -139,7 +148,8 @@ void LastWrite::settle(const Context& context) {
   for (auto& value : line.values) {
     const auto now = context.session->upload(value.node, value.object);
     if (now && *now == value.before) continue;
-    auto meaning = drive::meaning(drive::target_at(context.profile, value.object), value.node);
+    const auto target = drive::target_at(context.profile, value.object);
+    auto meaning = with_known_type(value.node, target, drive::meaning(target, value.node), value.before);
     if (const auto type = od::parse_data_type(value.type)) meaning.type = *type;
     if (now)
       value.after = *now;
@@ -153,6 +163,8 @@ void LastWrite::settle(const Context& context) {
   line.values = std::move(changed);
   line_ = std::move(line);
 }
+
+void LastWrite::keep(Line line) { line_ = std::move(line); }
 
 void LastWrite::turn_round(Line line) {
   for (auto& value : line.values) {

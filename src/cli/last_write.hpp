@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -29,7 +30,8 @@ class LastWrite {
     std::string before_text;  ///< Reads as that value in a line that writes it.
     std::string after_text;
     session::Identity identity;
-    std::uint32_t boots = 0;  ///< Of the node, when it was written.
+    std::uint64_t opening = 0;  ///< Of the bus, as BusHolder::opening().
+    std::uint32_t boots = 0;    ///< Of the node since then, when it was written.
   };
   /// Of one line.
   struct Line {
@@ -48,9 +50,9 @@ class LastWrite {
   void set_enabled(bool enabled) { enabled_ = enabled; }
   /// The nodes of lines that name none.
   void set_place(std::string nodes) { place_ = std::move(nodes); }
-  /// Before a line that the context is ready for.
+  /// Before a line that the context is ready for; `opening` of its bus as BusHolder::opening().
   void look(const command::Command& command, const command::Arguments& arguments,
-            const command::Context& context, const Settings& settings);
+            const command::Context& context, const Settings& settings, std::uint64_t opening);
   /// Behind it: what it changed is the last write from now on. A line that changed nothing leaves the one
   /// before.
   void settle(const command::Context& context);
@@ -59,6 +61,8 @@ class LastWrite {
   const Line* line() const { return line_ ? &*line_ : nullptr; }
   /// What was put back is the last write, the other way round.
   void turn_round(Line line);
+  /// What is still to be put back of a line.
+  void keep(Line line);
   /// The last line wrote, and cannot be put back.
   void give_up(const command::Command& command, std::string why);
 
@@ -70,15 +74,17 @@ class LastWrite {
   std::string place_;
   std::optional<Line> pending_;
   std::optional<Line> line_;
-  /// By bus, node and restarts.
-  std::map<std::pair<std::string, std::pair<std::uint8_t, std::uint32_t>>, session::Identity> identities_;
+  std::uint64_t opening_ = 0;  ///< Of the bus of the present line.
+  /// By opening of the bus, node and restarts since.
+  std::map<std::tuple<std::uint64_t, std::uint8_t, std::uint32_t>, session::Identity> identities_;
 };
 
 class Shell;
 
 /// `undo`: puts back what the last write replaced, after a question. Nothing is sent, Errc::refused, when the
 /// prompt is elsewhere now, or the drive is another one, has restarted, or no longer holds what was written.
-/// `yes`: without the question. The answer is the exit code.
+/// What is left when one of several values fails is the last write from then on. `yes`: without questions.
+/// The answer is the exit code.
 int undo(Shell& shell, bool yes);
 
 }  // namespace servoctl::cli

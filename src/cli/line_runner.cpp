@@ -9,9 +9,14 @@
 namespace servoctl::cli {
 namespace {
 
-bool is_undo(const std::vector<std::string>& words) {
+/// `undo`, `undo --yes`; the exit code.
+int undo_line(Shell& shell, const std::vector<std::string>& words) {
   const bool yes = words.size() == 2 && (words[1] == "--yes" || words[1] == "-y");
-  return words.front() == "undo" && (words.size() == 1 || yes);
+  if (words.size() == 1 || yes) return undo(shell, yes);
+  return shell.report_error(
+      make_error(Errc::usage, "'undo' takes nothing but --yes",
+                 "it puts back what the last `param set` or `write` replaced, where that was written"),
+      shell.defaults().json, "undo");
 }
 
 /// `log on FILE`, `log off`, `log`; the exit code.
@@ -47,7 +52,7 @@ int LineRunner::run(std::string_view line) {
   if (exit_) return 0;
   if (const auto outcome = choose(*shell_, *words))
     return outcome->errors.empty() ? 0 : show(shell_->console(), *outcome);
-  if (is_undo(*words)) return undo(*shell_, words->size() == 2);
+  if (words->front() == "undo") return undo_line(*shell_, *words);
   if (words->front() == "log") return log_line(*shell_, *words);
   auto& last = shell_->last_write();
   last.set_place(shell_->defaults().nodes);

@@ -12,12 +12,10 @@
 #include "cli/terminal/signals.hpp"
 #include "command/help_text.hpp"
 #include "session/ethercat_network.hpp"
-#include "session/identify.hpp"
 #include "session/modbus_network.hpp"
 #include "session/scan.hpp"
 #include "session/serve_registers.hpp"
 #include "session/serve_ring.hpp"
-#include "show/notice.hpp"
 #include "show/records.hpp"
 
 namespace servoctl::cli {
@@ -195,27 +193,6 @@ Result<void> Shell::prepare_nodes(Run& run) {
   return {};
 }
 
-std::vector<std::string> Shell::take_notices(const drive::Profile* profile, bool chinese) {
-  std::vector<std::string> out;
-  for (auto* session : bus_.sessions()) {
-    const auto& names = bus_.names(*session);
-    for (const auto& notice : session->network().take_notices()) out.push_back(names.in(notice));
-    // The family of the line says nothing of another bus.
-    const auto* family = session == bus_.session() ? profile : nullptr;
-    for (const auto& event : session->take_events())
-      out.push_back(names.in(show::notice_text(event, family, chinese, &session->network())));
-  }
-  return out;
-}
-
-/// A line of its own ends before a second node of the same number may have answered.
-void Shell::hear_second_node(const Run& run) {
-  auto* session = run.context.session;
-  if (session == nullptr || stays_open_ || !includes(run.command->needs, Needs::node) || cancelled()) return;
-  // What it cannot tell is told by the next line.
-  (void)session::settle_duplicates(*session, run.context.nodes, session::kBriefly);
-}
-
 Outcome Shell::finish(Run& run, const Result<Value>& result) {
   auto& errors = run.context.errors;
   hear_second_node(run);
@@ -282,6 +259,7 @@ int Shell::hold() {
 }
 
 int Shell::close(int code) {
+  hear_last_line();
   if (bus_.holds_drives()) bus_.let_go();
   bus_.close();
   auto failure = bus_.take_trace_failure();

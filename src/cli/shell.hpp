@@ -68,6 +68,8 @@ class Shell {
   LastWrite& last_write() { return last_write_; }
   /// As BusHolder::heard_state(), on the bus of this URL; nothing where it is not open.
   HeardStates::State heard_state(std::string_view url, std::uint8_t node) const;
+  /// As BusHolder::opening().
+  std::uint64_t opening(const session::Session& session) const { return bus_.opening(session); }
   /// The family of the lines that name none: that of the defaults, else what their one node was taken for;
   /// empty where that is open. Nothing is asked.
   std::string family_in_use() const;
@@ -119,6 +121,8 @@ class Shell {
 
   /// Lines about what nodes told since the last call.
   std::vector<std::string> take_notices(const drive::Profile* profile, bool chinese);
+  /// The same as notices on the console, by the family of the defaults.
+  void tell_notices();
 
  private:
   struct Run {
@@ -158,6 +162,8 @@ class Shell {
   Result<void> prepare_nodes(Run& run);
   static Result<void> hold_serials(Run& run);
   void hear_second_node(const Run& run);
+  /// The same for the last of several lines, before the bus is closed.
+  void hear_last_line();
   static Result<void> name_nodes(Run& run);
   Result<void> find_family(Run& run, bool changes);
   const FoundFamily* taken_for() const;
@@ -179,6 +185,7 @@ class Shell {
   session::Protection protection_;
   BusHolder bus_;
   bool stays_open_ = false;
+  std::vector<std::uint8_t> unheard_;      ///< Nodes of the last line, a second of which may still answer.
   std::optional<Error> incomplete_trace_;  ///< Told as a notice of a line; the exit code comes at the end.
   std::map<std::string, std::shared_ptr<const drive::Profile>> profiles_;
   std::map<std::string, FoundFamily> families_;  ///< Of drives, by bus, node and restarts.

@@ -278,7 +278,9 @@ std::vector<Outcome> Shell::perform_side_by_side(const ParsedLine& line, std::ve
 Outcome Shell::perform_part(const ParsedLine& line, LinePart part) {
   PartRun one(*this, line, std::move(part));
   if (!one.result) {
-    last_write_.look(*line.command, one.arguments, one.run.context, one.run.settings);
+    const auto* session = one.run.context.session;
+    last_write_.look(*line.command, one.arguments, one.run.context, one.run.settings,
+                     session == nullptr ? 0 : opening(*session));
     one.carry_out();
     last_write_.settle(one.run.context);
   }

@@ -1,5 +1,6 @@
 // `undo`: what is held against the drive before a value is put back.
 #include <fmt/format.h>
+#include <algorithm>
 
 #include "base/printable.hpp"
 #include "base/text.hpp"
@@ -15,12 +16,13 @@ namespace {
 using WrittenValue = LastWrite::Value;
 using WrittenLine = LastWrite::Line;
 
-Result<void> check_value(session::Session& session, const WrittenValue& value) {
+/// `opening`: the present one of the bus. While it was not open restarts were not heard.
+Result<void> check_value(session::Session& session, std::uint64_t opening, const WrittenValue& value) {
   const auto refused = [&](const std::string& why) {
     return fail(
         drive_error(Errc::refused, value.node, why, "nothing was sent; `param set` writes it by hand"));
   };
-  if (session.watch().boots(value.node) != value.boots)
+  if (opening == value.opening && session.watch().boots(value.node) != value.boots)
     return refused("has restarted since it was written to");
   const auto identity = session::read_identity(session, value.node);
   if (!identity) return fail(identity.error());
@@ -28,7 +30,8 @@ Result<void> check_value(session::Session& session, const WrittenValue& value) {
     return refused(fmt::format("is another drive than the one that was written to: {}", change));
   const auto now = session.upload(value.node, value.object);
   if (!now) return fail(now.error());
-  if (*now != value.after)
+  // Where an undo was cut off behind its write it holds that already.
+  if (*now != value.after && *now != value.before)
     return refused(fmt::format("no longer holds in {} ({}) what was written: somebody has changed it since",
                                value.name, to_string(value.object)));
   return {};
@@ -56,22 +59,26 @@ Result<void> check_line(Shell& shell, const WrittenLine& line) {
   const auto session = shell.open(settings);
   if (!session) return fail(session.error());
   for (const auto& value : line.values)
-    if (const auto same = check_value(**session, value); !same) return same;
+    if (const auto same = check_value(**session, shell.opening(**session), value); !same) return same;
   return {};
 }
 
-std::string question(const WrittenLine& line) {
+std::string undo_question(const WrittenLine& line) {
   std::string out;
   for (const auto& value : line.values)
     out += fmt::format("{}{} on {}{}: {} in place of {}", out.empty() ? "" : "; ", value.name,
                        value.target == std::to_string(value.node) ? "node " : "", value.target,
                        value.before_text, value.after_text.empty() ? "what was written" : value.after_text);
-  return "Put back " + out + "?";
+  const bool blind = std::any_of(line.values.begin(), line.values.end(),
+                                 [](const WrittenValue& value) { return value.identity.by_registers; });
+  return fmt::format("{}Put back{} {}?",
+                     blind ? "Over Modbus nothing tells whether it is the same drive. " : "",
+                     line.keep ? ", and keep at power-off," : "", out);
 }
 
 Result<void> confirm_undo(Shell& shell, const WrittenLine& line, bool yes) {
   if (yes || shell.defaults().yes) return {};
-  const auto shown = printable(question(line));
+  const auto shown = printable(undo_question(line));
   if (!shell.console().can_ask())
     return fail(Errc::refused, "confirmation needed: " + shown, "`undo --yes` confirms");
   if (shell.console().ask(shown)) return {};
@@ -79,7 +86,7 @@ Result<void> confirm_undo(Shell& shell, const WrittenLine& line, bool yes) {
 }
 
 /// A line that puts one value back.
-std::vector<std::string> words_of(const WrittenLine& line, const WrittenValue& value) {
+std::vector<std::string> words_of(const WrittenLine& line, const WrittenValue& value, bool yes) {
   std::vector<std::string> out;
   for (const auto part : split(std::string_view(line.command), ' ')) out.emplace_back(part);
   const auto add = [&out](std::initializer_list<std::string> words) { out.insert(out.end(), words); };
@@ -89,8 +96,28 @@ std::vector<std::string> words_of(const WrittenLine& line, const WrittenValue& v
   if (!value.type.empty()) add({"--type", value.type});
   if (line.keep) add({"--keep"});
   if (line.unlock) add({"--unlock"});
+  if (yes) add({"--yes"});
   add({"--", value.name, value.before_text});
   return out;
+}
+
+/// From the last to the first; what is left when one fails can be put back later.
+int put_back(Shell& shell, const WrittenLine& line, bool yes) {
+  auto left = line;
+  int code = 0;
+  while (!left.values.empty() && code == 0) {
+    code = shell.run(words_of(left, left.values.back(), yes));
+    if (code == 0) left.values.pop_back();
+  }
+  if (code == 0) {
+    shell.last_write().turn_round(line);
+    return code;
+  }
+  if (left.values.size() < line.values.size())
+    shell.console().note(fmt::format("notice: {} of {} values are put back; `undo` goes on with the others\n",
+                                     line.values.size() - left.values.size(), line.values.size()));
+  shell.last_write().keep(std::move(left));
+  return code;
 }
 
 }  // namespace
@@ -108,11 +135,7 @@ int undo(Shell& shell, bool yes) {
   // Somebody may have thought about the question for a while.
   if (right) right = check_line(shell, line);
   if (!right) return shell.report_error(right.error(), shell.defaults().json, "undo");
-  int code = 0;
-  for (auto value = line.values.rbegin(); value != line.values.rend() && code == 0; ++value)
-    code = shell.run(words_of(line, *value));
-  if (code == 0) shell.last_write().turn_round(line);
-  return code;
+  return put_back(shell, line, yes);
 }
 
 }  // namespace servoctl::cli

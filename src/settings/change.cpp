@@ -34,17 +34,16 @@ Result<drive::Meaning> learn_size(show::Desk& desk, std::uint8_t node, const dri
                           : std::string("say the type: --type i32");
     return fail(std::move(error));
   }
-  auto learned = drive::fitted(meaning, bytes->size());
-  if (!meaning.type_known) learned.type = show::type_of({node, target, {}, *bytes}, *bytes);
-  if (learned.type != meaning.type || !meaning.type_known)
-    desk.notices.push_back(fmt::format("node {}, object {}: type taken as {} from its length", node,
-                                       to_string(target.address), od::name(learned.type)));
-  if (const auto size = od::size_of(learned.type); size && *size != bytes->size())
+  auto learned = learned_meaning(node, target, meaning, *bytes);
+  if (!learned)
     return fail(
         Errc::negative,
-        fmt::format("the object has {} bytes, which does not fit {}", bytes->size(), od::name(learned.type)),
+        fmt::format("the object has {} bytes, which does not fit {}", bytes->size(), od::name(meaning.type)),
         "say the type: --type i32");
-  return learned;
+  if (learned->type != meaning.type || !meaning.type_known)
+    desk.notices.push_back(fmt::format("node {}, object {}: type taken as {} from its length", node,
+                                       to_string(target.address), od::name(learned->type)));
+  return *learned;
 }
 
 /// Whether only the drive's own gear and ratings tell what the unit in the text is.
@@ -184,6 +183,14 @@ report::List change_row(const Change& change, const Result<session::Written>& wr
 }
 
 }  // namespace
+
+std::optional<drive::Meaning> learned_meaning(std::uint8_t node, const drive::Target& target,
+                                              const drive::Meaning& meaning, const Bytes& bytes) {
+  auto out = drive::fitted(meaning, bytes.size());
+  if (!meaning.type_known) out.type = show::type_of({node, target, {}, bytes}, bytes);
+  if (const auto size = od::size_of(out.type); size && *size != bytes.size()) return std::nullopt;
+  return out;
+}
 
 std::string name_of(const drive::Target& target) {
   const auto label = target.label();

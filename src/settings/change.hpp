@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -24,6 +25,11 @@ struct Change {
 
 /// Name of the object for a message: its label, else its address.
 std::string name_of(const drive::Target& target);
+
+/// The meaning of an object that holds these bytes, where the dictionary does not tell its type or its
+/// length; nothing when no type has that length.
+std::optional<drive::Meaning> learned_meaning(std::uint8_t node, const drive::Target& target,
+                                              const drive::Meaning& meaning, const Bytes& bytes);
 
 /// Turns a name and a value into a change. Errc::usage for an unknown name, a read-only object, a value that
 /// does not fit; an object of unknown type is read first to learn its size.

@@ -113,11 +113,25 @@ def undo(state):
     t.see(r"the prompt is not there any more[^>]*> ")
     t.type(f"bus {cell}\n")
     t.see(cell + r" node 1[^>]*> ")
+    t.type("undo -n 2\n")
+    t.see(r"'undo' takes nothing but --yes[^>]*> ")
+    # Back on that bus it is put back: no restart was missed that the value does not show.
+    t.type("undo --yes\n")
+    t.see(r"500 = 50 Hz +written, read back[^>]*> ")
+    t.type("param set Pn0214 450\n")
+    t.see(r"read back[^>]*> ")
     # The drive has restarted: what was not kept is gone, and it may be another one.
     t.type("nmt reset --wait --yes\n")
     t.see(r"reset +yes[^>]*> ")
     t.type("undo --yes\n")
     t.see(r"has restarted since it was written to[^>]*> ")
+    # What is kept is kept again, and said before.
+    t.type("param set Pn0214 410 --keep\n")
+    t.see(r"read back +yes[^>]*> ")
+    t.type("undo\n")
+    t.see(r"Put back, and keep at power-off, Pn0214 on node 1: \d+ in place of 410\? \[y/N\] ")
+    t.type("y\n")
+    t.see(r"read back +yes[^>]*> ")
     # What moves a motor is no setting, and hides what was written before it.
     t.type("write 0x607A 1000\n")
     t.see(r"written[^>]*> ")
@@ -125,6 +139,13 @@ def undo(state):
     t.see(r"the last write is not put back: 0x607A on node 1: it drives the motor[^>]*> ")
     t.type("exit\n")
     expect("exit code of exit", 0, t.exit_code())
+    for bus, node, family, line, question in (
+            ("sim:ts@3", 3, "ts", "param set Fn_103 7", "Put back Fn_103 on node 3: 0 in place of 7"),
+            ("modbus:sim:ts@3", 3, "ts", "param set Fn_103 7", "nothing tells whether it is the same drive. Put back Fn_103")):
+        answer = subprocess.run([servoctl, "-b", bus, "-n", str(node), "-d", family], env=env, input=f"{line}\nundo\nexit\n",
+                                capture_output=True, text=True)
+        if question not in answer.stderr:
+            failures.append(f"a value whose type is learned on {bus}: {answer.stderr}")
     # From a pipe it is the same, and asks for --yes.
     lines = "param set Pn0214 410\nundo\n"
     answer = subprocess.run([servoctl, "-b", cell, "-n", "1", "-d", "gsd600"], env=env, input=lines, capture_output=True, text=True)

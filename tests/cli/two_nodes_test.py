@@ -14,8 +14,9 @@ env = {k: v for k, v in os.environ.items() if not k.startswith("SERVOCTL_")}
 env["LANG"] = "C"
 
 
-def run(bus, *words):
-    return subprocess.run([servoctl, "-b", bus, *words], env=env, capture_output=True, text=True)
+def run(bus, *words, lines=None):
+    source = {"input": lines} if lines else {"stdin": subprocess.DEVNULL}
+    return subprocess.run([servoctl, "-b", bus, *words], env=env, capture_output=True, text=True, **source)
 
 
 def sims(bus, *specs):
@@ -44,6 +45,9 @@ for number, (first, second) in enumerate([("gsd600@1", "gsd600@1"), ("gsd600@1",
         if first.split("@")[0] != second.split("@")[0]:
             answer = run(bus, "read", "0x1000", "-n", "1")
             check(what + f"read names them\n{answer.stderr}", "two nodes answer" in answer.stderr)
+            for option in ([], ["--json"]):
+                answer = run(bus, *option, lines="read 0x1000 -n 1\n")
+                check(what + f"the last line of a pipe {option} names them\n{answer.stderr}", "two nodes answer" in answer.stderr + answer.stdout)
         for words in (["jog", "60rpm", "--for", "100ms", "--turn", "10000", "--yes"], ["write", "0x6060", "1"], ["store", "--yes"]):
             answer = run(bus, *words, "-n", "1", "-d", family)
             check(what + f"{words[0]} is refused\n{answer.stderr}", answer.returncode == 8)
