@@ -112,7 +112,7 @@ class AxisPlanner {
 
   Result<void> compare_wanted() {
     settings::RestoreTarget target(*desk_, out_.wanted, cabinet_->file.string(), axis_->node,
-                                   {.only_looks = true});
+                                   {.keep = choice_->keep, .only_looks = true});
     if (const auto fits = target.prepare(); !fits) return fail(fits.error());
     out_.present = target.present();
     const auto node = axis_->node;

@@ -17,14 +17,29 @@ namespace {
 constexpr std::uint64_t kPlaceVersion = 1;
 constexpr std::uintmax_t kMostPlaceBytes = 1U << 16U;
 
-/// Behind a serial port or an Ethernet port may be another device today, and to open it sends something; a
-/// bus of the cabinet may be either.
-bool opens_silently(Shell& shell, const std::string& bus) {
-  if (bus.find(':') != std::string::npos)
-    return bus.starts_with("socketcan:") || bus.starts_with("local:") || bus.starts_with("sim:");
-  if (can::is_interface(bus)) return true;
+/// The cabinet file in use; null where there is none that can be read.
+const cabinet::Cabinet* cabinet_in_use(Shell& shell) {
   const auto cabinet = shell.cabinet(shell.defaults());
-  return !cabinet || *cabinet == nullptr || (*cabinet)->bus(bus) == nullptr;
+  return cabinet ? *cabinet : nullptr;
+}
+
+std::string file_of(const cabinet::Cabinet& cabinet) {
+  std::error_code error;
+  return std::filesystem::canonical(cabinet.file, error).string();
+}
+
+bool is_url(const std::string& bus) {
+  return bus.find(':') != std::string::npos || can::is_interface(bus);
+}
+
+/// Behind a serial port or an Ethernet port may be another device today, and to open it sends something. What
+/// is no URL is a bus of the cabinet, or an interface that is gone, as is told.
+bool opens_silently(Shell& shell, std::string bus) {
+  if (!is_url(bus))
+    if (const auto* cabinet = cabinet_in_use(shell); cabinet != nullptr && cabinet->bus(bus) != nullptr)
+      bus = cabinet->bus(bus)->url;
+  return bus.find(':') == std::string::npos || bus.starts_with("socketcan:") || bus.starts_with("local:") ||
+         bus.starts_with("sim:");
 }
 
 std::string in_words(const LastPlace& place) {
@@ -32,13 +47,24 @@ std::string in_words(const LastPlace& place) {
   if (!place.bus.empty()) append(out, "bus " + place.bus);
   if (!place.nodes.empty()) append(out, (names_axes(place.nodes) ? "" : "node ") + place.nodes);
   if (!place.drive.empty()) append(out, "family " + place.drive);
+  if (!place.cabinet.empty()) append(out, "cabinet " + place.cabinet);
   return printable(out);
 }
 
 void tell(Shell& shell, const std::string& text) { shell.console().note("notice: " + text + "\n"); }
 
+/// Another folder may have another cabinet file, with the same names for other drives.
+Result<void> check_cabinet(Shell& shell, const LastPlace& place) {
+  if (place.cabinet.empty()) return {};
+  const auto* cabinet = cabinet_in_use(shell);
+  if (cabinet != nullptr && file_of(*cabinet) == place.cabinet) return {};
+  return fail(Errc::usage,
+              cabinet == nullptr ? "no cabinet file is in use here" : "the cabinet file is another one");
+}
+
 /// Why the prompt cannot be there.
 Result<void> go_to(Shell& shell, const LastPlace& place) {
+  if (const auto same = check_cabinet(shell, place); !same) return same;
   auto settings = shell.defaults();
   settings.bus = place.bus;
   for (const auto& [word, value] : {std::pair("use", place.nodes), std::pair("drive", place.drive)}) {
@@ -47,8 +73,8 @@ Result<void> go_to(Shell& shell, const LastPlace& place) {
     if (!now) return fail(now.error());
     settings = std::move(*now);
   }
-  if (opens_silently(shell, place.bus))
-    if (const auto opened = shell.open(settings); !opened) return fail(opened.error());
+  if (!place.bus.empty() && opens_silently(shell, place.bus))
+    if (const auto opened = open_chosen_bus(shell, settings); !opened) return fail(opened.error());
   shell.defaults() = std::move(settings);
   return {};
 }
@@ -66,9 +92,10 @@ Result<std::optional<LastPlace>> LastPlaceFile::read() const {
   show::FieldReader fields(*document, path_.string());
   if (fields.number("servoctl_prompt", true).value_or(kPlaceVersion) != kPlaceVersion)
     fields.refuse("servoctl_prompt");
-  LastPlace out{.bus = fields.text("bus", true),
+  LastPlace out{.bus = fields.text("bus"),
                 .nodes = fields.text("nodes"),
                 .drive = fields.text("drive"),
+                .cabinet = fields.text("cabinet"),
                 .time = fields.text("time", true)};
   if (fields.error())
     return fail(Errc::file, *fields.error(), "delete the file; it only remembers where the prompt was");
@@ -77,40 +104,48 @@ Result<std::optional<LastPlace>> LastPlaceFile::read() const {
 
 Result<void> LastPlaceFile::write(const LastPlace& place) const {
   const report::Record document{{"servoctl_prompt", kPlaceVersion},
-                                {"bus", place.bus},
+                                {"bus", report::text_or_null(place.bus)},
                                 {"nodes", report::text_or_null(place.nodes)},
                                 {"drive", report::text_or_null(place.drive)},
+                                {"cabinet", report::text_or_null(place.cabinet)},
                                 {"time", place.time}};
   return write_file_atomically(path_, report::to_json(document) + "\n");
 }
 
 void take_last_place(Shell& shell, const std::filesystem::path& state_folder) {
   const auto& now = shell.defaults();
-  const bool told = !now.bus.empty() || !now.nodes.empty() || !now.drive.empty() || !now.cabinet.empty();
+  const bool told = !now.bus.empty() || !now.nodes.empty() || !now.drive.empty();
   if (told || state_folder.empty()) return;
   const auto last = LastPlaceFile(state_folder).read();
   if (!last) return tell(shell, last.error().message + "; " + last.error().hint);
-  if (!*last || (*last)->bus.empty()) return;
+  if (!*last || ((*last)->bus.empty() && (*last)->nodes.empty())) return;
   const auto& place = **last;
+  // Who names a cabinet file wants to be there.
+  if (!now.cabinet.empty() && place.cabinet.empty()) return;
   if (const auto there = go_to(shell, place); !there)
     return tell(shell, fmt::format("not as last time ({}): {}; `bus` and `use` say where to go",
                                    in_words(place), there.error().message));
-  tell(shell,
-       fmt::format("as last time ({}): {}; `bus`, `use` and `drive` change it{}", place.time, in_words(place),
-                   opens_silently(shell, place.bus) ? "" : "; the first line that needs the bus opens it"));
+  const bool waits = place.bus.empty() || !opens_silently(shell, place.bus);
+  tell(shell, fmt::format("as last time ({}): {}; `bus`, `use` and `drive` change it{}", place.time,
+                          in_words(place), waits ? "; the first line that needs the bus opens it" : ""));
 }
 
-void keep_last_place(const Settings& now, const std::filesystem::path& state_folder) {
-  if (now.bus.empty() || now.bus.starts_with("replay:") || state_folder.empty()) return;
-  // Another folder may have another cabinet file, with the same names for other drives; and all nodes are
-  // none to begin with.
-  const bool of_cabinet = now.bus.find(':') == std::string::npos && !can::is_interface(now.bus);
-  if (of_cabinet || names_axes(now.nodes) || now.nodes == "all") return;
+void keep_last_place(Shell& shell, const std::filesystem::path& state_folder) {
+  const auto& now = shell.defaults();
+  if (state_folder.empty() || now.bus.starts_with("replay:") || (now.bus.empty() && now.nodes.empty()))
+    return;
+  const bool names_bus = !now.bus.empty() && !is_url(now.bus);
+  const bool of_cabinet = names_bus || now.bus.empty() || names_axes(now.nodes);
+  const auto* cabinet = of_cabinet ? cabinet_in_use(shell) : nullptr;
+  if (of_cabinet && cabinet == nullptr) return;
+  // All nodes of a bus are none to begin with.
+  if (now.nodes == "all") return;
   std::error_code error;
-  const bool file = std::filesystem::is_regular_file(now.drive, error);
-  const auto drive = file ? std::filesystem::canonical(now.drive, error).string() : now.drive;
+  const bool is_file = std::filesystem::is_regular_file(now.drive, error);
+  const auto drive = is_file ? std::filesystem::canonical(now.drive, error).string() : now.drive;
   // Where the prompt was is worth no word when it cannot be kept.
-  (void)LastPlaceFile(state_folder).write({now.bus, now.nodes, drive, utc_now_text()});
+  (void)LastPlaceFile(state_folder)
+      .write({now.bus, now.nodes, drive, cabinet == nullptr ? "" : file_of(*cabinet), utc_now_text()});
 }
 
 }  // namespace servoctl::cli

@@ -12,9 +12,10 @@ namespace servoctl::cli {
 /// Where the lines of a prompt went that named no place.
 struct LastPlace {
   std::string bus;
-  std::string nodes;  ///< As after `use`; may be empty.
-  std::string drive;  ///< The same after `drive`.
-  std::string time;   ///< UTC.
+  std::string nodes;    ///< As after `use`; may be empty.
+  std::string drive;    ///< The same after `drive`.
+  std::string cabinet;  ///< The file that bus and nodes are named in; empty: they need none.
+  std::string time;     ///< UTC.
 };
 
 /// The file in the folder for state that keeps it.
@@ -33,10 +34,10 @@ class LastPlaceFile {
 
 /// For a prompt that was told neither bus nor node nor family: those of last time, and says so. A bus whose
 /// opening sends nothing is opened; another one is left to the first line that needs it. One that is not
-/// there any more is told, and nothing is taken.
+/// there any more is told, and so are names of another cabinet file than that in use; nothing is taken then.
 void take_last_place(Shell& shell, const std::filesystem::path& state_folder);
 
 /// Keeps where the prompt is now, once it is somewhere that can be found again.
-void keep_last_place(const Settings& now, const std::filesystem::path& state_folder);
+void keep_last_place(Shell& shell, const std::filesystem::path& state_folder);
 
 }  // namespace servoctl::cli

@@ -8,6 +8,7 @@
 #include "drive/drive_settings.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/cob_id_check.hpp"
+#include "session/pdo_change.hpp"
 #include "session/pdo_setup.hpp"
 #include "settings/change.hpp"
 #include "settings/comparison.hpp"
@@ -139,11 +140,26 @@ Result<void> RestoreTarget::choose_values() {
     else if (const auto left_out = leave_out(entry, reason); !left_out)
       return left_out;
   }
+  if (choice_.keep) add_copies(settings);
   if (unreachable_ > 0)
     desk_->notices.push_back(
         fmt::format("node {}: {} values of {} have no Modbus register and stay as they are", node_,
                     unreachable_, title_));
   return {};
+}
+
+/// What the drive takes from its parameters at its start has to stand there too, unless the file says what
+/// does.
+void RestoreTarget::add_copies(const std::map<ObjectAddress, std::string_view>& settings) {
+  auto all = wanted_;
+  session::add_stored_copies(*desk_->profile, node_, all);
+  for (auto& [object, value] : all) {
+    const auto setting = settings.find(object);
+    const bool reached =
+        desk_->session->modbus() == nullptr || desk_->profile->rules.modbus.register_of(object);
+    if (setting != settings.end() && setting->second.empty() && reached)
+      wanted_.emplace(object, std::move(value));
+  }
 }
 
 /// A text and a domain are as long as what is written.

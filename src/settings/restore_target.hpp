@@ -17,6 +17,7 @@ struct RestoreChoice {
   bool with_address = false;  ///< Node-ID and bitrate as well.
   bool force = false;         ///< Although identity or family are others; what does not fit is left out.
   bool skip_invalid = false;  ///< Values that the drive cannot take are named and left out.
+  bool keep = false;          ///< They are to survive power-off.
   bool only_looks = false;    ///< Nothing will be written: that the drive is energised is no hindrance.
 };
 
@@ -49,6 +50,7 @@ class RestoreTarget {
   bool is_own_address(ObjectAddress object) const;
   Result<void> leave_out(const Backup::Entry& entry, std::string_view reason);
   Result<void> choose_values();
+  void add_copies(const std::map<ObjectAddress, std::string_view>& settings);
   Result<void> read_present();
   bool same_length(ObjectAddress object, const Bytes& data) const;
   std::uint32_t line_of(ObjectAddress object) const;

@@ -59,7 +59,9 @@ class Restoring {
 
   Result<Value> carry_through() {
     if (const auto known = take_up_journals(); !known) return fail(known.error());
-    RestoreTarget target(*desk_, *backup_, title_, node_, options_.choice);
+    auto choice = options_.choice;
+    choice.keep = options_.keep;
+    RestoreTarget target(*desk_, *backup_, title_, node_, choice);
     if (const auto fits = target.prepare(); !fits) return fail(fits.error());
     if (const auto same = hold_to_expected(target.present()); !same) return fail(same.error());
     auto comparison = compare(desk_->profile, {fmt::format("node {}", node_), node_, target.present()},

@@ -31,6 +31,19 @@ TEST_F(BackupTest, OfAnotherToolWritesSettingsOnly) {
   EXPECT_NE(console.out_text.find("\"raw\":500,"), std::string::npos) << console.out_text;
 }
 
+// Pn0116 is what the drive takes 1017h from at its start (its `mirror` in the data of the family).
+TEST_F(BackupTest, OfAnotherToolIsKeptWhereTheDriveTakesItFromAtItsStart) {
+  spill("foreign.dcf", kForeign);
+  ASSERT_EQ(run("restore %foreign.dcf --keep --yes"), 0) << console.err_text;
+  EXPECT_NE(console.out_text.find("Pn0116"), std::string::npos) << console.out_text;
+  ASSERT_EQ(run("nmt reset --wait --yes"), 0) << console.err_text;
+  EXPECT_EQ(run("verify %foreign.dcf"), 0) << console.out_text;
+  // What the file says of the parameter itself stays.
+  spill("both.csv", "index,sub,type,value\n0x1017,0,u16,700\n0x2000,0x75,u16,300\n");
+  ASSERT_EQ(run("restore %both.csv --keep --yes"), 0) << console.err_text;
+  EXPECT_EQ(run("verify %both.csv"), 0) << console.out_text;
+}
+
 std::string entry(std::uint16_t index, std::uint8_t sub, std::uint32_t value, std::size_t size) {
   Bytes out = store_le(index, 2);
   out.push_back(sub);

@@ -12,7 +12,7 @@ import time
 
 from pty_terminal import Terminal, expect, failures
 
-servoctl = sys.argv[1]
+servoctl = os.path.abspath(sys.argv[1])
 cell = f"local:memory-{os.getpid()}"
 other = f"local:memory-other-{os.getpid()}"
 env = {k: v for k, v in os.environ.items() if not k.startswith("SERVOCTL_")}
@@ -72,6 +72,58 @@ def last_place(state):
     t.see(r"servoctl> ")
     t.type("\x04")
     expect("exit code after a damaged file", 0, t.exit_code())
+
+
+def place_in_a_cabinet(state):
+    """Names of a cabinet file are taken where that file is in use, and nowhere else."""
+    here = os.path.join(state, "here")
+    elsewhere = os.path.join(state, "elsewhere")
+    for folder, node in ((here, 1), (elsewhere, 2)):
+        os.mkdir(folder)
+        with open(os.path.join(folder, "cabinet.toml"), "w", encoding="utf-8") as out:
+            out.write(f'[bus.main]\nurl = "{cell}"\n[axis.lift]\nbus = "main"\nnode = {node}\nfamily = "gsd600"\n')
+    at = os.getcwd()
+    try:
+        os.chdir(here)
+        t = Terminal(servoctl, state=state)
+        t.see(r"servoctl> ")
+        t.type("use lift\n")
+        t.see(r"main lift gsd600[^>]*> ")
+        t.type("exit\n")
+        t.exit_code()
+        t = Terminal(servoctl, state=state)
+        t.see(r"as last time \([^)]*\): lift, cabinet [^\n]*here/cabinet.toml")
+        t.see(r"main lift gsd600[^>]*> ")
+        t.type("read 0x6061\n")
+        t.see(r"lift +1 +0x6061[^>]*> ")
+        t.type("bus main\n")
+        t.see(r"lift gsd600[^>]*> ")
+        t.type("exit\n")
+        t.exit_code()
+        t = Terminal(servoctl, state=state)
+        t.see(r"as last time \([^)]*\): bus main, lift, cabinet")
+        t.see(r"main lift gsd600[^>]*> ")
+        t.type("exit\n")
+        t.exit_code()
+        os.chdir(elsewhere)
+        t = Terminal(servoctl, state=state)
+        t.see(r"not as last time \(bus main, lift, cabinet [^\n]*here/cabinet.toml\): the cabinet file is another one")
+        t.see(r"servoctl> ")
+        t.type("exit\n")
+        t.exit_code()
+        os.chdir(at)
+        t = Terminal(servoctl, state=state)
+        t.see(r"not as last time [^\n]*: no cabinet file is in use here")
+        t.see(r"servoctl> ")
+        t.type("exit\n")
+        t.exit_code()
+        t = Terminal(servoctl, "--cabinet", os.path.join(here, "cabinet.toml"), state=state)
+        t.see(r"as last time \([^)]*\): bus main, lift, cabinet")
+        t.see(r"main lift gsd600[^>]*> ")
+        t.type("exit\n")
+        t.exit_code()
+    finally:
+        os.chdir(at)
 
 
 def undo(state):
@@ -208,7 +260,7 @@ try:
         if value() is not None and run("read", "0x1000", "-n", "2", bus=other).returncode == 0:
             break
         time.sleep(0.05)
-    for part in (last_place, undo, log, full_disk):
+    for part in (last_place, place_in_a_cabinet, undo, log, full_disk):
         with tempfile.TemporaryDirectory() as folder:
             part(folder)
 finally:

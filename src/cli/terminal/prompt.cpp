@@ -150,7 +150,7 @@ void Prompt::rest() {
 void Prompt::keep_place() {
   const auto& now = shell_->defaults();
   const auto place = now.bus + "\n" + now.nodes + "\n" + now.drive;
-  if (std::exchange(kept_, place) != place) keep_last_place(now, folder_);
+  if (std::exchange(kept_, place) != place) keep_last_place(*shell_, folder_);
 }
 
 int Prompt::run() {

@@ -33,14 +33,6 @@ Result<void> check_nodes(Shell& shell, const Settings& settings, const std::stri
   return {};
 }
 
-/// The bus of the settings; a bus of the cabinet by its name.
-Result<session::Session*> open_bus(Shell& shell, const Settings& settings) {
-  const bool may_be_name = settings.bus.find(':') == std::string::npos;
-  const auto cabinet = may_be_name ? shell.cabinet(settings) : Result<const cabinet::Cabinet*>(nullptr);
-  const auto* bus = cabinet && *cabinet != nullptr ? (*cabinet)->bus(settings.bus) : nullptr;
-  return shell.open(bus == nullptr ? settings : on_bus(**cabinet, settings, *bus).settings);
-}
-
 /// A node, and the bus it is on.
 struct Place {
   std::string bus;
@@ -90,6 +82,13 @@ void add_states(Shell& shell, const std::vector<Place>& places, PromptText& out)
 }
 
 }  // namespace
+
+Result<session::Session*> open_chosen_bus(Shell& shell, const Settings& settings) {
+  const bool may_be_name = settings.bus.find(':') == std::string::npos;
+  const auto cabinet = may_be_name ? shell.cabinet(settings) : Result<const cabinet::Cabinet*>(nullptr);
+  const auto* bus = cabinet && *cabinet != nullptr ? (*cabinet)->bus(settings.bus) : nullptr;
+  return shell.open(bus == nullptr ? settings : on_bus(**cabinet, settings, *bus).settings);
+}
 
 PromptText prompt_text(Shell& shell) {
   const auto& settings = shell.defaults();
@@ -147,7 +146,7 @@ std::optional<Outcome> choose(Shell& shell, const std::vector<std::string>& word
   auto settings = chosen(shell, shell.defaults(), words);
   if (!settings) return failed(settings.error(), shell.defaults(), word->name);
   if (word->name == "bus")
-    if (const auto opened = open_bus(shell, *settings); !opened)
+    if (const auto opened = open_chosen_bus(shell, *settings); !opened)
       return failed(opened.error(), shell.defaults(), word->name);
   shell.defaults() = std::move(*settings);
   return Outcome{.command = std::string(word->name), .settings = shell.defaults()};

@@ -31,6 +31,9 @@ bool is_exit(const std::vector<std::string>& words);
 /// Whether the line begins with `use`, `drive` or `bus`.
 bool is_choice(const std::vector<std::string>& words);
 
+/// Opens the bus of the settings; a bus of the cabinet by its name. Errors as Shell::open().
+Result<session::Session*> open_chosen_bus(Shell& shell, const Settings& settings);
+
 /// Does what `use`, `drive` and `bus` say: they change the defaults of the shell. Empty for any other line.
 std::optional<Outcome> choose(Shell& shell, const std::vector<std::string>& words);
 
