@@ -24,7 +24,7 @@ check() {  # check NAME PATTERN
 }
 check 'without git' 0.1.0
 git init -q .
-check 'without a commit' 0.1.0
+check 'without a commit, as of a tree that git does not trust' '0.1.0~unknown'
 git add . && git commit -qm one
 check 'without a tag' '0.1.0~1.g???????'
 echo more >>CHANGELOG.md
