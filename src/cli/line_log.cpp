@@ -43,22 +43,31 @@ Result<std::unique_ptr<LineLog>> LineLog::open(const std::filesystem::path& file
   return std::unique_ptr<LineLog>(new LineLog(std::move(descriptor), name));
 }
 
+LineLog::~LineLog() { end_line(); }
+
 void LineLog::typed(std::string_view line) {
-  if (!begun_.empty()) put("  ", std::exchange(begun_, {}));
-  put("> ", line);
+  end_line();
+  put(time_of_day(), "> ", line);
 }
 
 void LineLog::answered(std::string_view text) {
-  for (auto end = text.find('\n'); end != std::string_view::npos; end = text.find('\n')) {
-    put("  ", std::exchange(begun_, {}) + std::string(text.substr(0, end)));
+  while (!text.empty()) {
+    if (begun_.empty()) begun_at_ = time_of_day();
+    const auto end = text.find('\n');
+    begun_ += text.substr(0, end);
+    if (end == std::string_view::npos) return;
+    put(begun_at_, "  ", std::exchange(begun_, {}));
     text.remove_prefix(end + 1);
   }
-  begun_ += text;
 }
 
-void LineLog::put(std::string_view mark, std::string_view line) {
+void LineLog::end_line() {
+  if (!begun_.empty()) put(begun_at_, "  ", std::exchange(begun_, {}));
+}
+
+void LineLog::put(std::string_view time, std::string_view mark, std::string_view line) {
   if (!file_) return;
-  const auto record = fmt::format("{} {}{}\n", time_of_day(), mark, line);
+  const auto record = fmt::format("{} {}{}\n", time, mark, line);
   const auto written = ::write(file_.get(), record.data(), record.size());
   if (written == static_cast<ssize_t>(record.size())) return;
   const int error = written < 0 ? errno : ENOSPC;

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """What a prompt remembers: where it was last time, what its last write replaced (undo), and what goes into a log.
 usage: prompt_memory_test.py SERVOCTL"""
+import datetime
 import json
 import os
 import re
@@ -215,6 +216,7 @@ def log(state):
     t.see(r"Pn0214")
     t.type("nmt reset\n")
     t.see(r"\[y/N\] ")
+    time.sleep(0.5)  # The question has the time when it was asked.
     t.type("n\n")
     t.see(r"not confirmed[^>]*> ")
     with open(file, encoding="utf-8") as written:  # While the prompt goes on.
@@ -224,6 +226,9 @@ def log(state):
                    rf"^{stamp}   .*\[y/N\] $", rf"^{stamp} > n$", rf"^{stamp}   error: not confirmed; nothing was sent$"):
         if not re.search(wanted, text, re.MULTILINE):
             failures.append(f"the log has no {wanted!r}: {text!r}")
+    times = [datetime.datetime.fromisoformat(found[1]) for found in re.finditer(r"^(\S+)Z (?:  .*\[y/N\] |> n)$", text, re.MULTILINE)]
+    if len(times) != 2 or (times[1] - times[0]).total_seconds() < 0.4:
+        failures.append(f"times of question and answer: {times}")
     t.type("log off\n")
     t.see(r"went into [^>]*> ")
     t.type("read statusword\n")
