@@ -35,9 +35,12 @@ def runs(row):
 
 
 def text_element(run):
+    """Held to its columns in whatever font there is: by its length, wide characters each by its place."""
     column, text, columns, red = run
+    places = [number((column + 2 * i) * CELL) for i in range(len(text))] if width(text[0]) == 2 else [number(column * CELL)]
+    length = f' textLength="{number(columns * CELL)}"' if len(places) == 1 else ""
     colour = ' class="r"' if red else ""
-    return f'<text x="{number(column * CELL)}" textLength="{number(columns * CELL)}"{colour}>{escape(text)}</text>'
+    return f'<text x="{" ".join(places)}"{length}{colour}>{escape(text)}</text>'
 
 
 class Film:
@@ -122,7 +125,7 @@ class Reader:
             if part.tag == NAMESPACE + "use":
                 self.paint(self.definitions[part.get("href")[1:]], top, rows)
                 continue
-            column = round(float(part.get("x")) / CELL)
+            column = round(float(part.get("x").split()[0]) / CELL)
             for character in part.text:
                 rows[top // LINE][column] = (character, part.get("class") == "r") if character != " " else BLANK
                 if width(character) == 2:
