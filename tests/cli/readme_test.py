@@ -56,14 +56,20 @@ def tour(document, fewest):
     return document
 
 
-def table(readme):
+def table(readme, heads=("command", "what it does"), translated=False):
+    """The readme with the commands as they are now. What a translation says of a command is kept."""
+    begin, end = "<!-- commands: begin -->", "<!-- commands: end -->"
+    words = dict(re.findall(r"^\| `(.+?)` \| (.+) \|$", readme[readme.index(begin):], flags=re.M)) if translated else {}
     listing = subprocess.run([servoctl, "help"], capture_output=True, text=True, check=True).stdout
-    rows = ["| command | what it does |", "|---|---|"]
+    rows = [f"| {heads[0]} | {heads[1]} |", "|---|---|"]
     for line in listing.split("Commands:\n")[1].split("\n\n")[0].splitlines():
         name, summary = re.match(r"  (\S+(?: \S+)*?) {2,}(.*)", line).groups()
-        rows.append(f"| `{name}` | {summary} |")
-    body = "<!-- commands: begin -->\n" + "\n".join(rows) + "\n<!-- commands: end -->"
-    return re.sub(r"<!-- commands: begin -->.*<!-- commands: end -->", lambda _: body, readme, flags=re.S)
+        rows.append(f"| `{name}` | {words.get(name, summary)} |")
+    return re.sub(f"{begin}.*{end}", lambda _: "\n".join([begin, *rows, end]), readme, flags=re.S)
+
+
+def chinese_table(readme):
+    return table(readme, ("命令", "作用"), translated=True)
 
 
 def check(name, fewest, change=lambda text: text):
@@ -85,6 +91,7 @@ def check(name, fewest, change=lambda text: text):
 
 PAGES = [
     ("README.md", 8, table),
+    ("README.zh.md", 8, chinese_table),
     ("docs/adding-a-drive.md", 12),
     ("docs/lss.md", 4),
     ("docs/commissioning-gsd600.md", 20),
