@@ -134,7 +134,8 @@ TEST_F(RingStateTest, ADryRunChangesNothing) {
     const auto done = command::find_command(path)->run(context, arguments);
     ASSERT_TRUE(done) << path << ": " << done.error().message;
     EXPECT_TRUE(context.errors.empty()) << path << ": " << notices();
-    EXPECT_EQ(report::to_json(*done).find("\"frame\":\""), std::string::npos) << path << report::to_json(*done);
+    EXPECT_EQ(report::to_json(*done).find("\"frame\":\""), std::string::npos)
+        << path << report::to_json(*done);
   }
   EXPECT_EQ(slave().state(), EscState::pre_op);
   EXPECT_EQ(held(objects::kModeOfOperation), mode);

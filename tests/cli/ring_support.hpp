@@ -23,7 +23,7 @@ using command::Arguments;
 using session::NodeState;
 using sim::EscState;
 using std::chrono::milliseconds;
-using Words = std::initializer_list<std::pair<std::string_view, std::string>>;
+using RingWords = std::initializer_list<std::pair<std::string_view, std::string>>;
 
 /// Commands on a ring of simulated slaves, in virtual time.
 class RingTest : public session::EtherCatTest {
@@ -48,11 +48,11 @@ class RingTest : public session::EtherCatTest {
   }
 
   /// Runs one command as the shell does; its notices and errors are in `context`.
-  std::string run(std::string_view path, std::vector<std::uint8_t> nodes = {}, Words words = {}) {
+  std::string run(std::string_view path, std::vector<std::uint8_t> nodes = {}, RingWords words = {}) {
     return run_on(*session_, path, std::move(nodes), words);
   }
   std::string run_on(session::Session& session, std::string_view path, std::vector<std::uint8_t> nodes,
-                     Words words = {}) {
+                     RingWords words = {}) {
     Arguments arguments;
     for (const auto& [name, value] : words) arguments.add(name, value);
     context = {};
