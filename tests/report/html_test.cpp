@@ -57,6 +57,39 @@ TEST(Html, DrawsPlots) {
   EXPECT_TRUE(html.starts_with("<h4>samples</h4>\n<svg "));
 }
 
+TEST(Html, LetsNoTitleEndTheStyleSheet) {
+  Page page;
+  page.title = "a</style><script>\"; } b";
+  page.foot = "back\\slash & \n";
+  page.sections = {{"\" }", 2, {}, {}, true}};
+  const auto html = html_page(page);
+  EXPECT_EQ(html.find("</style><script>"), std::string::npos);
+  EXPECT_NE(
+      html.find("content: \"a\\00003C \\00002F style\\00003E \\00003C script\\00003E \\000022 \\00003B  "
+                "\\00007D  b\";"),
+      std::string::npos);
+  EXPECT_NE(html.find("content: \"back\\00005C slash \\000026  \\00005C n\";"), std::string::npos);
+  EXPECT_NE(html.find("content: \"\\000022  \\00007D \";"), std::string::npos);
+}
+
+TEST(Html, BeginsASheetWhereASectionSaysSoAndSignsWithinTheLast) {
+  Page page;
+  page.title = "T";
+  page.sections = {{"cover"}, {"one", 2, {}, {}, true}, {"part", 3}, {"two", 2, {}, {}, true}};
+  page.signatures = {"<who>"};
+  const auto html = html_page(page);
+  const auto body = html.substr(html.find("<body>"));
+  EXPECT_TRUE(
+      body.starts_with("<body>\n<h1>T</h1>\n<h2>cover</h2>\n<section class=\"sheet sheet1\">\n<h2>one</h2>\n"
+                       "<h3>part</h3>\n</section>\n<section class=\"sheet sheet2\">\n<h2>two</h2>\n"
+                       "<div class=\"together\">\n<h2>Signatures</h2>"))
+      << body;
+  EXPECT_TRUE(
+      body.ends_with("<tr><td>&lt;who&gt;</td><td></td><td></td><td></td></tr>\n</tbody></table>\n</div>\n"
+                     "</section>\n</body>\n</html>\n"))
+      << body;
+}
+
 TEST(Html, IsAPageThatLoadsNothing) {
   Page page;
   page.chinese = true;
