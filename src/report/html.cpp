@@ -44,7 +44,9 @@ table.signatures td { height: 4rem; vertical-align: bottom; border-bottom: 1px s
   html { font-size: 9.5pt; }
   body { max-width: none; padding: 0; font-size: 9.5pt; }
   .wide { overflow: visible; }
-  table.rows td, table.rows th, .short { overflow-wrap: anywhere; white-space: normal; }
+  table.rows td { overflow-wrap: anywhere; }
+  table.rows thead th, .short { white-space: normal; }
+  .tiny { white-space: nowrap; }
   thead { display: table-header-group; }
   tr, svg, .together { break-inside: avoid; }
   h1, h2, h3, h4, h5, h6, .note { break-after: avoid; }
@@ -68,6 +70,8 @@ bool is_nothing(const Value& value) {
 
 /// Cells up to this width stay in one line.
 constexpr std::size_t kShort = 20;
+/// On paper, which does not scroll, only those up to this one.
+constexpr std::size_t kTiny = 8;
 /// The lowest level of headings.
 constexpr int kLowest = 6;
 
@@ -140,7 +144,8 @@ class Writer {
 
   static std::string_view cell_style(const Value& value, bool number) {
     if (number || value.is_number()) return " class=\"number\"";
-    return display_width(line_text(value)) <= kShort ? " class=\"short\"" : "";
+    const auto width = display_width(line_text(value));
+    return width <= kTiny ? " class=\"short tiny\"" : width <= kShort ? " class=\"short\"" : "";
   }
 
   /// The lines first, then what is larger than a line, as in text.

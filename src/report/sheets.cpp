@@ -10,13 +10,14 @@
 namespace servoctl::report {
 namespace {
 
-/// What fits into a head or a foot beside another text.
-constexpr std::size_t kMarginColumns = 60;
+/// What fits into the head of a sheet beside another text, and into the foot beside the number.
+constexpr std::size_t kHeadColumns = 50;
+constexpr std::size_t kFootColumns = 100;
 
 /// Text as a string of CSS, which no character of it can end, in a <style> that none can end either.
-std::string css_string(std::string_view text) {
+std::string css_string(std::string_view text, std::size_t columns) {
   std::string out;
-  for (const char c : clip(printable(text), kMarginColumns)) {
+  for (const char c : clip(printable(text), columns)) {
     const auto byte = static_cast<unsigned char>(c);
     const bool plain = byte >= 0x80 || c == ' ' || (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') ||
                        (c >= 'A' && c <= 'Z');
@@ -34,7 +35,7 @@ std::string sheet_rules(const Page& page) {
       "  @bottom-left {{ content: {}; text-align: left; white-space: nowrap; }}\n"
       "  @bottom-right {{ content: counter(page) \" / \" counter(pages); }} }}\n"
       "@page :first {{ @top-left {{ content: none; }} }}\n",
-      css_string(page.title), css_string(page.foot));
+      css_string(page.title, kHeadColumns), css_string(page.foot, kFootColumns));
   std::size_t sheet = 0;
   for (const auto& section : page.sections)
     if (section.new_sheet) {
@@ -42,7 +43,7 @@ std::string sheet_rules(const Page& page) {
       out += fmt::format(
           "@page sheet{0} {{ @top-right {{ content: {1}; text-align: right; white-space: nowrap; }} }}\n"
           ".sheet{0} {{ page: sheet{0}; break-before: page; }}\n",
-          sheet, css_string(section.title));
+          sheet, css_string(section.title, kHeadColumns));
     }
   return out;
 }

@@ -66,7 +66,8 @@ std::string report_page(const show::Desk& desk, const Report& report) {
   if (desk.chinese) page.translate = heading_zh;
   page.picture = cover.logo.uri();
   page.signatures = cover.signatures;
-  page.foot = joined({cover.customer, cover.machine, time}, ", ");
+  constexpr std::size_t kFootName = 36;  // Columns: both and the time fit into one line.
+  page.foot = joined({clip(cover.customer, kFootName), clip(cover.machine, kFootName), time}, ", ");
   page.sections.push_back({say(desk, "Summary", "概要"), 2, told(desk, report.head)});
   page.sections.push_back({say(desk, "Drives", "驱动器"), 2, told(desk, drive_table(desk, report))});
   page.sections.push_back({report.bus.title, 2, told(desk, List{report.link, report.bus.value}),

@@ -22,9 +22,9 @@ TEST(Html, ShowsWhatTextShows) {
       "<tr><th>is energised</th><td>no</td></tr>\n<tr><th>modes</th><td>pp, pv</td></tr>\n</tbody></table>\n"
       "<h4>objects</h4>\n<div class=\"wide\"><table class=\"rows\">\n"
       "<thead><tr><th>object</th><th>name</th><th class=\"number\">value</th></tr></thead>\n<tbody>\n"
-      "<tr><td class=\"short\">0x6040</td><td class=\"short\">Controlword</td><td "
+      "<tr><td class=\"short tiny\">0x6040</td><td class=\"short\">Controlword</td><td "
       "class=\"number\">6</td></tr>\n"
-      "<tr><td class=\"short\">0x607A</td><td class=\"short\">目标位置</td><td "
+      "<tr><td class=\"short tiny\">0x607A</td><td class=\"short tiny\">目标位置</td><td "
       "class=\"number\">–</td></tr>\n</tbody></table></div>\n");
 }
 
