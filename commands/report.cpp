@@ -2,18 +2,16 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/calendar.hpp"
 #include "base/file.hpp"
 #include "base/text.hpp"
-#include "base/version.hpp"
 #include "cabinet/cabinet.hpp"
 #include "command/command.hpp"
 #include "command/output_form.hpp"
 #include "command/registry.hpp"
-#include "session/open_bus.hpp"
 #include "trial/comm_trial.hpp"
 #include "trial/drive_report.hpp"
 #include "trial/earlier_tests.hpp"
+#include "trial/report_head.hpp"
 #include "trial/verdict.hpp"
 
 namespace servoctl::commands {
@@ -33,7 +31,17 @@ constexpr Parameter kReportParameters[] = {
      .help = "the file, like FILE; or the output format: text, json, jsonl",
      .kind = Kind::file,
      .short_name = "-o"},
-    {.name = "--title", .help = "title of the report: the machine, the axis", .kind = Kind::text},
+    {.name = "--title", .help = "title of the report (default: Commissioning report)", .kind = Kind::text},
+    {.name = "--customer", .help = "for whom the report is made", .kind = Kind::text},
+    {.name = "--machine", .help = "the machine that the drives belong to", .kind = Kind::text},
+    {.name = "--operator", .help = "who commissioned it", .kind = Kind::text},
+    {.name = "--logo",
+     .help = "picture on the first page: PNG, JPEG or SVG, up to 1 MiB",
+     .kind = Kind::file},
+    {.name = "--signatures",
+     .help = "who signs at the end, with commas between; none (default with --customer: Commissioning "
+             "engineer,Customer)",
+     .kind = Kind::text},
     {.name = "--tests",
      .help = "results of earlier tests (test … --json >FILE); may be repeated",
      .kind = Kind::file,
@@ -82,13 +90,13 @@ class Collection {
   Collection(Context& context, const std::vector<TestResult>& earlier)
       : context_(&context), earlier_(&earlier) {}
 
-  Result<trial::Report> make(std::string title) {
-    out_.title = title.empty() ? say("Commissioning report", "调试报告") : std::move(title);
-    const auto time = utc_now_text();
+  Result<trial::Report> make(trial::ReportCover cover) {
+    out_.cover = std::move(cover);
+    if (out_.cover.title.empty()) out_.cover.title = say("Commissioning report", "调试报告");
     auto bus = part("bus", say("Bus", "总线"), "scan", {}, {});
     if (!bus) return fail(bus.error());
     out_.bus = std::move(*bus);
-    out_.link = link_record();
+    out_.link = trial::link_record(*context_);
     for (const auto node : context_->nodes) {
       auto drive = of_drive(node);
       if (!drive) return fail(drive.error());
@@ -96,42 +104,13 @@ class Collection {
     }
     // Of the whole command now: said once.
     if (answered_ == 0) return fail(std::exchange(context_->errors, {}).front());
-    const auto& rules = context_->profile->rules;
-    const auto& name = context_->chinese && !rules.name_zh.empty() ? rules.name_zh : rules.name;
-    out_.head = {
-        {"time", time, Show::everywhere, say("made at", "生成时间")},
-        {"tool", fmt::format("servoctl {}", version()), Show::everywhere, say("made with", "生成工具")},
-        {"bus", context_->session->url(), Show::everywhere, say("bus", "总线")},
-        {"family", fmt::format("{} ({} {})", context_->profile->family, rules.vendor, name), Show::text,
-         say("drive family", "驱动器系列")},
-        {"family", context_->profile->family, Show::json},
-        {"tests_text", tests_text(), Show::text, say("tests", "测试")},
-        {"tests_passed", failed_ == 0, Show::json}};
+    out_.head = trial::report_head(*context_, out_.cover, tests_);
     return std::move(out_);
   }
 
  private:
   std::string say(std::string_view english, std::string_view chinese) const {
     return trial::say(*context_, english, chinese);
-  }
-
-  std::string tests_text() const {
-    const auto passed = tests_ - failed_;
-    return failed_ == 0 ? say(fmt::format("{} passed", passed), fmt::format("{} 项通过", passed))
-                        : say(fmt::format("{} passed, {} FAILED", passed, failed_),
-                              fmt::format("{} 项通过，{} 项未通过", passed, failed_));
-  }
-
-  Value link_record() const {
-    const auto link = session::link_of(context_->session->url());
-    if (!link) return {};
-    const auto or_null = [](const auto& value) { return value ? Value(*value) : Value(); };
-    return Record{
-        {"bitrate", or_null(link->bitrate), Show::everywhere, say("bitrate (bit/s)", "波特率 (bit/s)")},
-        {"controller", link->health ? Value(can::name(*link->health)) : Value(), Show::everywhere,
-         say("controller", "CAN 控制器")},
-        {"tx_errors", or_null(link->tx_errors), Show::everywhere, say("send errors", "发送错误计数")},
-        {"rx_errors", or_null(link->rx_errors), Show::everywhere, say("receive errors", "接收错误计数")}};
   }
 
   /// Runs a command for one drive (for the bus where there is none). A difference or a fault is what a report
@@ -216,9 +195,9 @@ class Collection {
     for (const auto& result : *earlier_)
       if (result.node == node && !is_superseded(result)) drive.tests.push_back(result);
     for (const auto& result : drive.tests) {
-      ++tests_;
+      ++tests_.all;
       if (passed(result)) continue;
-      ++failed_;
+      ++tests_.failed;
       context_->errors.push_back(trial::failure(result));
     }
     return {};
@@ -228,9 +207,25 @@ class Collection {
   const std::vector<TestResult>* earlier_;
   trial::Report out_;
   std::size_t answered_ = 0;
-  std::size_t tests_ = 0;
-  std::size_t failed_ = 0;
+  trial::TestCount tests_;
 };
+
+Result<trial::ReportCover> cover_of(const Context& context, const Arguments& arguments) {
+  return trial::read_cover(context, {.title = arguments.text("--title"),
+                                     .customer = arguments.text("--customer"),
+                                     .machine = arguments.text("--machine"),
+                                     .operator_name = arguments.text("--operator"),
+                                     .logo = arguments.text("--logo"),
+                                     .signatures = arguments.text("--signatures")});
+}
+
+Result<void> check_report(Context& context, const Arguments& arguments) {
+  const auto file = file_of(arguments);
+  if (!file) return fail(file.error());
+  if (const auto form = form_of(*file); !form) return fail(form.error());
+  const auto cover = cover_of(context, arguments);
+  return cover ? Result<void>() : fail(cover.error());
+}
 
 Result<Value> run_report(Context& context, const Arguments& arguments) {
   const auto named = file_of(arguments);
@@ -249,7 +244,9 @@ Result<Value> run_report(Context& context, const Arguments& arguments) {
       context.notices.push_back(fmt::format("`test {}` of node {} is not in the report: add the node to -n",
                                             result.test, result.node));
   if (const auto same = trial::check_tested(context, earlier); !same) return fail(same.error());
-  const auto made = Collection(context, earlier).make(std::string(arguments.text("--title")));
+  auto cover = cover_of(context, arguments);
+  if (!cover) return fail(cover.error());
+  const auto made = Collection(context, earlier).make(std::move(*cover));
   if (!made) return fail(made.error());
   const auto text =
       *form == Form::html ? trial::report_page(context, *made) : trial::report_json(context, *made);
@@ -270,14 +267,16 @@ const Command kReport{
     .details =
         "Identity and firmware, state, faults and their history, settings not at factory value, PDOs, other "
         "nodes on the bus, and a communication test; with --tests also results and plots of earlier tests, "
-        "refused if they are from another drive. The page needs no network and prints on A4; --lang zh makes "
-        "it Chinese. Moves nothing and changes nothing. The file is written whole or not at all; exit code 1 "
-        "when a test in it failed.",
+        "refused if they are from another drive. The page needs no network and prints on A4, each drive on a "
+        "new sheet; --lang zh makes it Chinese. --customer, --machine, --operator and --logo stand on the first "
+        "page, lines to be signed (--signatures) at the end; the picture is part of the file. Moves nothing and "
+        "changes nothing. The file is written whole or not at all; exit code 1 when a test in it failed.",
     .parameters = kReportParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::reads,
     .family = FamilyCheck::always,
     .run = run_report,
+    .check = check_report,
 };
 
 }  // namespace servoctl::commands

@@ -9,7 +9,7 @@ _servoctl_scan() {
       continue
     fi
     case $word in
-      --bus|-b|--node|-n|--drive|-d|--cabinet|--timeout|--retries|--output|-o|--lang|--trace|--bitrate|--sample-point|--restart-ms|--txqueuelen|--for|--type|--to|--transfer|--from|--format|--only|--family|--name|--axis|--backup|--wait|--plan|--assign|--patience|--vendor|--product|--revision|--serial|--activate|--turn|--turns|--accel|--csv|--limit|--max-torque|--max-following-error|--window|--master-node|--speed|--search|--offset|--within|--nameplate|--guard|--life|--inhibit|--event|--cob-id|--sync-start|--count|--longest|--junit|--expect|--tolerance|--stop-within|--repeat|--spread|--encoder|--title|--tests|--period|--counter|--every|--svg|--service|--object|--var|--listen|--allow) skip=$word ;;
+      --bus|-b|--node|-n|--drive|-d|--cabinet|--timeout|--retries|--output|-o|--lang|--trace|--bitrate|--sample-point|--restart-ms|--txqueuelen|--for|--type|--to|--transfer|--from|--format|--only|--family|--name|--axis|--backup|--wait|--plan|--assign|--patience|--vendor|--product|--revision|--serial|--activate|--turn|--turns|--accel|--csv|--limit|--max-torque|--max-following-error|--window|--master-node|--speed|--search|--offset|--within|--nameplate|--guard|--life|--inhibit|--event|--cob-id|--sync-start|--count|--longest|--junit|--expect|--tolerance|--stop-within|--repeat|--spread|--encoder|--title|--customer|--machine|--operator|--logo|--signatures|--tests|--period|--counter|--every|--svg|--service|--object|--var|--listen|--allow) skip=$word ;;
       -*) ;;
       *)
         case $command in
@@ -83,6 +83,11 @@ _servoctl_scan() {
       --spread) source='none' ;;
       --encoder) source='none' ;;
       --title) source='none' ;;
+      --customer) source='none' ;;
+      --machine) source='none' ;;
+      --operator) source='none' ;;
+      --logo) source='files' ;;
+      --signatures) source='none' ;;
       --tests) source='files' ;;
       --period) source='none' ;;
       --counter) source='none' ;;
@@ -228,7 +233,7 @@ _servoctl_scan() {
     'test jog') options+=' --for --tolerance --stop-within --accel --csv --junit --limit --max-torque --max-following-error --window --turn --master-node --plot' ;;
     'test home') options+=' --repeat --spread --encoder --csv --junit --limit --max-torque --max-following-error --window --turn --master-node --plot' ;;
     'test all') options+=' --expect --for --tolerance --stop-within --no-home --repeat --spread --encoder --accel --junit --limit --max-torque --max-following-error --window --turn --master-node --plot' ;;
-    'report') options+=' --output --title --tests' ;;
+    'report') options+=' --output --title --customer --machine --operator --logo --signatures --tests' ;;
     'sync start') options+=' --period --counter --for' ;;
     'watch') options+=' --every --for --changes --plot' ;;
     'scope') options+=' --for --map --every --csv --svg --plot' ;;

@@ -16,7 +16,7 @@ function __servoctl_path # the words that are neither options nor their values
     for word in (commandline -opc)[2..]
         if test $skip = 1
             set skip 0
-        else if contains -- $word --bus -b --node -n --drive -d --cabinet --timeout --retries --output -o --lang --trace --bitrate --sample-point --restart-ms --txqueuelen --for --type --to --transfer --from --format --only --family --name --axis --backup --wait --plan --assign --patience --vendor --product --revision --serial --activate --turn --turns --accel --csv --limit --max-torque --max-following-error --window --master-node --speed --search --offset --within --nameplate --guard --life --inhibit --event --cob-id --sync-start --count --longest --junit --expect --tolerance --stop-within --repeat --spread --encoder --title --tests --period --counter --every --svg --service --object --var --listen --allow
+        else if contains -- $word --bus -b --node -n --drive -d --cabinet --timeout --retries --output -o --lang --trace --bitrate --sample-point --restart-ms --txqueuelen --for --type --to --transfer --from --format --only --family --name --axis --backup --wait --plan --assign --patience --vendor --product --revision --serial --activate --turn --turns --accel --csv --limit --max-torque --max-following-error --window --master-node --speed --search --offset --within --nameplate --guard --life --inhibit --event --cob-id --sync-start --count --longest --junit --expect --tolerance --stop-within --repeat --spread --encoder --title --customer --machine --operator --logo --signatures --tests --period --counter --every --svg --service --object --var --listen --allow
             set skip 1
         else if not string match -q -- '-*' $word
             set path $path $word
@@ -435,7 +435,12 @@ complete -c servoctl -n '__servoctl_in test all' -l plot -d 'plot the samples ov
 complete -c servoctl -n __servoctl_at -a report -d 'Write a commissioning report: one page, or JSON'
 complete -c servoctl -n '__servoctl_in report' -r -F
 complete -c servoctl -n '__servoctl_in report' -l output -s o -r -F -d 'the file, like FILE; or the output format: text, json, jsonl'
-complete -c servoctl -n '__servoctl_in report' -l title -x -d 'title of the report: the machine, the axis'
+complete -c servoctl -n '__servoctl_in report' -l title -x -d 'title of the report (default: Commissioning report)'
+complete -c servoctl -n '__servoctl_in report' -l customer -x -d 'for whom the report is made'
+complete -c servoctl -n '__servoctl_in report' -l machine -x -d 'the machine that the drives belong to'
+complete -c servoctl -n '__servoctl_in report' -l operator -x -d 'who commissioned it'
+complete -c servoctl -n '__servoctl_in report' -l logo -r -F -d 'picture on the first page: PNG, JPEG or SVG, up to 1 MiB'
+complete -c servoctl -n '__servoctl_in report' -l signatures -x -d 'who signs at the end, with commas between; none (default with --customer: Commissioning engineer,Customer)'
 complete -c servoctl -n '__servoctl_in report' -l tests -r -F -d 'results of earlier tests (test … --json >FILE); may be repeated'
 complete -c servoctl -n '__servoctl_at sync' -a once -d 'Send one SYNC; asks first'
 complete -c servoctl -n '__servoctl_at sync' -a start -d 'Produce SYNC at a fixed period; asks first'

@@ -22,6 +22,12 @@ Result<void> check_allowed(const command::Command& command, const command::Argum
   return {};
 }
 
+Result<void> check_words(const command::Command& command, command::Context& context,
+                         const command::Arguments& arguments) {
+  if (command.check == nullptr || command.family != command::FamilyCheck::always) return {};
+  return command.check(context, arguments);
+}
+
 Result<void> check_network(const command::Command& command, session::Session& session) {
   const auto refuse = [&](std::string_view kind) {
     auto hint = command.elsewhere.empty()

@@ -9,6 +9,10 @@ namespace servoctl::cli {
 /// Whether the command may run at all: --read-only refuses what changes a drive, and a line is no batch file.
 Result<void> check_allowed(const command::Command& command, const command::Arguments& arguments,
                            const Settings& settings);
+/// What a command's own check finds in the words of a line whose drives are asked for their family before it
+/// runs: told before anything is opened. `context` has no family yet.
+Result<void> check_words(const command::Command& command, command::Context& context,
+                         const command::Arguments& arguments);
 /// Whether the command can be run on this network: one that speaks in frames needs CAN. Errc::usage.
 Result<void> check_network(const command::Command& command, session::Session& session);
 /// The same, and whether it may give drives power there, if it does so (Errc::refused).

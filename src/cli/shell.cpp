@@ -147,10 +147,10 @@ Result<void> Shell::prepare(Run& run, const command::Arguments& arguments) {
   const auto& command = *run.command;
   if (const auto allowed = check_allowed(command, arguments, run.settings); !allowed) return allowed;
   const bool on_bus = includes(command.needs, Needs::bus) && !command.opens_bus;
-  // What is wrong in the line itself is told before a bus is opened, and before a drive is asked for its
-  // family.
+  // What is wrong in the line itself is told before a bus is opened or a drive asked for its family.
   if (on_bus && includes(command.needs, Needs::node) && run.settings.nodes.empty())
     return fail(no_node(command));
+  if (const auto right = check_words(command, run.context, arguments); !right) return right;
   if (!run.settings.drive.empty() || includes(command.needs, Needs::dictionary))
     if (const auto ready = prepare_profile(run, command.effect_with(arguments) > Effect::reads); !ready)
       return ready;

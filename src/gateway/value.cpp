@@ -5,7 +5,7 @@
 
 #include "base/number.hpp"
 #include "base/text.hpp"
-#include "gateway/base64.hpp"
+#include "base/base64.hpp"
 #include "gateway/words.hpp"
 #include "od/value.hpp"
 

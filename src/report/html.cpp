@@ -6,6 +6,7 @@
 #include "base/text.hpp"
 #include "report/line.hpp"
 #include "report/markup.hpp"
+#include "report/sheets.hpp"
 #include "report/svg.hpp"
 
 namespace servoctl::report {
@@ -35,15 +36,22 @@ table.rows td { border-bottom: 1px solid #ccc; }
 .short { white-space: nowrap; }
 .number { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
 svg { display: block; max-width: 100%; height: auto; margin: .5rem 0; }
-@page { size: A4; margin: 16mm 14mm 18mm; }
+.picture { display: block; max-width: 16rem; max-height: 6rem; margin: 0 0 1rem; }
+table.signatures { width: 100%; table-layout: fixed; }
+table.signatures th { font-weight: normal; color: #444; }
+table.signatures td { height: 4rem; vertical-align: bottom; border-bottom: 1px solid #111; overflow-wrap: anywhere; }
 @media print {
   html { font-size: 9.5pt; }
   body { max-width: none; padding: 0; font-size: 9.5pt; }
   .wide { overflow: visible; }
   table.rows td { overflow-wrap: anywhere; }
+  table.rows thead th, .short { white-space: normal; }
+  .tiny { white-space: nowrap; }
   thead { display: table-header-group; }
-  tr, svg { break-inside: avoid; }
-  h1, h2, h3, h4, h5, h6 { break-after: avoid; }
+  tr, svg, .together { break-inside: avoid; }
+  h1, h2, h3, h4, h5, h6, .note { break-after: avoid; }
+  tr:has(th:empty) { break-before: avoid; }
+  .sheet > h2 { margin-top: 0; }
   p { orphans: 3; widows: 3; }
 }
 )";
@@ -62,6 +70,8 @@ bool is_nothing(const Value& value) {
 
 /// Cells up to this width stay in one line.
 constexpr std::size_t kShort = 20;
+/// On paper, which does not scroll, only those up to this one.
+constexpr std::size_t kTiny = 8;
 /// The lowest level of headings.
 constexpr int kLowest = 6;
 
@@ -74,7 +84,7 @@ class Writer {
     if (const auto* table = std::get_if<Table>(&value.data())) return write_table(*table);
     if (const auto* record = std::get_if<Record>(&value.data())) return write_record(*record, level);
     if (const auto* plot = std::get_if<Plot>(&value.data())) {
-      out_ += svg_plot(plot->series);
+      out_ += *translate_ ? svg_plot(plot->series, (*translate_)("no samples")) : svg_plot(plot->series);
       return;
     }
     if (const auto* list = std::get_if<List>(&value.data()); list != nullptr && is_block(value)) {
@@ -134,7 +144,8 @@ class Writer {
 
   static std::string_view cell_style(const Value& value, bool number) {
     if (number || value.is_number()) return " class=\"number\"";
-    return display_width(line_text(value)) <= kShort ? " class=\"short\"" : "";
+    const auto width = display_width(line_text(value));
+    return width <= kTiny ? " class=\"short tiny\"" : width <= kShort ? " class=\"short\"" : "";
   }
 
   /// The lines first, then what is larger than a line, as in text.
@@ -167,19 +178,30 @@ std::string to_html(const Value& value, const Translate& translate, int level) {
 
 std::string html_page(const Page& page) {
   std::string body;
+  if (!page.picture.empty())
+    body += fmt::format("<img class=\"picture\" alt=\"\" src=\"{}\">\n", escaped(page.picture));
+  body += fmt::format("<h1>{}</h1>\n", escaped(page.title));
+  std::size_t sheets = 0;
   for (const auto& section : page.sections) {
+    if (section.new_sheet)
+      body +=
+          fmt::format("{}<section class=\"sheet sheet{}\">\n", sheets > 0 ? "</section>\n" : "", sheets + 1);
+    sheets += section.new_sheet;
     body += fmt::format("<h{0}>{1}</h{0}>\n", section.level, escaped(section.title));
-    if (!section.note.empty()) body += "<p>" + escaped(section.note) + "</p>\n";
+    if (!section.note.empty()) body += "<p class=\"note\">" + escaped(section.note) + "</p>\n";
     body += to_html(section.value, page.translate, section.level + 1);
   }
+  body += signature_lines(page);
+  if (sheets > 0) body += "</section>\n";
   // Nothing may be loaded or run, whatever a mistake in here would let through.
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"{}\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
-      "style-src 'unsafe-inline'\">\n"
+      "style-src 'unsafe-inline'{}\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<title>{}</title>\n<style>{}</style>\n</head>\n<body>\n<h1>{}</h1>\n{}</body>\n</html>\n",
-      page.chinese ? "zh-CN" : "en", escaped(page.title), kStyle, escaped(page.title), body);
+      "<title>{}</title>\n<style>{}{}</style>\n</head>\n<body>\n{}</body>\n</html>\n",
+      page.chinese ? "zh-CN" : "en", page.picture.empty() ? "" : "; img-src data:", escaped(page.title),
+      kStyle, sheet_rules(page), body);
 }
 
 }  // namespace servoctl::report

@@ -27,8 +27,15 @@ struct Page {
     int level = 2;          ///< 2: of the page; 3: of the section before.
     Value value = {};       ///< May be null: only the heading.
     std::string note = {};  ///< A sentence below the heading.
+    /// On paper it begins a new sheet, and all sheets up to the next such section carry its title at their
+    /// head.
+    bool new_sheet = false;
   };
   std::vector<Section> sections = {};
+  std::string picture = {};  ///< Above the title: a data: URI of image/…; empty: none.
+  std::string foot = {};     ///< At the foot of each sheet, beside its number, where the browser can.
+  /// Lines to be signed at the end, together on one sheet; empty: none.
+  std::vector<std::string> signatures = {};
 };
 std::string html_page(const Page& page);
 

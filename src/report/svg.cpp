@@ -107,9 +107,9 @@ std::string label(double x, double y, std::string_view anchor, const std::string
                      x, y, anchor, escaped(text));
 }
 
-std::string panel(const Series& series, const Extent& time, double top) {
+std::string panel(const Series& series, const Extent& time, double top, std::string_view no_samples) {
   const auto extent = extent_of(series.values);
-  if (!extent) return label(kLeft, top + 14, "start", title_of(series) + ": no samples");
+  if (!extent) return label(kLeft, top + 14, "start", fmt::format("{}: {}", title_of(series), no_samples));
   const auto axis = axis_of(*extent, kMostTicks);
   std::string out = label(kLeft, top + 14, "start", title_of(series));
   top += kTitle;
@@ -144,7 +144,7 @@ double height_of(const Series& series) { return extent_of(series.values) ? kTitl
 
 }  // namespace
 
-std::string svg_plot(std::span<const Series> series) {
+std::string svg_plot(std::span<const Series> series, std::string_view no_samples) {
   if (series.empty()) return {};
   const auto time = time_extent(series).value_or(Extent{0, 1});
   std::string names;
@@ -152,7 +152,7 @@ std::string svg_plot(std::span<const Series> series) {
   double top = 0;
   for (const auto& one : series) {
     append(names, title_of(one));
-    drawing += panel(one, time, top);
+    drawing += panel(one, time, top, no_samples);
     top += height_of(one) + kPlotGap;
   }
   top -= kPlotGap;

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "base/base64.hpp"
 #include "base/duration.hpp"
 #include "base/printable.hpp"
 #include "canopen/sdo_abort.hpp"
-#include "gateway/base64.hpp"
 
 namespace servoctl::session {
 namespace {
@@ -35,7 +35,7 @@ void GatewayObjectChannel::start_download(ObjectAddress object, Bytes data, Time
     return;
   }
   ask(fmt::format("{} {} w 0x{:04X} {} d {}", network_->address_.network, node_, object.index, object.sub,
-                  gateway::to_base64(data)));
+                  to_base64(data)));
 }
 
 void GatewayObjectChannel::ask(std::string request) {
@@ -93,7 +93,7 @@ Result<Bytes> GatewayObjectChannel::result_of(const gateway::Client::Outcome& ou
   if (answer.kind == Kind::error || answer.kind == Kind::abort) return fail(refusal(answer));
   if (writes_ && answer.kind == Kind::ok) return Bytes();
   if (!writes_ && answer.kind == Kind::value)
-    if (auto bytes = gateway::parse_base64(answer.text)) return std::move(*bytes);
+    if (auto bytes = parse_base64(answer.text)) return std::move(*bytes);
   return fail(drive_error(Errc::protocol, node_, object_,
                           fmt::format("the gateway answers '{}'", printable(answer.text.substr(0, 60))),
                           "is it one of CiA 309-3, in its ASCII form?"));

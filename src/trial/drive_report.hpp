@@ -6,6 +6,7 @@
 #include "report/html.hpp"
 #include "report/verdict.hpp"
 #include "show/desk.hpp"
+#include "trial/report_cover.hpp"
 
 /// What is written down of drives when they are handed over.
 namespace servoctl::trial {
@@ -27,8 +28,8 @@ struct DriveReport {
 };
 
 struct Report {
-  std::string title;
-  report::Record head;  ///< When, with what, where, and how the tests ended.
+  ReportCover cover;    ///< With the title.
+  report::Record head;  ///< As report_head() makes it.
   ReportPart bus;       ///< Who is there.
   report::Value link;   ///< What the kernel knows of the interface; null for other buses.
   std::vector<DriveReport> drives;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <utility>
 
 namespace servoctl::trial {
@@ -78,16 +79,38 @@ constexpr std::array kWords{
     Pair{"min", "最小"},
     Pair{"median", "中位数"},
     Pair{"max", "最大"},
+    Pair{"name_zh", "中文名称"},
+    Pair{"station", "站地址"},
+    Pair{"alias", "别名"},
+    Pair{"ports", "端口"},
+    Pair{"alarm", "报警"},
+    Pair{"inputs on", "接通的输入"},
+    Pair{"outputs on", "接通的输出"},
+    Pair{"no samples", "无采样数据"},
 };
+
+constexpr std::array kTests{
+    Pair{"comm", "通信测试"},
+    Pair{"io", "输入测试"},
+    Pair{"jog", "点动测试"},
+    Pair{"home", "回零测试"},
+};
+
+std::string chinese_of(std::span<const Pair> words, std::string_view word) {
+  const auto found =
+      std::find_if(words.begin(), words.end(), [&](const Pair& pair) { return pair.first == word; });
+  return std::string(found == words.end() ? std::string_view() : found->second);
+}
 
 }  // namespace
 
 std::string heading_zh(std::string_view heading) {
   // `node 1`: the column of one drive in a comparison.
   if (heading.starts_with("node ")) return "节点 " + std::string(heading.substr(5));
-  const auto* found =
-      std::find_if(kWords.begin(), kWords.end(), [&](const Pair& pair) { return pair.first == heading; });
-  return std::string(found == kWords.end() ? heading : found->second);
+  auto chinese = chinese_of(kWords, heading);
+  return chinese.empty() ? std::string(heading) : chinese;
 }
+
+std::string test_zh(std::string_view test) { return chinese_of(kTests, test); }
 
 }  // namespace servoctl::trial

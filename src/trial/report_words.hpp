@@ -9,4 +9,7 @@ namespace servoctl::trial {
 /// (`TPDO1`, `603Fh`).
 std::string heading_zh(std::string_view heading);
 
+/// What a test is called in Chinese: `通信测试` of `comm`; empty for one that has no name.
+std::string test_zh(std::string_view test);
+
 }  // namespace servoctl::trial

@@ -95,15 +95,55 @@ def earlier_tests(path):
         json.dump({"servoctl": 1, "command": "test jog", "ok": True, "bus": None, "result": result, "notices": []}, out)
 
 
+def many_criteria(path):
+    """A test of 60 criteria with long names and notes: a table of several sheets that is wider than one."""
+    note = "what was seen, told at such length that it takes a second line, and on paper a third one; "
+    criteria = [{"id": f"c{i}", "name": f"criterion {i} with a name that says what was looked at", "verdict": "passed", "figure": i,
+                 "relation": "<=", "limit": 100, "unit": "%", "note": note + "W" * (90 if i == 5 else 0)} for i in range(60)]
+    result = [{"test": "jog", "node": 1, "passed": True, "seconds": 4, "criteria": criteria, "samples": []}]
+    with open(path, "w") as out:
+        json.dump({"servoctl": 1, "command": "test jog", "ok": True, "bus": None, "result": result, "notices": []}, out)
+
+
+def printed(page):
+    """The text of each sheet of paper, and the place of its rightmost word in points."""
+    paper = page + ".pdf"
+    browser("--no-pdf-header-footer", f"--print-to-pdf={paper}", "file://" + page)
+    text = subprocess.run(["pdftotext", "-layout", paper, "-"], capture_output=True, text=True).stdout
+    words = subprocess.run(["pdftotext", "-bbox", paper, "-"], capture_output=True, text=True).stdout
+    return text.split("\f")[:-1], max(float(x) for x in re.findall(r'xMax="([\d.]+)"', words))
+
+
+def look_at_sheets(page, titles, signed_by, foot):
+    """Each drive begins a sheet, is named on all that follow, and the lines to be signed stand together."""
+    sheets, right = printed(page)
+    check("no word is cut off at the right", right < 595 - 30, right)
+    begun = [i for i, sheet in enumerate(sheets) for title in titles
+             if any(line.strip() == title for line in sheet.splitlines()[1:])]
+    check("each drive begins a sheet of its own, the first behind the title block", len(set(begun)) == len(titles) and min(begun) == 1,
+          begun)
+    named = [next((title for title in titles if sheet.splitlines()[0].endswith(title)), None) for sheet in sheets]
+    wanted = [None] + [titles[sum(at <= i for at in begun) - 1] for i in range(1, len(sheets))]
+    check("each sheet carries the name of its drive", named == wanted, named)
+    for i, sheet in enumerate(sheets):
+        check("each sheet is numbered, and says whose it is", re.search(rf"{i + 1} ?/ ?{len(sheets)}$", sheet, re.M) and foot in sheet, sheet[-200:])
+    signed = [i for i, sheet in enumerate(sheets) if any(re.search(rf"^\s*{who}$", sheet, re.M) for who in signed_by)]
+    check("the signatures stand on the last sheet, together", set(signed) == ({len(sheets) - 1} if signed_by else set()), signed)
+    return sheets
+
+
 def look_at(page, sections, plots):
     with open(page, encoding="utf-8") as file:
         html = file.read()
     url = "file://" + page
     tags = re.sub(r'"[^"]*"', '""', html)
-    check("it loads nothing", not re.search(r"<[^>]*\b(src|href)\s*=|@import|url\(", tags))
+    pictures = re.findall(r'<img class="picture" alt="" src="data:image/[a-z+]+;base64,[A-Za-z0-9+/=]+">', html)
+    check("one picture at most", len(pictures) <= 1, len(pictures))
+    if not pictures:
+        check("it loads nothing", not re.search(r"<[^>]*\b(src|href)\s*=|@import|url\(", tags))
     dom, console = browser("--dump-dom", url)
     check("no errors in the browser's console", console == [], console)
-    check("no markup came out of a value", not re.search(r"<(script|img)", dom) and "<title>1<" not in dom)
+    check("no markup came out of a value", not re.search(r"<script|<img(?! class=\"picture\")", dom) and "<title>1<" not in dom)
     headings = re.findall(r"<h[1-4][^>]*>(.*?)</h[1-4]>", dom)
     for section in sections:
         check(f"there is a section {section}", section in headings, headings)
@@ -162,6 +202,29 @@ with tempfile.TemporaryDirectory() as work:
     names = re.compile(r"[RT]PDO\d+|95 %|Dn_12")  # What has no other name in Chinese.
     english = [word for word in words if word.isascii() and not names.match(word)]
     check("every heading of the Chinese page is Chinese", english == [], english)
+
+    logo = f"{work}/logo.svg"
+    with open(logo, "w") as file:
+        file.write('<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 90 30" onload="document.title=1">'
+                   '<script>document.title=1</script><rect width="90" height="30"/></svg>')
+    many_criteria(f"{work}/many.json")
+    servoctl("report", f"{work}/customer.html", "-n", "1-5", "-b", ",".join(f"{'sim:' * (i == 1)}gsd600@{i}" for i in range(1, 6)),
+             "-d", "gsd600", "--customer", HOSTILE, "--machine", "Press 3 三号", "--operator", "A. Fitter", "--logo", logo,
+             "--tests", f"{work}/many.json", "--signatures", "Fitter,Customer")
+    dom, console = browser("--dump-dom", f"file://{work}/customer.html")
+    check("no script of the picture runs, nothing is refused", console == [] and "<title>1<" not in dom, console)
+    check("what the customer is called is text", "<td>&lt;script&gt;document.title=1" in dom)
+    sheets = look_at_sheets(f"{work}/customer.html", [f"Node {i}" for i in range(1, 6)], ["Fitter", "Customer"], "Press 3")
+    heads = [i for i, sheet in enumerate(sheets) if re.search(r"verdict +criterion +figure +limit", sheet)]
+    check("a long table has its headings on every sheet", len([i for i in heads if i < 8]) > 4, heads)
+    rows = re.findall(r"criterion (\d+)", "".join(sheets))
+    check("all rows are on paper", sorted(set(map(int, rows))) == list(range(60)), rows)
+    browser(f"--screenshot={work}/customer.png", "--window-size=400,120", f"file://{work}/customer.html")
+    with open(f"{work}/customer.png", "rb") as file:
+        check("the picture is drawn", grey(file.read())[2] > 0.05)
+
+    servoctl("report", f"{work}/plain.html", "-n", "1", "-b", "coe:sim:sv2@1", "-d", "sv2", "--title", "Lift \"7\" </style>")
+    look_at_sheets(f"{work}/plain.html", ["Node 1"], [], "20")
 
     servoctl("report", f"{work}/hostile.html", "-n", "1", "-b", "sim:hostile@1", "-d", "hostile")
     dom, _ = look_at(f"{work}/hostile.html", ["Identity"], 0)

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "base/base64.hpp"
 #include "gateway/address.hpp"
 #include "gateway/answer.hpp"
-#include "gateway/base64.hpp"
 #include "gateway/client.hpp"
 #include "gateway/line_reader.hpp"
 #include "gateway/request.hpp"
@@ -72,8 +72,8 @@ void check_answer(const std::string& line) {
   const auto again = gateway::parse_answer(gateway::value_line(answer->sequence, answer->text));
   fuzz::require(again && again->sequence == answer->sequence && again->text == answer->text,
                 "a value that is written is read again");
-  if (const auto bytes = gateway::parse_base64(answer->text))
-    fuzz::require(gateway::parse_base64(gateway::to_base64(*bytes)) == bytes, "base64 goes both ways");
+  if (const auto bytes = parse_base64(answer->text))
+    fuzz::require(parse_base64(to_base64(*bytes)) == bytes, "base64 goes both ways");
 }
 
 /// What a client makes of the answers, as one text.

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "gateway/base64.hpp"
+#include "base/base64.hpp"
 #include "gateway/words.hpp"
 
 namespace servoctl::gateway {

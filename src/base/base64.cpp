@@ -1,9 +1,9 @@
-#include "gateway/base64.hpp"
+#include "base/base64.hpp"
 
 #include <algorithm>
 #include <cstdint>
 
-namespace servoctl::gateway {
+namespace servoctl {
 namespace {
 
 constexpr std::string_view kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -42,4 +42,4 @@ std::optional<Bytes> parse_base64(std::string_view text) {
   return out;
 }
 
-}  // namespace servoctl::gateway
+}  // namespace servoctl
