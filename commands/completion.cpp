@@ -2,7 +2,6 @@
 
 #include "base/text.hpp"
 #include "command/command.hpp"
-#include "command/completion_words.hpp"
 #include "command/shell_completion.hpp"
 #include "drive/naming.hpp"
 #include "drive/topics.hpp"
@@ -16,7 +15,7 @@ constexpr std::string_view kWhat[] = {"bash", "zsh", "fish", "objects", "paramet
 
 constexpr Parameter kCompletionParameters[] = {
     {.name = "what",
-     .help = "a shell, or the names it asks for while you type",
+     .help = "a shell; or names for scripts, one a line",
      .kind = Kind::choice,
      .required = true,
      .choices = kWhat},
@@ -76,7 +75,9 @@ const Command kCompletion{
     .details =
         "bash: put `source <(servoctl completion bash)` into ~/.bashrc. zsh: `servoctl completion zsh > "
         "_servoctl` in a folder of $fpath. fish: `servoctl completion fish > "
-        "~/.config/fish/completions/servoctl.fish`. An installed servoctl includes all three.",
+        "~/.config/fish/completions/servoctl.fish`. An installed servoctl includes all three. At each Tab the "
+        "script asks the program, which completes the line as the prompt does, for its -b, -n, -d and --cabinet "
+        "or the environment: it reads files, opens no bus and sends nothing.",
     .parameters = kCompletionParameters,
     .needs = Needs::nothing,
     .effect = Effect::none,

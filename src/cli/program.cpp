@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <span>
 
 #include "base/printable.hpp"
 #include "base/standard_input.hpp"
@@ -20,6 +21,7 @@
 #include "cli/parse.hpp"
 #include "cli/shell.hpp"
 #include "cli/state_folder.hpp"
+#include "cli/tab_answer.hpp"
 #include "cli/terminal/console.hpp"
 #include "cli/terminal/prompt.hpp"
 #include "cli/terminal/signals.hpp"
@@ -99,7 +101,20 @@ int run_lines(Shell& shell, const std::vector<std::string>& words, StandardConso
   return run_prompt(shell, console);
 }
 
+/// For the completion script of a shell. It waits for nothing, so that a signal ends it.
+int run_tab(const std::vector<std::string>& words, StandardConsole& console) {
+  Shell::Options options;
+  options.defaults = settings_from_environment();
+  options.drive_folders = drive::drive_folders();
+  options.state_folder = state_folder_as_it_is();
+  Shell shell(console, std::move(options));
+  const auto answer = answer_tab(std::span(words).subspan(1), shell);
+  if (!answer.empty()) console.out(answer + "\n");
+  return 0;
+}
+
 int run(const std::vector<std::string>& words, StandardConsole& console) {
+  if (!words.empty() && words.front() == kTabQuestion) return run_tab(words, console);
   Shell::Options options;
   options.defaults = settings_from_environment();
   options.drive_folders = drive::drive_folders();

@@ -118,6 +118,7 @@ class Shell {
   /// As BusHolder::open_register_end().
   Result<std::unique_ptr<session::RegisterEnd>> open_register_end(const Settings& settings);
   const std::vector<std::filesystem::path>& drive_folders() const { return options_.drive_folders; }
+  const std::filesystem::path& state_folder() const { return options_.state_folder; }
 
   /// Lines about what nodes told since the last call.
   std::vector<std::string> take_notices(const drive::Profile* profile, bool chinese);

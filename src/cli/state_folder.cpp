@@ -5,17 +5,19 @@
 
 namespace servoctl::cli {
 
-std::filesystem::path state_folder() {
-  std::filesystem::path base;
+std::filesystem::path state_folder_as_it_is() {
   if (const char* state = std::getenv("XDG_STATE_HOME"); state != nullptr && *state != '\0')
-    base = state;
-  else if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0')
-    base = std::filesystem::path(home) / ".local/state";
-  else
-    return {};
+    return std::filesystem::path(state) / "servoctl";
+  if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0')
+    return std::filesystem::path(home) / ".local/state/servoctl";
+  return {};
+}
+
+std::filesystem::path state_folder() {
+  auto folder = state_folder_as_it_is();
   std::error_code error;
-  std::filesystem::create_directories(base / "servoctl", error);
-  return error ? std::filesystem::path() : base / "servoctl";
+  if (!folder.empty()) std::filesystem::create_directories(folder, error);
+  return error ? std::filesystem::path() : folder;
 }
 
 }  // namespace servoctl::cli

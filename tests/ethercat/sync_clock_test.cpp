@@ -10,7 +10,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kSlave = SlaveAddress::station(0x1001);
+constexpr auto kClockSlave = SlaveAddress::station(0x1001);
 
 /// A slave whose clock runs at another speed than the master's, at the end of a wire that takes no time.
 class SyncClockTest : public testing::Test {
@@ -60,7 +60,7 @@ class SyncClockTest : public testing::Test {
   unsigned seed_ = 1;
   Ring ring_{Ring::Options{}};
   ProcessImage image_{ProcessImage::Options{}};
-  SyncClock clock_{kSlave, 4ms};
+  SyncClock clock_{kClockSlave, 4ms};
 };
 
 TEST_F(SyncClockTest, TheFirstPulseIsAWholeCycleAtLeastATenthOfASecondAhead) {

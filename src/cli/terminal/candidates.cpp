@@ -2,16 +2,13 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <array>
+#include <cstdlib>
 #include <filesystem>
 
 #include "base/printable.hpp"
 #include "base/text.hpp"
-#include "can/socketcan.hpp"
 #include "command/registry.hpp"
 #include "drive/topics.hpp"
-#include "session/open_port.hpp"
-#include "session/open_register_line.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -27,17 +24,44 @@ bool is_shown_as_it_is(std::string_view word) {
   return ascii || printable(word) == word;
 }
 
+/// `list, get, set`: what a first word of several commands goes on with.
+std::string second_words(std::string_view first) {
+  std::string out;
+  for (const auto* command : command::registry())
+    if (const auto parts = split(command->path, ' '); parts.size() > 1 && parts.front() == first)
+      append(out, parts[1]);
+  return out;
+}
+
+/// Whether the name has one of these endings, ASCII case ignored; any has none of none.
+bool ends_as(std::string_view name, std::span<const std::string_view> endings) {
+  return endings.empty() || std::any_of(endings.begin(), endings.end(), [&](std::string_view ending) {
+           return name.size() >= ending.size() &&
+                  equals_nocase(name.substr(name.size() - ending.size()), ending);
+         });
+}
+
 bool begins_hidden(const std::string& name, std::string_view begun) {
   return name.starts_with(".") && !begun.starts_with(".");
 }
 
 }  // namespace
 
-Candidates::Candidates(std::string begun, Shell& shell, std::string family)
-    : begun_(std::move(begun)),
-      shell_(&shell),
-      family_(std::move(family)),
-      chinese_(shell.defaults().chinese) {}
+Candidates::Candidates(std::string begun, Shell& shell, BegunPlace place)
+    : begun_(std::move(begun)), shell_(&shell), place_(std::move(place)), chinese_(place_.settings.chinese) {}
+
+Candidates Candidates::behind(std::size_t bytes) const {
+  Candidates out(begun_.substr(bytes), *shell_, place_);
+  // Of files behind something a shell knows nothing.
+  out.place_.in_shell = false;
+  return out;
+}
+
+void Candidates::take_behind(std::size_t bytes, Candidates value) {
+  const auto before = begun_.substr(0, bytes);
+  for (const auto& one : value.take()) add(before + one.word, one.hint);
+  note_ = value.note();
+}
 
 bool Candidates::fits(std::string_view word) const { return starts_with_nocase(word, begun_); }
 
@@ -48,8 +72,8 @@ void Candidates::add(std::string_view word, std::string_view hint) {
 }
 
 const drive::Profile* Candidates::profile() {
-  if (family_.empty()) return nullptr;
-  const auto loaded = shell_->profile(family_);
+  if (place_.family.empty()) return nullptr;
+  const auto loaded = shell_->profile(place_.family);
   return loaded ? *loaded : nullptr;
 }
 
@@ -61,50 +85,27 @@ void Candidates::add_commands(const std::vector<std::string>& words, std::size_t
     if (typed >= parts.size()) continue;
     bool goes_on = true;
     for (std::size_t i = 0; i < typed; ++i) goes_on = goes_on && parts[i] == words[first + i];
-    if (goes_on) add(parts[typed], parts.size() == typed + 1 ? command->summary : std::string_view("..."));
-  }
-}
-
-void Candidates::add_families() {
-  for (const auto& family : drive::find_families(shell_->drive_folders())) add(family.name);
-}
-
-void Candidates::add_buses() {
-  for (const auto& interface : can::can_interfaces()) add(interface);
-  for (const auto word : {"sim:", "local:", "slcan:/dev/", "socketcand://", "gateway://"}) add(word);
-  for (const auto& url : session::ethercat_urls()) add(url);
-  for (const auto& url : session::modbus_urls()) add(url);
-}
-
-std::string Candidates::heard_of(std::uint8_t node) {
-  auto* session = shell_->session();
-  std::string out;
-  if (session == nullptr) return out;
-  if (const auto state = session->watch().state(node)) out = session->network().state_word(*state);
-  const auto* identity = session->identities().find(node, session->watch().boots(node));
-  if (identity != nullptr && !identity->device_name.empty()) append(out, identity->device_name);
-  if (session->watch().boots(node) > 0 && out.empty()) out = "booted";
-  return out;
-}
-
-void Candidates::add_nodes() {
-  // Of a list the last part is completed.
-  const auto comma = begun_.rfind(',');
-  const auto before = comma == std::string::npos ? std::string() : begun_.substr(0, comma + 1);
-  if (before.empty()) add("all", "every node that answers");
-  if (const auto cabinet = shell_->cabinet(shell_->defaults()); cabinet && *cabinet != nullptr)
-    for (const auto& name : (*cabinet)->names()) add(before + name, "axis of the cabinet");
-  const auto used = parse_nodes(shell_->defaults().nodes);
-  for (std::uint8_t node = 1; node <= 127; ++node) {
-    const auto heard = heard_of(node);
-    const bool is_used = used && std::find(used->begin(), used->end(), node) != used->end();
-    if (!heard.empty() || is_used) add(before + std::to_string(node), heard.empty() ? "in use" : heard);
+    if (goes_on)
+      add(parts[typed],
+          parts.size() == typed + 1 ? std::string(command->summary) : second_words(parts.front()));
   }
 }
 
 void Candidates::add_values(const command::Command* command, const command::Parameter& parameter,
                             const std::vector<std::string>& before) {
   for (const auto choice : parameter.choices) add(choice);
+  add_kind(command, parameter, before);
+  if (command != nullptr) add_known_word(*command, parameter);
+  if (!out_.empty() || any_file_ || !note_.empty()) return;
+  const bool is_name = parameter.kind == Kind::object || parameter.kind == Kind::parameter;
+  if (is_name && place_.family.empty())
+    note_ = "-d FAMILY before it tells which names there are";
+  else if (!parameter.help.empty())
+    note_ = fmt::format("{}: {}", parameter.name, parameter.help);
+}
+
+void Candidates::add_kind(const command::Command* command, const command::Parameter& parameter,
+                          const std::vector<std::string>& before) {
   switch (parameter.kind) {
     case Kind::object: return add_objects();
     case Kind::parameter:
@@ -117,11 +118,11 @@ void Candidates::add_values(const command::Command* command, const command::Para
     case Kind::bus: return add_buses();
     case Kind::nodes: return add_nodes();
     case Kind::topic: return add_topics(before);
-    case Kind::file: return add_files();
+    case Kind::file: any_file_ = place_.in_shell; return place_.in_shell ? void() : add_files();
     case Kind::command: return add_commands(before, 0);
+    case Kind::duration: return add_durations();
     default: break;
   }
-  if (command != nullptr) add_known_word(*command, parameter);
 }
 
 /// The next word of the names that begin with those before; first also objects and parameters.
@@ -140,22 +141,29 @@ void Candidates::add_topics(const std::vector<std::string>& before) {
   if (before.empty()) add_objects();
 }
 
-/// Folders end with a slash: what is in them follows.
-void Candidates::add_files() {
+/// What is in a folder follows behind its slash.
+void Candidates::add_files(std::span<const std::string_view> endings) {
   namespace fs = std::filesystem;
   const auto slash = begun_.rfind('/');
   const auto folder = slash == std::string::npos ? std::string() : begun_.substr(0, slash + 1);
   const auto begun = std::string_view(begun_).substr(folder.size());
+  const bool at_home = place_.in_shell && folder.starts_with("~/");
+  const char* home = at_home ? std::getenv("HOME") : nullptr;
+  const auto where = home == nullptr ? fs::path(folder) : fs::path(home) / folder.substr(2);
+  const auto before = out_.size();
   std::error_code error;
-  fs::directory_iterator at(folder.empty() ? fs::path(".") : fs::path(folder), error);
+  fs::directory_iterator at(folder.empty() ? fs::path(".") : where, error);
   for (std::size_t i = 0; !error && at != fs::directory_iterator() && i < kMostFiles;
        at.increment(error), ++i) {
     const auto name = at->path().filename().string();
     std::error_code none;
-    if (name.starts_with(begun) && !begins_hidden(name, begun))
-      add(folder + name + (at->is_directory(none) ? "/" : ""));
+    if (!name.starts_with(begun) || begins_hidden(name, begun)) continue;
+    const bool is_folder = at->is_directory(none);
+    if (is_folder ? !endings.empty() && begun_.empty() : !ends_as(name, endings)) continue;
+    add(folder + name + (is_folder ? "/" : ""));
   }
-  std::sort(out_.begin(), out_.end(), [](const Candidate& a, const Candidate& b) { return a.word < b.word; });
+  std::sort(out_.begin() + static_cast<std::ptrdiff_t>(before), out_.end(),
+            [](const Candidate& a, const Candidate& b) { return a.word < b.word; });
 }
 
 }  // namespace servoctl::cli

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "cli/terminal/candidates.hpp"
+#include "cli/terminal/begun_line.hpp"
 #include "cli/terminal/prompt_words.hpp"
 #include "command/help_text.hpp"
 #include "command/registry.hpp"
@@ -13,42 +13,6 @@ namespace {
 using command::Command;
 using command::Kind;
 using command::Parameter;
-
-/// A line of which the last word is not ready.
-struct BegunLine {
-  std::vector<std::string> words;  ///< Those before it.
-  std::string last;
-  std::size_t typed = 0;  ///< Bytes of the last one as it stands there, with quotes.
-};
-
-/// As split_words(), for a line in which a quote may still be open.
-BegunLine begun_line(std::string_view line) {
-  BegunLine out;
-  char quote = 0;
-  bool inside = false;
-  std::size_t begin = 0;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    const char c = line[i];
-    if (quote == 0 && (c == ' ' || c == '\t')) {
-      if (inside) out.words.push_back(std::move(out.last));
-      out.last.clear();
-      inside = false;
-      continue;
-    }
-    if (!inside) begin = i;
-    inside = true;
-    if (quote != 0 && c == quote)
-      quote = 0;
-    else if (quote == 0 && (c == '"' || c == '\''))
-      quote = c;
-    else if (c == '\\' && quote != '\'' && i + 1 < line.size())
-      out.last += line[++i];
-    else
-      out.last += c;
-  }
-  out.typed = inside ? line.size() - begin : 0;
-  return out;
-}
 
 /// What split_words() does not take as it is.
 constexpr std::string_view kNotPlain = " \t\"'\\#";
@@ -77,22 +41,37 @@ const Parameter* find_option(const Command* command, std::string_view word) {
   return own != nullptr ? own : find_option(command::global_options(), word);
 }
 
-std::string family_of(const std::vector<std::string>& words, Shell& shell) {
-  for (std::size_t i = 0; i + 1 < words.size(); ++i)
-    if (words[i] == "-d" || words[i] == "--drive") return words[i + 1];
-  return shell.family_in_use();
+/// How many bytes at the front of the word name an option to which its value is attached: `--bus=can0`,
+/// `-bcan0`; 0 where there is none.
+std::size_t attached_option(const Command* command, std::string_view word) {
+  const auto name = word.starts_with("--") ? word.substr(0, word.find('=')) : word.substr(0, 2);
+  const auto* option = name.size() < 2 || name.size() == word.size() ? nullptr : find_option(command, name);
+  if (option == nullptr || option->kind == Kind::flag) return 0;
+  return name.size() + (word.starts_with("--") ? 1 : 0);
+}
+
+/// The words from `at` on that are neither options nor their values.
+std::vector<std::string> arguments_in(const Command& command, const std::vector<std::string>& words,
+                                      std::size_t at) {
+  std::vector<std::string> out;
+  bool values_only = false;
+  for (; at < words.size(); ++at) {
+    const auto* option = values_only ? nullptr : find_option(&command, words[at]);
+    if (!values_only && words[at] == "--")
+      values_only = true;
+    else if (option != nullptr)
+      at += option->kind == Kind::flag ? 0U : 1U;
+    else if (values_only || attached_option(&command, words[at]) == 0)
+      out.push_back(words[at]);
+  }
+  return out;
 }
 
 void add_positional(Candidates& out, const Command& command, const std::vector<std::string>& words,
-                    std::size_t at) {
-  std::vector<std::string> before;
-  for (; at < words.size(); ++at) {
-    const auto* option = find_option(&command, words[at]);
-    if (option != nullptr && option->kind != Kind::flag)
-      ++at;
-    else if (option == nullptr)
-      before.push_back(words[at]);
-  }
+                    std::size_t at, bool nodes_typed) {
+  const auto before = arguments_in(command, words, at);
+  const bool takes_axis = includes(command.needs, command::Needs::node) && !nodes_typed;
+  if (takes_axis && at == words.size()) out.add_axes();
   std::size_t index = 0;
   for (const auto& parameter : command.parameters) {
     if (parameter.name.starts_with("-")) continue;
@@ -120,7 +99,10 @@ bool add_prompt_words(Candidates& out, const std::vector<std::string>& words) {
   return words.front() == "drive" || words.front() == "use" || words.front() == "log";
 }
 
-void add_options(Candidates& out, const Command* command) {
+/// The long names; a short one that is there already stands for itself.
+void add_options(Candidates& out, const Command* command, const std::string& last) {
+  if (const auto* known = find_option(command, last); known != nullptr && known->short_name == last)
+    return out.add(last, known->help);
   if (command != nullptr)
     for (const auto& parameter : command->parameters)
       if (parameter.name.starts_with("-")) out.add(parameter.name, parameter.help);
@@ -128,27 +110,47 @@ void add_options(Candidates& out, const Command* command) {
     if (command == nullptr || !command::has_own(*command, parameter)) out.add(parameter.name, parameter.help);
 }
 
-void add_all(Candidates& out, const std::vector<std::string>& words, const std::string& last) {
-  if (add_prompt_words(out, words)) return;
+void add_all(Candidates& out, const std::vector<std::string>& words, const std::string& last,
+             bool nodes_typed) {
   const auto match = match_command(words);
-  const auto* option = words.empty() ? nullptr : find_option(match.command, words.back());
+  const bool values_only = std::find(words.begin(), words.end(), "--") != words.end();
+  const auto* option = words.empty() || values_only ? nullptr : find_option(match.command, words.back());
   if (option != nullptr && option->kind != Kind::flag) return out.add_values(match.command, *option, {});
-  if (!last.empty() && last.front() == '-') add_options(out, match.command);
+  if (const auto name = values_only ? 0 : attached_option(match.command, last); name != 0) {
+    auto value = out.behind(name);
+    const auto end = last.starts_with("--") ? name - 1 : name;
+    value.add_values(match.command, *find_option(match.command, last.substr(0, end)), {});
+    return out.take_behind(name, std::move(value));
+  }
+  if (!last.empty() && last.front() == '-' && !values_only) add_options(out, match.command, last);
   if (match.command == nullptr) return out.add_commands(words, match.first);
-  add_positional(out, *match.command, words, match.first + match.used);
+  const auto after = match.first + match.used;
+  add_positional(out, *match.command, words, after, nodes_typed);
   // `test` is a command, and the first word of others.
-  if (words.size() == match.first + match.used) out.add_commands(words, match.first);
+  if (words.size() == after) out.add_commands(words, match.first);
 }
 
 }  // namespace
 
 Offer complete(std::string_view line, Shell& shell) {
   const auto begun = begun_line(line);
-  Candidates found(begun.last, shell, family_of(begun.words, shell));
-  add_all(found, begun.words, begun.last);
+  const auto words = shell.name_axes(begun.words, match_command(begun.words));
+  const auto place = begun_place(words, shell);
+  Candidates found(begun.last, shell, place);
+  if (!add_prompt_words(found, words)) add_all(found, words, begun.last, place.settings.nodes_typed);
   Offer out{.typed = begun.typed, .candidates = found.take(), .note = found.note()};
   for (auto& one : out.candidates)
     if (one.word.find_first_of(kNotPlain) != std::string::npos) one.word = as_word(one.word);
+  return out;
+}
+
+Candidates complete_in_shell(const std::vector<std::string>& words, const std::string& begun, Shell& shell) {
+  const auto named = shell.name_axes(words, match_command(words));
+  auto place = begun_place(named, shell);
+  place.in_shell = true;
+  Candidates out(begun, shell, place);
+  if (named.empty()) out.add("--version", "show the version");
+  add_all(out, named, begun, place.settings.nodes_typed);
   return out;
 }
 

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "cli/shell.hpp"
+#include "cli/terminal/begun_place.hpp"
+#include "cli/terminal/candidates.hpp"
 #include "cli/terminal/line_editor.hpp"
 
 namespace servoctl::cli {
@@ -11,5 +15,9 @@ namespace servoctl::cli {
 /// use, from what was heard of the bus, and from the disk. What a shell line would take for something else
 /// stands behind a backslash. No frame is sent for it.
 Offer complete(std::string_view line, Shell& shell);
+
+/// What may follow these words in the line of a shell, where `begun` was typed of the next one. Nothing is
+/// opened for it but files.
+Candidates complete_in_shell(const std::vector<std::string>& words, const std::string& begun, Shell& shell);
 
 }  // namespace servoctl::cli

@@ -88,10 +88,9 @@ void Candidates::add_assignment(const std::vector<std::string>& before) {
     return add_values_of(before.front());
   const auto equals = begun_.find('=');
   if (equals == std::string::npos) return add_panel_parameters();
-  const auto id = begun_.substr(0, equals);
-  Candidates value(begun_.substr(equals + 1), *shell_, family_);
-  value.add_values_of(id);
-  for (const auto& one : value.take()) add(id + "=" + one.word, one.hint);
+  auto value = behind(equals + 1);
+  value.add_values_of(begun_.substr(0, equals));
+  take_behind(equals + 1, std::move(value));
 }
 
 void Candidates::add_values_of(std::string_view object) {
@@ -135,13 +134,35 @@ void Candidates::add_units(std::string_view of) {
     if (of == unit || drive::conversion(unit, of)) add(number + unit);
 }
 
-/// Words that no kind tells: those of modes, methods, units, PDOs, bitrates.
-void Candidates::add_known_word(const command::Command& command, const command::Parameter& parameter) {
-  if (parameter.name == "pdo")
+/// The number that was begun, with the units of time.
+void Candidates::add_durations() {
+  if (begun_.empty() || begun_.find_first_not_of(".0123456789") != std::string::npos) return;
+  for (const auto* unit : {"ms", "s", "min"}) add(begun_ + unit);
+}
+
+/// Words of a text that is none of the kinds: each parameter of this name, of one command or of all.
+void Candidates::add_words_of(const command::Command& command, const command::Parameter& parameter) {
+  const auto is = [&](std::string_view path, std::string_view name) {
+    return (path.empty() || command.path == path) && parameter.name == name;
+  };
+  if (is("", "pdo"))
     for (const auto* side : {"RPDO", "TPDO"})
       for (int i = 1; i <= 4; ++i) add(fmt::format("{}{}", side, i));
-  if (parameter.name == "--bitrate")
+  if (is("", "--bitrate") || is("lss set-bitrate", "rate"))
     for (const auto* rate : {"125k", "250k", "500k", "1M"}) add(rate);
+  if (is("sim", "drives")) add_cells(0);
+  if (is("cabinet swap", "axis")) add_axes();
+  if (is("clone", "--from") || is("clone", "--to") || is("cabinet swap", "--from")) add_node_numbers();
+  const bool of_groups = is("backup", "--only") || is("param list", "pattern");
+  if (is("backup", "--only"))
+    for (const auto* part : {"communication", "pdo", "params", "changed"}) add(part);
+  if (const auto* known = of_groups ? profile() : nullptr; known != nullptr)
+    for (const auto& one : known->parameters) add(one.group, "group of parameters");
+}
+
+/// Words that no kind tells: those of modes, methods, units, PDOs, bitrates.
+void Candidates::add_known_word(const command::Command& command, const command::Parameter& parameter) {
+  add_words_of(command, parameter);
   for (const auto& value : kValuesOfCommands) {
     if (value.path != command.path || value.parameter != parameter.name) continue;
     add_values_of(value.object);
