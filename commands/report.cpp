@@ -270,13 +270,15 @@ const Command kReport{
         "refused if they are from another drive. The page needs no network and prints on A4, each drive on a "
         "new sheet; --lang zh makes it Chinese. --customer, --machine, --operator and --logo stand on the first "
         "page, lines to be signed (--signatures) at the end; the picture is part of the file. Moves nothing and "
-        "changes nothing. The file is written whole or not at all; exit code 1 when a test in it failed.",
+        "changes nothing. One report is of one bus and one family. The file is written whole or not at all; exit "
+        "code 1 when a test in it failed.",
     .parameters = kReportParameters,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::reads,
     .family = FamilyCheck::always,
     .run = run_report,
     .check = check_report,
+    .goes_on = true,  // One file is of one bus and family: the second would replace the first.
 };
 
 }  // namespace servoctl::commands

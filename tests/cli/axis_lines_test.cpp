@@ -131,6 +131,13 @@ TEST_F(AxisLines, TheReportNamesTheAxis) {
   EXPECT_NE(text.str().find("feeder2（节点 2）"), std::string::npos);
 }
 
+TEST_F(AxisLines, AReportIsOfOneBusAndFamilySoThatNoneReplacesAnother) {
+  const auto page = folder / "all.html";
+  EXPECT_EQ(run("report " + page.string() + " -n all"), 2) << all();
+  EXPECT_TRUE(says("'report' is for axes of one bus and one family at a time")) << all();
+  EXPECT_FALSE(std::filesystem::exists(page));
+}
+
 TEST_F(AxisLines, CabinetCommandsHoldDrivesAgainstTheFileAndNothingElse) {
   EXPECT_EQ(run("cabinet plan --force-family"), 2) << all();
   EXPECT_TRUE(says("change its `family` there")) << all();
