@@ -67,6 +67,10 @@ Result<report::Value> run_completion(Context& context, const Arguments& argument
   return report::Value(std::move(script));
 }
 
+constexpr Example kCompletionExamples[] = {
+    {"completion zsh", "the script; `help completion` says where it belongs"},
+};
+
 }  // namespace
 
 extern const Command kCompletion;
@@ -78,6 +82,7 @@ const Command kCompletion{
         "_servoctl` in a folder of $fpath. fish: `servoctl completion fish > "
         "~/.config/fish/completions/servoctl.fish`. An installed servoctl includes all three.",
     .parameters = kCompletionParameters,
+    .examples = kCompletionExamples,
     .needs = Needs::nothing,
     .effect = Effect::none,
     .run = run_completion,

@@ -168,7 +168,7 @@ _servoctl_scan() {
     'eds check') source='files' ;;
     'run') source='files' ;;
     'sim') source='none' ;;
-    'help') source='=scan bus doctor info status read write explain objects param backup cabinet diff verify restore clone address lss store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim gateway help man completion' ;;
+    'help') source='=scan bus doctor info status read write explain objects param backup cabinet diff verify restore clone address lss store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim gateway help man completion use drive undo log exit' ;;
     'completion') source='=bash zsh fish objects parameters topics families' ;;
   esac
   case $command in

@@ -489,7 +489,7 @@ complete -c servoctl -n __servoctl_at -a gateway -d 'Let clients of CiA 309-3, s
 complete -c servoctl -n '__servoctl_in gateway' -l listen -x -d '127.0.0.1:60000 (default), or a path such as /run/gateway for a local socket'
 complete -c servoctl -n '__servoctl_in gateway' -l allow -x -a 'write' -d 'write: clients may write objects and send NMT commands; without it they only read'
 complete -c servoctl -n __servoctl_at -a help -d 'Show the commands, or how one is used'
-complete -c servoctl -n '__servoctl_in help' -x -a 'scan bus doctor info status read write explain objects param backup cabinet diff verify restore clone address lss store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim gateway help man completion'
+complete -c servoctl -n '__servoctl_in help' -x -a 'scan bus doctor info status read write explain objects param backup cabinet diff verify restore clone address lss store defaults fault enable disable quick-stop mode jog move home torque units heartbeat watchdog nmt state pdo test report sync watch scope monitor decode replay drives eds run sim gateway help man completion use drive undo log exit'
 complete -c servoctl -n __servoctl_at -a man -d 'Print the manual page of servoctl'
 complete -c servoctl -n __servoctl_at -a completion -d 'Print the completion script of a shell'
 complete -c servoctl -n '__servoctl_in completion' -x -a 'bash zsh fish objects parameters topics families'

@@ -5,6 +5,7 @@
 
 #include "base/printable.hpp"
 #include "base/text.hpp"
+#include "command/prompt_words.hpp"
 #include "command/registry.hpp"
 
 namespace servoctl::command {
@@ -51,6 +52,19 @@ std::string second_words(std::string_view first) {
   return out;
 }
 
+namespace {
+
+/// Those that are not the first word of a command as well.
+std::string prompt_words_alone() {
+  std::string out;
+  for (const auto& word : prompt_words())
+    if (second_words(word.name).empty() && find_command(word.name) == nullptr)
+      out += " " + std::string(word.name);
+  return out;
+}
+
+}  // namespace
+
 std::string all_value_options() {
   auto out = options_of(global_options(), true);
   for (const auto* command : registry())
@@ -73,7 +87,7 @@ std::string source_of(const Parameter& p) {
     case Kind::bus: return "buses";
     case Kind::file: return "files";
     case Kind::nodes: return "=all";
-    case Kind::command: return "=" + first_words();
+    case Kind::command: return "=" + first_words() + prompt_words_alone();
     default: return "none";
   }
 }

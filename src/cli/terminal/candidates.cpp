@@ -8,6 +8,7 @@
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "can/socketcan.hpp"
+#include "command/prompt_words.hpp"
 #include "command/registry.hpp"
 #include "drive/topics.hpp"
 #include "session/open_port.hpp"
@@ -118,7 +119,10 @@ void Candidates::add_values(const command::Command* command, const command::Para
     case Kind::nodes: return add_nodes();
     case Kind::topic: return add_topics(before);
     case Kind::file: return add_files();
-    case Kind::command: return add_commands(before, 0);
+    case Kind::command:
+      if (before.empty())
+        for (const auto& word : command::prompt_words()) add(word.name, word.summary);
+      return add_commands(before, 0);
     default: break;
   }
   if (command != nullptr) add_known_word(*command, parameter);
