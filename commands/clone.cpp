@@ -65,7 +65,7 @@ Result<Value> run_clone(Context& context, const Arguments& arguments) {
 }
 
 constexpr Example kCloneExamples[] = {
-    {"clone --from 1 --to 2,3 -d gsd600", "show what differs, ask, and write it until power-off"},
+    {"clone --from 1 --to 2,3 -d gsd600", "show what differs, ask, and write it"},
     {"clone --from 1 --to 2-5 --keep -d gsd600", "kept over power-off"},
 };
 

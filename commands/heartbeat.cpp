@@ -164,13 +164,13 @@ Result<Value> run_show(Context& context, const Arguments&) {
 }
 
 constexpr Example kHeartbeatSetExamples[] = {
-    {"heartbeat set 100ms -n 1 -d gsd600", "send one every 100 ms, until power-off"},
+    {"heartbeat set 100ms -n 1 -d gsd600", "send one every 100 ms"},
     {"heartbeat set 500ms --keep -n all -d gsd600", "all drives, kept over power-off"},
     {"heartbeat set off -n 1 -d gsd600", "send none"},
 };
 constexpr Example kHeartbeatConsumeExamples[] = {
     {"heartbeat consume 10=500ms --keep -n 1 -d ts",
-     "node 1 reacts when node 10 is silent for half a second"},
+     "node 1 notices when node 10 is silent for half a second"},
     {"heartbeat consume 10=off -n 1 -d ts", "no longer"},
 };
 constexpr Example kHeartbeatShowExamples[] = {

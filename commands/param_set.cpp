@@ -68,7 +68,7 @@ Result<std::vector<settings::NamedValue>> parameter_values(const Arguments& argu
 }
 
 constexpr Example kParamSetExamples[] = {
-    {"param set Pn0214 45Hz -n 1 -d gsd600", "until the power goes; tells when it takes effect"},
+    {"param set Pn0214 45Hz -n 1 -d gsd600", "read back; tells when it takes effect"},
     {"param set Pn0202=50Hz Pn0214=45Hz --keep -n 1 -d gsd600", "several, kept over power-off"},
     {"param set Fn_00 20 --unlock --keep -n 1 -d ts", "one that the drive's password locks"},
 };

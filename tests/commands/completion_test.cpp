@@ -92,8 +92,7 @@ TEST(Help, OfEveryCommandShowsItsExamplesBetweenItsOptionsAndThoseOfAll) {
       EXPECT_LT(text.find("\n  " + std::string(example.line) + "\n      "), end) << example.line;
       EXPECT_TRUE((std::string(example.line) + " ").starts_with(std::string(command->path) + " "))
           << example.line;
-      EXPECT_LE(display_width(example.line), 76U) << example.line;
-      EXPECT_NE(example.what.back(), '.') << example.line;
+      EXPECT_NE(std::string_view(example.what).back(), '.') << example.line;
     }
   }
 }
