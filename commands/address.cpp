@@ -239,6 +239,12 @@ Result<void> check_address(Context& context, const Arguments& arguments) {
   return wish ? Result<void>() : fail(wish.error());
 }
 
+constexpr Example kAddressExamples[] = {
+    {"address 5 -n 1 -d gsd600", "node 1 becomes node 5"},
+    {"address --bitrate 500k -n all -d gsd600", "every drive of the bus; in force when all have restarted"},
+    {"address --plan nodes.csv -d gsd600", "renumber several by a table with the columns node,new"},
+};
+
 }  // namespace
 
 extern const Command kAddress;
@@ -247,17 +253,19 @@ const Command kAddress{
     .summary = "Give a drive another node-ID or bitrate; asks first",
     .details =
         "Writes the family's own parameter, reads it back, stores it by the family's way and restarts the "
-        "drive (NMT), or says that it is to be switched off and on: `drives FAMILY` shows which. Then the drive "
-        "is looked for at its new node-ID, and held against what it said of itself before. A node-ID that "
-        "somebody uses is refused: all that answer, and all that are heard within 1.5 s. An energised drive is "
-        "left alone. COB-IDs that did not follow the node-ID are listed. A drive with a new bitrate is not "
-        "restarted: all nodes of the bus have to be changed first, and the interface with them; what to do is "
-        "listed. Masters, and nodes that watch the heartbeat of the drive, are not told of its new number.\n\n"
-        "--plan FILE.csv renumbers several (columns node,new; serial and bitrate where wanted): all are looked "
-        "at first, and each moves when its new node-ID is free; drives that exchange theirs go through a free "
-        "one. It ends with the first that fails; FILE.csv.journal keeps how far it came, and --resume continues. "
-        "For example: address 5 -n 1; address --bitrate 500k -n all; address --plan cabinet.csv.",
+        "drive (NMT), or says that it is to be switched off and on: `drives FAMILY` shows which. Then the "
+        "drive is looked for at its new node-ID, and held against what it said of itself before. A node-ID "
+        "that somebody uses is refused: all that answer, and all that are heard within 1.5 s. An energised "
+        "drive is left alone. COB-IDs that did not follow the node-ID are listed. A drive with a new "
+        "bitrate is not restarted: all nodes of the bus have to be changed first, and the interface with "
+        "them; what to do is listed. Masters, and nodes that watch the heartbeat of the drive, are not "
+        "told of its new number.\n\n"
+        "--plan FILE.csv renumbers several (columns node,new; serial and "
+        "bitrate where wanted): all are looked at first, and each moves when its new node-ID is free; "
+        "drives that exchange theirs go through a free one. It ends with the first that fails; "
+        "FILE.csv.journal keeps how far it came, and --resume continues.",
     .parameters = kAddressParameters,
+    .examples = kAddressExamples,
     .needs = Needs::dictionary | Needs::can,
     .effect = Effect::resets,
     .run = run_address,

@@ -103,6 +103,12 @@ Result<Value> run_backup(Context& context, const Arguments& arguments) {
   return Value(std::move(table));
 }
 
+constexpr Example kBackupExamples[] = {
+    {"backup good.json -n 1 -d gsd600", "all settings of one drive"},
+    {"backup cell -n 1,2 -d gsd600", "of several: cell/node-1.json and so on"},
+    {"backup changed.csv --only changed -n 1 -d gsd600", "what is not at its factory value, as a table"},
+};
+
 }  // namespace
 
 extern const Command kBackup;
@@ -116,6 +122,7 @@ const Command kBackup{
         "checksum: keep that one. A DCF (CiA 306) is for other tools, a table for a spreadsheet, a batch for "
         "`run`. `restore`, `diff` and `verify` read all of them.",
     .parameters = kBackupParameters,
+    .examples = kBackupExamples,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::reads,
     .family = FamilyCheck::always,

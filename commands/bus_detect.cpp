@@ -136,6 +136,12 @@ Result<void> check_bus_detect(Context&, const Arguments& arguments) {
   return options ? Result<void>() : fail(options.error());
 }
 
+constexpr Example kBusDetectExamples[] = {
+    {"bus detect can0", "listen at one bitrate after the other; nothing is sent"},
+    {"bus detect can0 --bitrate 500k --bitrate 1M --for 5s",
+     "at these two, five seconds each, where drives seldom speak"},
+};
+
 }  // namespace
 
 extern const Command kBusDetect;
@@ -150,6 +156,7 @@ const Command kBusDetect{
         "one that never had a bitrate keeps the last and is down. Where it was killed, `bus up` ends the listening. "
         "Drives that send nothing by themselves cannot be heard. Exit code 1 when no bitrate was found.",
     .parameters = kBusDetectParameters,
+    .examples = kBusDetectExamples,
     .needs = Needs::nothing,
     .effect = Effect::links,
     .family = FamilyCheck::never,

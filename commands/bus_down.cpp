@@ -48,6 +48,10 @@ Result<void> check_bus_down(Context&, const Arguments& arguments) {
   return name ? Result<void>() : fail(name.error());
 }
 
+constexpr Example kBusDownExamples[] = {
+    {"bus down can0", "take it down; asks where somebody receives from it"},
+};
+
 }  // namespace
 
 extern const Command kBusDown;
@@ -60,6 +64,7 @@ const Command kBusDown{
         "script. Refused while a drive is energised that this prompt or batch file enabled over it. It needs the right "
         "CAP_NET_ADMIN; `bus status` says whether you have it.",
     .parameters = kBusDownParameters,
+    .examples = kBusDownExamples,
     .needs = Needs::nothing,
     .effect = Effect::links,
     .family = FamilyCheck::never,

@@ -49,6 +49,11 @@ Result<Value> run_bus_status(Context& context, const Arguments& arguments) {
   return Value(show::link_table(links));
 }
 
+constexpr Example kBusStatusExamples[] = {
+    {"bus status", "all CAN interfaces: up or down, bitrate, error counters"},
+    {"bus status can0", "one in full"},
+};
+
 }  // namespace
 
 extern const Command kBusStatus;
@@ -61,6 +66,7 @@ const Command kBusStatus{
         "how often it was bus-off and restarted since its driver was loaded, restart-ms, queue length, driver, how "
         "many sockets receive from it, and whether you may change it. Nothing is sent and nothing is changed.",
     .parameters = kBusStatusParameters,
+    .examples = kBusStatusExamples,
     .needs = Needs::nothing,
     .effect = Effect::none,
     .run = run_bus_status,

@@ -105,6 +105,13 @@ Result<void> check_bus_up(Context&, const Arguments& arguments) {
   return wish ? Result<void>() : fail(wish.error());
 }
 
+constexpr Example kBusUpExamples[] = {
+    {"bus up can0 --bitrate 500k", "up, with the bitrate of the drives"},
+    {"bus up can0 --bitrate 1M --restart-ms 100 --txqueuelen 1000",
+     "with a longer queue, and back by itself 100 ms after a bus-off"},
+    {"bus up can0 --bitrate 500k --dry-run", "only show the commands of iproute2 that do it"},
+};
+
 }  // namespace
 
 extern const Command kBusUp;
@@ -112,15 +119,16 @@ const Command kBusUp{
     .path = "bus up",
     .summary = "Bring a CAN interface up with a bitrate",
     .details =
-        "Sets bitrate, sample point, restart time and queue length through the kernel (rtnetlink) and brings the "
-        "interface up; what is not named stays as it is, and where no sample point is named the kernel chooses one. "
-        "An interface that is up already as wanted is left alone. With other settings it has to be taken down for "
-        "it, so that its bus stands still: that asks first, and needs --yes in a script; one that is bus-off is taken "
-        "down and up without a question. If the kernel refuses, it is put back to what it was. --dry-run shows the "
-        "commands of iproute2 that do the same. vcan and vxcan have no bitrate: `bus up vcan0`. It needs the right "
-        "CAP_NET_ADMIN; `bus status` says whether you have it. For example: bus up can0 --bitrate 500k --restart-ms "
-        "100.",
+        "Sets bitrate, sample point, restart time and queue length through the kernel (rtnetlink) and "
+        "brings the interface up; what is not named stays as it is, and where no sample point is named the "
+        "kernel chooses one. An interface that is up already as wanted is left alone. With other settings "
+        "it has to be taken down for it, so that its bus stands still: that asks first, and needs --yes in "
+        "a script; one that is bus-off is taken down and up without a question. If the kernel refuses, it "
+        "is put back to what it was. --dry-run shows the commands of iproute2 that do the same. vcan and "
+        "vxcan have no bitrate: `bus up vcan0`. It needs the right CAP_NET_ADMIN; `bus status` says "
+        "whether you have it.",
     .parameters = kBusUpParameters,
+    .examples = kBusUpExamples,
     .needs = Needs::nothing,
     .effect = Effect::links,
     .family = FamilyCheck::never,

@@ -32,6 +32,12 @@ Result<report::Value> run_cabinet_apply(Context& context, const Arguments& argum
        .all_or_nothing = arguments.has("--all-or-nothing")});
 }
 
+constexpr Example kCabinetApplyExamples[] = {
+    {"cabinet apply", "show what differs, ask, write it to all axes and keep it"},
+    {"cabinet apply --axis lift --no-keep", "one axis, to try the values until power-off"},
+    {"cabinet apply --all-or-nothing", "if one axis fails, put all back"},
+};
+
 }  // namespace
 
 extern const Command kCabinetApply;
@@ -50,6 +56,7 @@ const Command kCabinetApply{
         "crash --resume continues; `restore FILE.before-AXIS.json -n AXIS` restores the old values. A second "
         "apply does nothing.",
     .parameters = kCabinetApplyParameters,
+    .examples = kCabinetApplyExamples,
     .needs = Needs::nothing,
     .effect = Effect::resets,
     .run = run_cabinet_apply,

@@ -17,6 +17,11 @@ Result<report::Value> run_cabinet_backup(Context& context, const Arguments& argu
   return cabinet::back_up_cabinet(context, **cabinet, *stations, drive::find_families(context.drive_folders));
 }
 
+constexpr Example kCabinetBackupExamples[] = {
+    {"cabinet backup", "all axes, to a new folder beside the cabinet file"},
+    {"cabinet backup --axis feeder,lift", "two of them"},
+};
+
 }  // namespace
 
 extern const Command kCabinetBackup;
@@ -29,6 +34,7 @@ const Command kCabinetBackup{
         "folder appears when it is complete. An axis that does not answer, or is another drive than the file "
         "says, is missing in it and is an error. `restore` takes each file, `cabinet diff` compares folders.",
     .parameters = kCabinetBackupParameters,
+    .examples = kCabinetBackupExamples,
     .needs = Needs::nothing,
     .effect = Effect::reads,
     .run = run_cabinet_backup,

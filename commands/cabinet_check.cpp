@@ -63,6 +63,11 @@ Result<Value> run_cabinet_check(Context& context, const Arguments& arguments) {
   return Value(axes_checked(**found));
 }
 
+constexpr Example kCabinetCheckExamples[] = {
+    {"cabinet check", "cabinet.toml here or above; no bus is needed"},
+    {"cabinet check cell/cabinet.toml", "another file"},
+};
+
 }  // namespace
 
 extern const Command kCabinetCheck;
@@ -75,6 +80,7 @@ const Command kCabinetCheck{
         "limits. Every fault has file, line and column, and one that many axes share is told once. Shows "
         "what each axis is. Nothing is sent.",
     .parameters = kCabinetCheckParameters,
+    .examples = kCabinetCheckExamples,
     .needs = Needs::nothing,
     .effect = Effect::none,
     .run = run_cabinet_check,

@@ -24,6 +24,12 @@ Result<report::Value> run_cabinet_diff(Context& context, const Arguments& argume
       [&](const std::string& family) { return context.front_end->family(family); });
 }
 
+constexpr Example kCabinetDiffExamples[] = {
+    {"cabinet diff cabinet.toml backup-2026-11-22T19-40-00Z",
+     "the file against what was saved of the drives"},
+    {"cabinet diff monday.toml cabinet.toml", "two files"},
+};
+
 }  // namespace
 
 extern const Command kCabinetDiff;
@@ -35,6 +41,7 @@ const Command kCabinetDiff{
         "files by what they say of each axis, and a folder with a file by what the file says of the drive "
         "that was saved. Lists every difference with its axis; exit code 1 if there is one. No bus is needed.",
     .parameters = kCabinetDiffParameters,
+    .examples = kCabinetDiffExamples,
     .needs = Needs::nothing,
     .effect = Effect::none,
     .run = run_cabinet_diff,

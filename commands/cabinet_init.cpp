@@ -205,6 +205,12 @@ Result<Value> run_cabinet_init(Context& context, const Arguments& arguments) {
   return Init(context, file, name, std::move(*families)).run();
 }
 
+constexpr Example kCabinetInitExamples[] = {
+    {"cabinet init -b can0", "cabinet.toml from the drives on this bus; they are only read"},
+    {"cabinet init -b can0 --family 1=gsd600,2=da200", "with the families as the nameplates say"},
+    {"cabinet init --name ring -b coe:eth0", "add a second bus to it"},
+};
+
 }  // namespace
 
 extern const Command kCabinetInit;
@@ -218,6 +224,7 @@ const Command kCabinetInit{
         "Comments say what to fill in. Drives are only read; a slave in INIT is taken to PRE-OP for it. A file that is there is added to where it does "
         "not have this bus yet: `cabinet init --bus coe:eth0 --name ring`.",
     .parameters = kCabinetInitParameters,
+    .examples = kCabinetInitExamples,
     .needs = Needs::bus,
     .effect = Effect::reads,
     .family = FamilyCheck::never,

@@ -31,6 +31,12 @@ Result<report::Value> run_cabinet_plan(Context& context, const Arguments& argume
   return report::Value(cabinet::plan_record(**cabinet, looks));
 }
 
+constexpr Example kCabinetPlanExamples[] = {
+    {"cabinet plan", "what `cabinet apply` would write; exit code 1 if there is something"},
+    {"cabinet plan --axis lift --only params --no-unlisted",
+     "of one axis, parameters alone, nothing that is not in the file"},
+};
+
 }  // namespace
 
 extern const Command kCabinetPlan;
@@ -46,6 +52,7 @@ const Command kCabinetPlan{
         "left them stand apart; --no-unlisted saves reading them. Exit code 1 if there is something to do. "
         "Nothing is written; drives may be running. `cabinet apply` does what the plan says.",
     .parameters = kCabinetPlanParameters,
+    .examples = kCabinetPlanExamples,
     .needs = Needs::nothing,
     .effect = Effect::reads,
     .run = run_cabinet_plan,

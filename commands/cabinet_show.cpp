@@ -252,6 +252,11 @@ Result<Value> run_cabinet_show(Context& context, const Arguments& arguments) {
   return Value(axes_table(now, differences, context.chinese));
 }
 
+constexpr Example kCabinetShowExamples[] = {
+    {"cabinet show", "state, fault and position of all axes"},
+    {"cabinet show feeder,lift --watch", "of two, again and again until q"},
+};
+
 }  // namespace
 
 extern const Command kCabinetShow;
@@ -265,6 +270,7 @@ const Command kCabinetShow{
         "is updated where it stands (space pauses, s sorts, q ends), in a pipe a line for each axis "
         "whose state changed; what differs is read every five seconds. A bus that is lost is opened again. Drives are only read.",
     .parameters = kCabinetShowParameters,
+    .examples = kCabinetShowExamples,
     .needs = Needs::nothing,
     .effect = Effect::reads,
     .family = FamilyCheck::never,

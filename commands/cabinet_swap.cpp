@@ -63,6 +63,13 @@ Result<report::Value> run_cabinet_swap(Context& context, const Arguments& argume
   return cabinet::swap_axis(context, **cabinet, open_station(context, **cabinet, *axes->front()), *options);
 }
 
+constexpr Example kCabinetSwapExamples[] = {
+    {"cabinet swap lift", "the new drive is at the node of the axis already"},
+    {"cabinet swap lift --from 1", "it is at node 1, as from the factory"},
+    {"cabinet swap lift --backup backup-2026-11-22T19-40-00Z",
+     "restore all that was saved of the axis, not the file's values alone"},
+};
+
 }  // namespace
 
 extern const Command kCabinetSwap;
@@ -71,14 +78,15 @@ const Command kCabinetSwap{
     .summary = "Put a new drive into the place of an axis",
     .details =
         "Step by step, each asking: the new drive is found (at the node of the axis, or --from NODE), held "
-        "against the family of the axis, and its serial number is shown beside the one in the file; it gets "
-        "the node of the axis as `address` does it, and the parameters, PDOs and heartbeat of the file as "
-        "`cabinet apply` does it. --backup DIR restores everything that was saved of the axis instead, "
-        "settings that are not in the file as well. The line of the cabinet file with the new serial number "
-        "is told, not written. What cannot be put back is told: the encoder's offset and the home position. "
-        "After a failure the line is repeated: what is done is not done again; what was interrupted while "
-        "settings were written is continued by --resume. For example: cabinet swap feeder3 --from 1.",
+        "against the family of the axis, and its serial number is shown beside the one in the file; it "
+        "gets the node of the axis as `address` does it, and the parameters, PDOs and heartbeat of the "
+        "file as `cabinet apply` does it. --backup DIR restores everything that was saved of the axis "
+        "instead, settings that are not in the file as well. The line of the cabinet file with the new "
+        "serial number is told, not written. What cannot be put back is told: the encoder's offset and the "
+        "home position. After a failure the line is repeated: what is done is not done again; what was "
+        "interrupted while settings were written is continued by --resume.",
     .parameters = kCabinetSwapParameters,
+    .examples = kCabinetSwapExamples,
     .needs = Needs::nothing,
     .effect = Effect::resets,
     .run = run_cabinet_swap,

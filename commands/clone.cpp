@@ -64,6 +64,11 @@ Result<Value> run_clone(Context& context, const Arguments& arguments) {
   return Value(std::move(out));
 }
 
+constexpr Example kCloneExamples[] = {
+    {"clone --from 1 --to 2,3 -d gsd600", "show what differs, ask, and write it"},
+    {"clone --from 1 --to 2-5 --keep -d gsd600", "kept over power-off"},
+};
+
 }  // namespace
 
 extern const Command kClone;
@@ -75,6 +80,7 @@ const Command kClone{
         "and confirmed, its old values go to before-clone-node-N.json in the current folder, and a failure "
         "writes them back and stops. Node-ID and bitrate stay; COB-IDs follow the target's node-ID.",
     .parameters = kCloneParameters,
+    .examples = kCloneExamples,
     .needs = Needs::bus | Needs::dictionary,
     .effect = Effect::stores,
     .run = run_clone,

@@ -66,6 +66,10 @@ Result<report::Value> run_completion(Context& context, const Arguments& argument
   return report::Value(std::move(script));
 }
 
+constexpr Example kCompletionExamples[] = {
+    {"completion zsh", "the script; `help completion` says where it belongs"},
+};
+
 }  // namespace
 
 extern const Command kCompletion;
@@ -79,6 +83,7 @@ const Command kCompletion{
         "script asks the program, which completes the line as the prompt does, for its -b, -n, -d and --cabinet "
         "or the environment: it reads files, opens no bus and sends nothing.",
     .parameters = kCompletionParameters,
+    .examples = kCompletionExamples,
     .needs = Needs::nothing,
     .effect = Effect::none,
     .run = run_completion,

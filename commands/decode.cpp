@@ -46,6 +46,12 @@ Result<Value> run_decode(Context& context, const Arguments& arguments) {
   return Value(log.take_kept());
 }
 
+constexpr Example kDecodeExamples[] = {
+    {"decode session.log -d gsd600", "a recording in words"},
+    {"decode session.log -n 1 --service emcy -d gsd600", "emergencies of node 1"},
+    {"decode trace.trc --object 0x6040 -o jsonl", "the frames with the controlword, for a script"},
+};
+
 }  // namespace
 
 extern const Command kDecode;
@@ -61,6 +67,7 @@ const Command kDecode{
         "document per frame. A recording can also serve as a bus that answers commands: --bus "
         "replay:FILE.",
     .parameters = kDecodeParameters,
+    .examples = kDecodeExamples,
     .needs = Needs::nothing,
     .effect = Effect::none,
     .run = run_decode,

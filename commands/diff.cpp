@@ -207,6 +207,12 @@ Result<Value> run_diff(Context& context, const Arguments& arguments) {
   return Difference(context, std::move(operands), arguments.has("--skip-invalid")).run(batch);
 }
 
+constexpr Example kDiffExamples[] = {
+    {"diff factory node:1 -d gsd600", "everything that somebody has set on a drive"},
+    {"diff good.json node:1 -d gsd600", "what has changed since the backup"},
+    {"diff node:1 node:2 --batch -d gsd600", "the command lines that make node 1 like node 2"},
+};
+
 }  // namespace
 
 extern const Command kDiff;
@@ -223,6 +229,7 @@ const Command kDiff{
         "limits. A file in another format is refused if it has an unusable entry; --skip-invalid compares "
         "the rest.",
     .parameters = kDiffParameters,
+    .examples = kDiffExamples,
     .needs = Needs::nothing,
     .effect = Effect::reads,
     .run = run_diff,

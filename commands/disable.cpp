@@ -67,6 +67,15 @@ Result<Value> run_quick_stop(Context& context, const Arguments&) {
   return power_down(context, motion::PowerAim::stop, "stopped");
 }
 
+constexpr Example kDisableExamples[] = {
+    {"disable -n 1", "de-energise a drive; nothing is asked"},
+    {"disable -n all", "every drive that answers"},
+};
+constexpr Example kQuickStopExamples[] = {
+    {"quick-stop -n 1", "stop a motor; `disable` de-energises it"},
+    {"quick-stop -n all", "every drive that answers, before waiting for any"},
+};
+
 }  // namespace
 
 extern const Command kDisable;
@@ -80,6 +89,7 @@ const Command kDisable{
         "is the state read afterwards. Over EtherCAT a drive that `state op` took to OP is in OP behind it, its outputs "
         "preset anew; any other goes back to PRE-OP.",
     .parameters = {},
+    .examples = kDisableExamples,
     .needs = Needs::node,
     .effect = Effect::writes,
     .family = FamilyCheck::never,
@@ -94,6 +104,7 @@ const Command kQuickStopCommand{
         "Sends controlword 02h to all nodes before waiting for any answer, without asking. 605Ah sets what a "
         "drive does once stopped: some stay energised, and the result says so.",
     .parameters = {},
+    .examples = kQuickStopExamples,
     .needs = Needs::node,
     .effect = Effect::writes,
     .family = FamilyCheck::never,

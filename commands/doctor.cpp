@@ -67,6 +67,12 @@ Result<Value> run_doctor(Context& context, const Arguments& arguments) {
   return findings_value(all);
 }
 
+constexpr Example kDoctorExamples[] = {
+    {"doctor can0", "look at the interface, listen for two seconds, and say what to mend"},
+    {"doctor can0 --active --for 10s", "also ask all nodes, where nobody talks by itself"},
+    {"doctor -b coe:eth0", "links, lost frames and error counters of a ring"},
+};
+
 }  // namespace
 
 extern const Command kDoctor;
@@ -85,6 +91,7 @@ const Command kDoctor{
         "slcan: tells the flags of its controller and no counters, and acknowledges what it hears. `note` is "
         "worth knowing, `fault` is wrong or very likely so. Exit code 1 when there is a fault.",
     .parameters = kDoctorParameters,
+    .examples = kDoctorExamples,
     .needs = Needs::nothing,
     .effect = Effect::reads,
     .family = FamilyCheck::never,

@@ -43,6 +43,11 @@ Result<report::Value> run_drives(Context& context, const Arguments& arguments) {
   return report::Value(std::move(table));
 }
 
+constexpr Example kDrivesExamples[] = {
+    {"drives", "the families"},
+    {"drives gsd600", "what has to be known of one: addresses, PDOs, storing, motion"},
+};
+
 }  // namespace
 
 extern const Command kDrives;
@@ -53,6 +58,7 @@ const Command kDrives{
         "Put your own families into ~/.config/servoctl/drives or a folder in $SERVOCTL_DRIVES "
         "(docs/drive-data.md).",
     .parameters = kDrivesParameters,
+    .examples = kDrivesExamples,
     .needs = Needs::nothing,
     .effect = Effect::none,
     .run = run_drives,

@@ -176,6 +176,11 @@ Result<report::Value> run_eds_check(Context& context, const Arguments& arguments
   return report::Value(check.take());
 }
 
+constexpr Example kEdsCheckExamples[] = {
+    {"eds check drive.eds", "one file, with what to change in it"},
+    {"eds check drive.eds device.xml#2", "several; of the ESI the second device"},
+};
+
 }  // namespace
 
 extern const Command kEdsCheck;
@@ -190,6 +195,7 @@ const Command kEdsCheck{
         "the second alone, and FILE.xml#NAME the one of that name. `-` reads standard input to its end: in a pipe of "
         "command lines, what follows this line.",
     .parameters = kEdsCheckParameters,
+    .examples = kEdsCheckExamples,
     .needs = Needs::nothing,
     .effect = Effect::none,
     .run = run_eds_check,

@@ -105,6 +105,11 @@ Result<Value> run_enable(Context& context, const Arguments& arguments) {
   return Value(std::move(table));
 }
 
+constexpr Example kEnableExamples[] = {
+    {"enable -n 1 -d gsd600", "energise it at standstill, after the checks and a question"},
+    {"enable -n 1 -d gsd600 --dry-run", "the checks alone: what would stand against it"},
+};
+
 }  // namespace
 
 extern const Command kEnable;
@@ -119,6 +124,7 @@ const Command kEnable{
         "Ctrl-C, and then stops and disables it. "
         "`jog` and `move` enable and disable by themselves.",
     .parameters = kEnableParameters,
+    .examples = kEnableExamples,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,
     .run = run_enable,

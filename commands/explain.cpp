@@ -146,6 +146,12 @@ Result<report::Value> run_explain(Context& context, const Arguments& arguments) 
   return told(context, all);
 }
 
+constexpr Example kExplainExamples[] = {
+    {"explain AL.03", "a fault as the panel shows it: what it is and what to do"},
+    {"explain homing 17", "a homing method, with a picture"},
+    {"explain CN3 -d da200", "a connector, pin by pin"},
+};
+
 }  // namespace
 
 extern const Command kExplain;
@@ -159,6 +165,7 @@ const Command kExplain{
         "for in titles and texts. Without -d the standard and what has this very name in any family; without a "
         "word the topics by kind. --lang zh takes the Chinese texts.",
     .parameters = kExplainParameters,
+    .examples = kExplainExamples,
     .needs = Needs::nothing,
     .effect = Effect::none,
     .run = run_explain,

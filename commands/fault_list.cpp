@@ -37,6 +37,12 @@ Result<report::Value> run_fault_list(Context& context, const Arguments& argument
   return report::Value(std::move(out));
 }
 
+constexpr Example kFaultListExamples[] = {
+    {"fault list -d ts", "all of the family"},
+    {"fault list Er02 -d da200", "those with this in the panel's text"},
+    {"fault list 0x8130 -d gsd600", "by the code of 603Fh or an emergency"},
+};
+
 }  // namespace
 
 extern const Command kFaultList;
@@ -47,6 +53,7 @@ const Command kFaultList{
         "Works without a bus. The code is that of object 603Fh and of emergency messages. `?` marks what the "
         "manual does not state, `!` what it states inconsistently; --json gives the line numbers.",
     .parameters = kFaultListParameters,
+    .examples = kFaultListExamples,
     .needs = Needs::dictionary,
     .effect = Effect::none,
     .run = run_fault_list,

@@ -87,6 +87,13 @@ Result<Value> run_clear(Context& context, const Arguments&) {
   return Value(std::move(table));
 }
 
+constexpr Example kFaultResetExamples[] = {
+    {"fault reset -n 1 -d gsd600", "after the cause is gone; the drive stays disabled"},
+};
+constexpr Example kFaultClearHistoryExamples[] = {
+    {"fault clear-history -n 1", "empty 1003h, after a question"},
+};
+
 }  // namespace
 
 extern const Command kFaultReset;
@@ -98,6 +105,7 @@ const Command kFaultReset{
         "it; if the fault remains, the family's own method follows, if it has one. Exit code 1 if the fault "
         "remains then.",
     .parameters = {},
+    .examples = kFaultResetExamples,
     .needs = Needs::node,
     .effect = Effect::resets,
     .run = run_reset,
@@ -109,6 +117,7 @@ const Command kFaultClearHistory{
     .summary = "Clear the fault history of a drive (1003h)",
     .details = "Writes 0 to 1003h:00 and reads it back.",
     .parameters = {},
+    .examples = kFaultClearHistoryExamples,
     .needs = Needs::node,
     .effect = Effect::resets,
     .run = run_clear,

@@ -203,6 +203,11 @@ Result<Value> run_fault_show(Context& context, const Arguments&) {
   return Value(std::move(out));
 }
 
+constexpr Example kFaultShowExamples[] = {
+    {"fault show -n 1 -d gsd600", "the fault, its history, and what to do"},
+    {"fault show -n all -d gsd600", "of all drives that answer"},
+};
+
 }  // namespace
 
 extern const Command kFaultShow;
@@ -214,6 +219,7 @@ const Command kFaultShow{
         "parameter, and adds the emergencies heard in this session. Where several alarms share a code, all "
         "are shown.",
     .parameters = {},
+    .examples = kFaultShowExamples,
     .needs = Needs::node,
     .effect = Effect::reads,
     .run = run_fault_show,

@@ -85,6 +85,12 @@ Result<report::Value> run_gateway(Context& context, const Arguments& arguments) 
   return report::Value();
 }
 
+constexpr Example kGatewayExamples[] = {
+    {"gateway -b can0", "at 127.0.0.1:60000, read only, until Ctrl-C"},
+    {"gateway -b can0 --listen /run/gateway", "a local socket: who may write to its file may connect"},
+    {"gateway -b can0 --allow write", "clients may write and send NMT commands; asks first"},
+};
+
 }  // namespace
 
 extern const Command kGateway;
@@ -100,6 +106,7 @@ const Command kGateway{
         "LSS, guarding and events are not part of it. `help` on the line lists what is. To use the gateway of "
         "another program, name it as a bus: --bus gateway://HOST:60000.",
     .parameters = kGatewayParameters,
+    .examples = kGatewayExamples,
     .needs = Needs::bus,
     .effect = Effect::moves,
     .family = FamilyCheck::never,

@@ -163,6 +163,20 @@ Result<Value> run_show(Context& context, const Arguments&) {
   return Value(std::move(table));
 }
 
+constexpr Example kHeartbeatSetExamples[] = {
+    {"heartbeat set 100ms -n 1 -d gsd600", "send one every 100 ms"},
+    {"heartbeat set 500ms --keep -n all -d gsd600", "all drives, kept over power-off"},
+    {"heartbeat set off -n 1 -d gsd600", "send none"},
+};
+constexpr Example kHeartbeatConsumeExamples[] = {
+    {"heartbeat consume 10=500ms --keep -n 1 -d ts",
+     "node 1 notices when node 10 is silent for half a second"},
+    {"heartbeat consume 10=off -n 1 -d ts", "no longer"},
+};
+constexpr Example kHeartbeatShowExamples[] = {
+    {"heartbeat show -n 1,2 -d gsd600", "who sends, and who watches whom"},
+};
+
 }  // namespace
 
 extern const Command kHeartbeatSet;
@@ -171,9 +185,9 @@ const Command kHeartbeatSet{
     .summary = "Let drives send a heartbeat (1017h)",
     .details =
         "Writes the producer heartbeat time and reads it back; `off` ends it. --keep makes it survive "
-        "power-off. A drive that sends heartbeats answers no node guarding (CiA 301). For example: heartbeat "
-        "set 100ms -n all.",
+        "power-off. A drive that sends heartbeats answers no node guarding (CiA 301).",
     .parameters = kSetParameters,
+    .examples = kHeartbeatSetExamples,
     .needs = Needs::node | Needs::dictionary | Needs::can,
     .effect = Effect::writes,
     .run = run_set,
@@ -186,11 +200,11 @@ const Command kHeartbeatConsume{
     .path = "heartbeat consume",
     .summary = "Let drives watch the heartbeat of a node (1016h)",
     .details =
-        "Writes the entry of the node, or the first that is free, and reads it back; NODE=off frees it. The "
-        "drive watches from the first heartbeat on; what it does when they end is shown by `watchdog`. A time "
-        "no longer than the period of the node is refused, and so is a family without 1016h. For example: "
-        "heartbeat consume 3=300ms -n 1.",
+        "Writes the entry of the node, or the first that is free, and reads it back; NODE=off frees it. "
+        "The drive watches from the first heartbeat on; what it does when they end is shown by `watchdog`. "
+        "A time no longer than the period of the node is refused, and so is a family without 1016h.",
     .parameters = kConsumeParameters,
+    .examples = kHeartbeatConsumeExamples,
     .needs = Needs::node | Needs::dictionary | Needs::can,
     .effect = Effect::writes,
     .run = run_consume,
@@ -204,6 +218,7 @@ const Command kHeartbeatShow{
     .summary = "Show who sends heartbeats, and who watches whom",
     .details = "Reads 1017h, 1016h, and 100Ch and 100Dh (life guarding) of each node.",
     .parameters = {},
+    .examples = kHeartbeatShowExamples,
     .needs = Needs::node | Needs::dictionary | Needs::can,
     .effect = Effect::reads,
     .run = run_show,

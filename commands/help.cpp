@@ -8,19 +8,25 @@ using namespace command;
 
 constexpr Parameter kHelpParameters[] = {
     {.name = "command",
-     .help = "a command or a group: read, param, param set",
+     .help = "a command, a group, or a word of the prompt: read, param, param set, undo",
      .kind = Kind::command,
      .many = true},
 };
 
-Result<report::Value> run_help(Context&, const Arguments& arguments) {
+Result<report::Value> run_help(Context& context, const Arguments& arguments) {
   std::string path;
   for (const auto& word : arguments.all("command")) append(path, word, " ");
-  auto text = help_text(path, 0);
+  auto text = help_text(path, context.audience == nullptr ? 0 : context.audience->width());
   if (!text) return fail(text.error());
   if (!text->empty() && text->back() == '\n') text->pop_back();
   return report::Value(std::move(*text));
 }
+
+constexpr Example kHelpExamples[] = {
+    {"help", "all commands"},
+    {"help param set", "one of them"},
+    {"help param", "a group"},
+};
 
 }  // namespace
 
@@ -30,6 +36,7 @@ const Command kHelp{
     .summary = "Show the commands, or how one is used",
     .details = {},
     .parameters = kHelpParameters,
+    .examples = kHelpExamples,
     .needs = Needs::nothing,
     .effect = Effect::none,
     .run = run_help,

@@ -31,6 +31,12 @@ Result<report::Value> run_home(Context& context, const Arguments& arguments) {
   return motion::run_motion(context, *request, motion::motion_run(home, motion::plan_home, motion::run_home));
 }
 
+constexpr Example kHomeExamples[] = {
+    {"home 35 --speed 30rpm --search 5rpm -n 1 -d gsd600 --turn 131072", "the present position becomes home"},
+    {"home 17 --speed 60rpm --search 10rpm --window 5rev -n 1 -d sv2",
+     "to the negative limit switch, 5 turns at most"},
+};
+
 }  // namespace
 
 extern const Command kHome;
@@ -40,10 +46,10 @@ const Command kHome{
     .details =
         "Homing mode with the family's own start sequence, supervised and ended like `jog`. \"Homing "
         "attained\" left from an earlier run does not count: the bits must clear and set again (with a "
-        "method that takes the present position, that position must read as the offset). Method, speeds and "
-        "offset are restored afterwards; the home position stays. Example: `home 35 -n 1`, `home 1 --speed "
-        "30rpm --search 6rpm -n 1`.",
+        "method that takes the present position, that position must read as the offset). Method, speeds "
+        "and offset are restored afterwards; the home position stays.",
     .parameters = kHomeParameters,
+    .examples = kHomeExamples,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,
     .run = run_home,

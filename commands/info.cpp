@@ -145,6 +145,13 @@ Result<report::Value> run_info(Context& context, const Arguments&) {
   return report::Value(std::move(out));
 }
 
+constexpr Example kInfoExamples[] = {
+    {"info -n 1", "device, versions, serial number, and the families that fit"},
+    {"info -n 1 -d gsd600", "also whether it is a drive of this family; exit code 8 if not"},
+    {"info -n 5 -d ts -b modbus:/dev/ttyUSB0@19200,8E1",
+     "main parameters, inputs and outputs of a drive on Modbus"},
+};
+
 }  // namespace
 
 extern const Command kInfo;
@@ -156,6 +163,7 @@ const Command kInfo{
         "they contradict the family given with -d, it lists the families that fit and ends with exit code 8. On Modbus no "
         "register says what a device is: with -d FAMILY it shows its main parameters, inputs and outputs.",
     .parameters = {},
+    .examples = kInfoExamples,
     .needs = Needs::node,
     .effect = Effect::reads,
     .family = FamilyCheck::never,

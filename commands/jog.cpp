@@ -102,6 +102,14 @@ Result<report::Value> run_jog(Context& context, const Arguments& arguments) {
   return motion::run_motion(context, *request, motion);
 }
 
+constexpr Example kJogExamples[] = {
+    {"jog 60rpm --for 2s -n 1 -d gsd600 --turn 131072",
+     "turn for two seconds; --turn where the drive does not tell its counts"},
+    {"jog -30rpm --turns 3 -n 1 -d sv2 --max-torque 30%", "three turns backwards, stopped above 30 % torque"},
+    {"jog 400rpm --for 1s --limit 500rpm -n 1 -d sv2 --plot --csv jog.csv",
+     "faster than the safe default, with the samples"},
+};
+
 }  // namespace
 
 extern const Command kJog;
@@ -112,13 +120,13 @@ const Command kJog{
         "Checks the drive and shows the result, asks, then enables the drive in its velocity mode, turns, "
         "stops and disables it, and restores everything it changed, however it ends, including Ctrl-C and "
         "lost connections. --limit is needed above 300 rpm, or above the rated speed if that is lower (or "
-        "above a tenth of the drive's own limit, where counts cannot be converted to rpm). Ramps take 0.5 s "
-        "by default. It stops at once if the drive sends an emergency, does not answer, turns the wrong way "
-        "or not at all, or exceeds a limit given. A drive with a heartbeat consumer (1016h) watches servoctl "
-        "meanwhile and stops by itself 0.5 s after the last heartbeat. Position, speed and torque are shown "
-        "during the motion; -o jsonl has every sample. Examples: `jog 60rpm --for 2s -n 1`, `jog -30rpm "
-        "--turns 3 -n 1 --yes`.",
+        "above a tenth of the drive's own limit, where counts cannot be converted to rpm). Ramps take 0.5 "
+        "s by default. It stops at once if the drive sends an emergency, does not answer, turns the wrong "
+        "way or not at all, or exceeds a limit given. A drive with a heartbeat consumer (1016h) watches "
+        "servoctl meanwhile and stops by itself 0.5 s after the last heartbeat. Position, speed and torque "
+        "are shown during the motion; -o jsonl has every sample.",
     .parameters = kJogParameters,
+    .examples = kJogExamples,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,
     .run = run_jog,

@@ -41,6 +41,11 @@ Result<void> check_lss_inquire(Context& context, const Arguments& arguments) {
   return check_lss_choice(context, arguments);
 }
 
+constexpr Example kLssInquireExamples[] = {
+    {"lss inquire --only", "the only slave with LSS on the bus"},
+    {"lss inquire -n 3", "the one that is node 3"},
+};
+
 }  // namespace
 
 extern const Command kLssInquire;
@@ -48,13 +53,14 @@ const Command kLssInquire{
     .path = "lss inquire",
     .summary = "Ask one LSS slave what it is, and for its node-ID",
     .details =
-        "LSS (CiA 305) speaks to a device before it has a node-ID, or whatever node-ID it has: by its identity, the "
-        "four numbers of 1018h. Name the slave by --vendor, --product, --revision and --serial, by -n where it "
-        "answers SDO (its 1018h is read), or by --only where it is the only one with LSS on the bus: two that answer "
-        "are noticed, and nothing is believed of either. The slave is taken to the configuration state, asked, and "
-        "taken back to waiting, on every way out. Many drives have no LSS: see `address`. For example: lss inquire "
-        "--only; lss inquire -n 3.",
+        "LSS (CiA 305) speaks to a device before it has a node-ID, or whatever node-ID it has: by its "
+        "identity, the four numbers of 1018h. Name the slave by --vendor, --product, --revision and "
+        "--serial, by -n where it answers SDO (its 1018h is read), or by --only where it is the only one "
+        "with LSS on the bus: two that answer are noticed, and nothing is believed of either. The slave is "
+        "taken to the configuration state, asked, and taken back to waiting, on every way out. Many drives "
+        "have no LSS: see `address`.",
     .parameters = kLssInquireParameters,
+    .examples = kLssInquireExamples,
     .needs = Needs::can,
     .effect = Effect::reads,
     .family = FamilyCheck::never,

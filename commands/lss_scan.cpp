@@ -237,6 +237,12 @@ Result<void> check_lss_scan(Context&, const Arguments& arguments) {
   return wish ? Result<void>() : fail(wish.error());
 }
 
+constexpr Example kLssScanExamples[] = {
+    {"lss scan", "who has no node-ID yet; nothing is changed"},
+    {"lss scan --assign 5 --keep", "give those 5, 6, 7 …, after a question, and store them"},
+    {"lss scan --vendor 0x445653 --product 1", "slaves of this kind, with a node-ID or without"},
+};
+
 }  // namespace
 
 extern const Command kLssScan;
@@ -244,15 +250,15 @@ const Command kLssScan{
     .path = "lss scan",
     .summary = "Find LSS slaves without a node-ID; --assign gives them one",
     .details =
-        "Drives that know LSS (CiA 305) may come without a node-ID: they answer no `scan`. Fastscan finds them, "
-        "whatever their identity, in some seconds each: it asks for each bit, and that nobody answers costs "
-        "--patience. Nothing is changed; at the end all are back in the waiting state. With --vendor "
-        "and --product it looks for slaves of that kind instead, with a node-ID or without (and --revision, --serial). "
-        "--assign 5 gives those that were found the node-IDs 5, 6, 7 …, in the order of their identity, after a "
-        "question that names each: none of these may be in use. --keep stores them. Two slaves of one identity are "
-        "told, and get nothing. For example: lss scan; lss scan --assign 5 --keep; lss scan --vendor 0x445653 "
-        "--product 1.",
+        "Drives that know LSS (CiA 305) may come without a node-ID: they answer no `scan`. Fastscan finds "
+        "them, whatever their identity, in some seconds each: it asks for each bit, and that nobody "
+        "answers costs --patience. Nothing is changed; at the end all are back in the waiting state. With "
+        "--vendor and --product it looks for slaves of that kind instead, with a node-ID or without (and "
+        "--revision, --serial). --assign 5 gives those that were found the node-IDs 5, 6, 7 …, in the "
+        "order of their identity, after a question that names each: none of these may be in use. --keep "
+        "stores them. Two slaves of one identity are told, and get nothing.",
     .parameters = kLssScanParameters,
+    .examples = kLssScanExamples,
     .needs = Needs::can,
     .effect = Effect::resets,
     .family = FamilyCheck::never,

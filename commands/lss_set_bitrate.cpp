@@ -218,6 +218,11 @@ Result<void> check_lss_set_bitrate(Context& context, const Arguments& arguments)
   return wish ? Result<void>() : fail(wish.error());
 }
 
+constexpr Example kLssSetBitrateExamples[] = {
+    {"lss set-bitrate 500k --only --keep", "one slave, in force when it starts again"},
+    {"lss set-bitrate 500k --all --keep --activate 5s", "all slaves of the bus, in force five seconds later"},
+};
+
 }  // namespace
 
 extern const Command kLssSetBitrate;
@@ -225,13 +230,14 @@ const Command kLssSetBitrate{
     .path = "lss set-bitrate",
     .summary = "Set the bitrate of LSS slaves; asks first",
     .details =
-        "The bitrates are those of CiA 305, table 0. The slave is named as for `lss inquire`; --all sets it in every "
-        "slave that answers, and tells how many did: count them. It is in force when the slave starts again, if --keep "
-        "stored it, or with --activate: then the slaves say nothing for the delay, change, say nothing for as long "
-        "again, and go on: refused while a drive that answers on the bus is energised. The interface is not changed "
-        "by this; how is told. A node that keeps its bitrate on a bus with another one disturbs everybody, so change "
-        "all of them or none. For example: lss set-bitrate 500k --all --keep --activate 5s.",
+        "The bitrates are those of CiA 305, table 0. The slave is named as for `lss inquire`; --all sets "
+        "it in every slave that answers, and tells how many did: count them. It is in force when the slave "
+        "starts again, if --keep stored it, or with --activate: then the slaves say nothing for the delay, "
+        "change, say nothing for as long again, and go on: refused while a drive that answers on the bus "
+        "is energised. The interface is not changed by this; how is told. A node that keeps its bitrate on "
+        "a bus with another one disturbs everybody, so change all of them or none.",
     .parameters = kLssSetBitrateParameters,
+    .examples = kLssSetBitrateExamples,
     .needs = Needs::can,
     .effect = Effect::resets,
     .family = FamilyCheck::never,

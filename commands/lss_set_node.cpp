@@ -94,6 +94,11 @@ Result<void> check_lss_set_node(Context& context, const Arguments& arguments) {
   return check_lss_choice(context, arguments);
 }
 
+constexpr Example kLssSetNodeExamples[] = {
+    {"lss set-node 5 --only --keep", "the only slave on the bus becomes node 5, and stores it"},
+    {"lss set-node 5 -n 3 --keep", "node 3 becomes node 5"},
+};
+
 }  // namespace
 
 extern const Command kLssSetNode;
@@ -101,13 +106,14 @@ const Command kLssSetNode{
     .path = "lss set-node",
     .summary = "Give an LSS slave a node-ID; asks first",
     .details =
-        "The slave is named as for `lss inquire`: by its identity (--vendor, --product, --revision, --serial), by -n, "
-        "or by --only. A slave without a node-ID starts with the new one at once; of one that has a node-ID the "
-        "communication is reset (NMT), and an energised drive is left alone. A node-ID that somebody uses is refused: "
-        "all that answer, and all that are heard within 1.5 s. At the end the slave is looked for by its new node-ID "
-        "and its 1018h. --keep stores it; where that fails the old node-ID is set again. 255 takes the node-ID away. "
-        "For example: lss set-node 5 --only --keep.",
+        "The slave is named as for `lss inquire`: by its identity (--vendor, --product, --revision, "
+        "--serial), by -n, or by --only. A slave without a node-ID starts with the new one at once; of one "
+        "that has a node-ID the communication is reset (NMT), and an energised drive is left alone. A "
+        "node-ID that somebody uses is refused: all that answer, and all that are heard within 1.5 s. At "
+        "the end the slave is looked for by its new node-ID and its 1018h. --keep stores it; where that "
+        "fails the old node-ID is set again. 255 takes the node-ID away.",
     .parameters = kLssSetNodeParameters,
+    .examples = kLssSetNodeExamples,
     .needs = Needs::can,
     .effect = Effect::resets,
     .family = FamilyCheck::never,

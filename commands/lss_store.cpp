@@ -40,6 +40,11 @@ Result<void> check_lss_store(Context& context, const Arguments& arguments) {
   return check_lss_choice(context, arguments);
 }
 
+constexpr Example kLssStoreExamples[] = {
+    {"lss store --only", "node-ID and bitrate of the only slave on the bus"},
+    {"lss store -n 5", "those of node 5"},
+};
+
 }  // namespace
 
 extern const Command kLssStore;
@@ -51,6 +56,7 @@ const Command kLssStore{
         "by this. What is stored is what was set last, also where it is not in force yet. Not every slave can; one "
         "that cannot says so. The slave is named as for `lss inquire`.",
     .parameters = kLssStoreParameters,
+    .examples = kLssStoreExamples,
     .needs = Needs::can,
     .effect = Effect::stores,
     .family = FamilyCheck::never,

@@ -13,6 +13,10 @@ Result<report::Value> run_man(Context&, const Arguments&) {
   return report::Value(std::move(page));
 }
 
+constexpr Example kManExamples[] = {
+    {"man", "its source; `servoctl man | man -l -` shows it as a page"},
+};
+
 }  // namespace
 
 extern const Command kMan;
@@ -22,6 +26,7 @@ const Command kMan{
     .details =
         "For `man` to show: `servoctl man | man -l -`. An installed servoctl includes it: `man servoctl`.",
     .parameters = {},
+    .examples = kManExamples,
     .needs = Needs::nothing,
     .effect = Effect::none,
     .run = run_man,

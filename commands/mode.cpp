@@ -106,6 +106,11 @@ Result<Value> run_mode(Context& context, const Arguments& arguments) {
   return Value(std::move(table));
 }
 
+constexpr Example kModeExamples[] = {
+    {"mode -n 1 -d gsd600", "the present mode"},
+    {"mode pv -n 1 -d gsd600", "profile velocity; only while de-energised"},
+};
+
 }  // namespace
 
 extern const Command kMode;
@@ -117,6 +122,7 @@ const Command kMode{
         "or the drive (6502h) does not support the mode, and while the drive is energised. Waits until 6061h "
         "shows it.",
     .parameters = kModeParameters,
+    .examples = kModeExamples,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::writes,
     .reads_without = "mode",

@@ -157,6 +157,12 @@ Result<Value> run_monitor(Context& context, const Arguments& arguments) {
   return Value(std::move(summary));
 }
 
+constexpr Example kMonitorExamples[] = {
+    {"monitor -b can0 -d gsd600", "every frame in words, until Ctrl-C; nothing is sent"},
+    {"monitor --table -b can0 -d gsd600", "a row for each CAN-ID, with its period"},
+    {"monitor --service emcy --for 10m -b can0 -d gsd600", "emergencies alone, for ten minutes"},
+};
+
 }  // namespace
 
 extern const Command kMonitor;
@@ -173,6 +179,7 @@ const Command kMonitor{
         "bus load if the bitrate is known from the interface or --bitrate. `-o jsonl` gives one document per "
         "frame.",
     .parameters = kMonitorParameters,
+    .examples = kMonitorExamples,
     .needs = Needs::can,
     .effect = Effect::reads,
     .run = run_monitor,

@@ -29,6 +29,13 @@ Result<report::Value> run_move(Context& context, const Arguments& arguments) {
   return motion::run_motion(context, *request, motion::motion_run(move, motion::plan_move, motion::run_move));
 }
 
+constexpr Example kMoveExamples[] = {
+    {"move 90deg --relative --speed 30rpm -n 1 -d sv2", "a quarter turn from here"},
+    {"move 2rev --speed 60rpm --window 3rev -n 1 -d ts --turn 10000",
+     "to a position, stopped when it has moved further than 3 turns"},
+    {"move lift 20mm --relative --speed 10mm/s", "an axis whose load the cabinet file tells"},
+};
+
 }  // namespace
 
 extern const Command kMove;
@@ -39,8 +46,9 @@ const Command kMove{
         "Profile position mode with the set-point handshake, supervised and ended like `jog`. The move is "
         "done when the drive reports target reached, is at standstill, and is at the target position; a "
         "distance that the drive's counts cannot represent to 1 % is refused. Afterwards the drive is "
-        "disabled: the motor does not hold its position. Example: `move 90deg --speed 30rpm -n 1`.",
+        "disabled: the motor does not hold its position.",
     .parameters = kMoveParameters,
+    .examples = kMoveExamples,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,
     .run = run_move,

@@ -216,77 +216,69 @@ constexpr std::string_view kResetCommDetails =
     "With --wait it is done when the boot-up message confirms it; exit code 4 if none comes. `-n all` "
     "addresses every node.";
 
+constexpr Example kNmtStartExamples[] = {
+    {"nmt start -n 1", "PDOs of one node on"},
+    {"nmt start -n all", "of every node, by one message"},
+    {"nmt start -n 1 --wait", "and see its heartbeat confirm it"},
+};
+constexpr Example kNmtStopExamples[] = {
+    {"nmt stop -n 1", "no PDO and no SDO until `nmt start` or `nmt preop`"},
+};
+constexpr Example kNmtPreopExamples[] = {
+    {"nmt preop -n 1 --wait", "before PDOs are mapped; its heartbeat confirms it"},
+    {"nmt preop -n all", "every node, by one message"},
+};
+constexpr Example kNmtResetExamples[] = {
+    {"nmt reset -n 1 --wait", "as after power-on, done when it boots up again"},
+};
+constexpr Example kNmtResetCommExamples[] = {
+    {"nmt reset-comm -n 1 --wait", "1000h to 1FFFh as stored: PDOs, COB-IDs, heartbeat"},
+};
+
+template <NmtCommand nmt>
+constexpr Command nmt_command(std::string_view path, std::string_view summary, std::string_view details,
+                              std::span<const Example> examples) {
+  return {.path = path,
+          .summary = summary,
+          .details = details,
+          .parameters = kNmtParameters,
+          .examples = examples,
+          .needs = Needs::node | Needs::nmt,
+          .effect = nmt == NmtCommand::reset_node || nmt == NmtCommand::reset_communication ? Effect::resets
+                                                                                            : Effect::writes,
+          .family = FamilyCheck::never,
+          .run = run_nmt_command<nmt>,
+          .to_all = true,
+          .elsewhere = kNmtElsewhere};
+}
+
+/// In a batch file that is read as settings it prepares, and writes no value.
+constexpr Command preparing(Command command) {
+  command.settings = [](const Arguments&) { return Result<std::vector<settings::NamedValue>>{}; };
+  return command;
+}
+
 }  // namespace
 
 extern const Command kNmtStart;
-const Command kNmtStart{
-    .path = "nmt start",
-    .summary = "Set nodes to operational: PDOs active",
-    .details = kDetails,
-    .parameters = kNmtParameters,
-    .needs = Needs::node | Needs::nmt,
-    .effect = Effect::writes,
-    .family = FamilyCheck::never,
-    .run = run_nmt_command<NmtCommand::start>,
-    .to_all = true,
-    .elsewhere = kNmtElsewhere,
-};
+constexpr Command kNmtStart = nmt_command<NmtCommand::start>(
+    "nmt start", "Set nodes to operational: PDOs active", kDetails, kNmtStartExamples);
 
 extern const Command kNmtStop;
-const Command kNmtStop{
-    .path = "nmt stop",
-    .summary = "Set nodes to stopped: no PDO, no SDO",
-    .details = kDetails,
-    .parameters = kNmtParameters,
-    .needs = Needs::node | Needs::nmt,
-    .effect = Effect::writes,
-    .family = FamilyCheck::never,
-    .run = run_nmt_command<NmtCommand::stop>,
-    .to_all = true,
-    .elsewhere = kNmtElsewhere,
-};
+constexpr Command kNmtStop = nmt_command<NmtCommand::stop>("nmt stop", "Set nodes to stopped: no PDO, no SDO",
+                                                           kDetails, kNmtStopExamples);
 
 extern const Command kNmtPreop;
-const Command kNmtPreop{
-    .path = "nmt preop",
-    .summary = "Set nodes to pre-operational: SDO, no PDO",
-    .details = kDetails,
-    .parameters = kNmtParameters,
-    .needs = Needs::node | Needs::nmt,
-    .effect = Effect::writes,
-    .family = FamilyCheck::never,
-    .run = run_nmt_command<NmtCommand::enter_pre_operational>,
-    .settings = [](const Arguments&) { return Result<std::vector<settings::NamedValue>>{}; },  // It prepares.
-    .to_all = true,
-    .elsewhere = kNmtElsewhere,
-};
+constexpr Command kNmtPreop = preparing(nmt_command<NmtCommand::enter_pre_operational>(
+    "nmt preop", "Set nodes to pre-operational: SDO, no PDO", kDetails, kNmtPreopExamples));
 
 extern const Command kNmtReset;
-const Command kNmtReset{
-    .path = "nmt reset",
-    .summary = "Restart nodes (NMT reset node); asks first",
-    .details = kResetDetails,
-    .parameters = kNmtParameters,
-    .needs = Needs::node | Needs::nmt,
-    .effect = Effect::resets,
-    .family = FamilyCheck::never,
-    .run = run_nmt_command<NmtCommand::reset_node>,
-    .to_all = true,
-    .elsewhere = kNmtElsewhere,
-};
+constexpr Command kNmtReset = nmt_command<NmtCommand::reset_node>(
+    "nmt reset", "Restart nodes (NMT reset node); asks first", kResetDetails, kNmtResetExamples);
 
 extern const Command kNmtResetComm;
-const Command kNmtResetComm{
-    .path = "nmt reset-comm",
-    .summary = "Reset communication of nodes (NMT); asks first",
-    .details = kResetCommDetails,
-    .parameters = kNmtParameters,
-    .needs = Needs::node | Needs::nmt,
-    .effect = Effect::resets,
-    .family = FamilyCheck::never,
-    .run = run_nmt_command<NmtCommand::reset_communication>,
-    .to_all = true,
-    .elsewhere = kNmtElsewhere,
-};
+constexpr Command kNmtResetComm = nmt_command<NmtCommand::reset_communication>(
+    "nmt reset-comm", "Reset communication of nodes (NMT); asks first", kResetCommDetails,
+    kNmtResetCommExamples);
 
 }  // namespace servoctl::commands

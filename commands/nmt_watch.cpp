@@ -231,6 +231,12 @@ Result<Value> run_nmt_watch(Context& context, const Arguments& arguments) {
   return log.summary();
 }
 
+constexpr Example kNmtWatchExamples[] = {
+    {"nmt watch -n 1,2", "by their heartbeats, until Ctrl-C"},
+    {"nmt watch -n 1 --for 10m", "for ten minutes; exit code 1 if the node was lost"},
+    {"nmt watch -n 3 --guard 200ms --life 3", "by node guarding, for a node without heartbeat"},
+};
+
 }  // namespace
 
 extern const Command kNmtWatch;
@@ -246,6 +252,7 @@ const Command kNmtWatch{
         "life guarding, so --read-only refuses them. Exit code 1 if a node was lost, never heard, or sends "
         "no heartbeat. Do not guard nodes that send heartbeats: CiA 301 allows only one of the two.",
     .parameters = kNmtWatchParameters,
+    .examples = kNmtWatchExamples,
     .needs = Needs::node | Needs::can,
     .effect = Effect::writes,
     .family = FamilyCheck::never,

@@ -67,6 +67,12 @@ Result<report::Value> run_objects(Context& context, const Arguments& arguments) 
   return report::Value(std::move(table));
 }
 
+constexpr Example kObjectsExamples[] = {
+    {"objects '0x60*' -d gsd600", "those from 6000h to 60FFh"},
+    {"objects homing -d da200", "those with this word in the name"},
+    {"objects 0x6060 -d sv2", "one of them, with the meanings of its values"},
+};
+
 }  // namespace
 
 extern const Command kObjects;
@@ -81,6 +87,7 @@ const Command kObjects{
         "lists what the drive says of its own objects. `?` marks what the manual does not "
         "state, `!` what it states inconsistently; --json gives the line numbers.",
     .parameters = kObjectsParameters,
+    .examples = kObjectsExamples,
     .needs = Needs::dictionary,
     .effect = Effect::none,
     .run = run_objects,

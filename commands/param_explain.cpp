@@ -17,6 +17,10 @@ Result<report::Value> run_param_explain(Context& context, const Arguments& argum
   return report::Value(show::parameter_record(**parameter, context.chinese));
 }
 
+constexpr Example kParamExplainExamples[] = {
+    {"param explain Pn0202 -d gsd600", "range, unit, default, labels, note and when it takes effect"},
+};
+
 }  // namespace
 
 extern const Command kParamExplain;
@@ -27,6 +31,7 @@ const Command kParamExplain{
         "Works without a bus. What the manual does not state is marked assumed, what it states "
         "inconsistently contradicted.",
     .parameters = kParamExplainParameters,
+    .examples = kParamExplainExamples,
     .needs = Needs::dictionary,
     .effect = Effect::none,
     .run = run_param_explain,

@@ -62,6 +62,11 @@ Result<report::Value> run_param_get(Context& context, const Arguments& arguments
   return report::Value(show::reading_table(context, readings));
 }
 
+constexpr Example kParamGetExamples[] = {
+    {"param get Pn0202 Pn0214 -n 1 -d gsd600", "two parameters by their numbers in the manual"},
+    {"param get 'Pn02*' -n 1,2 -d gsd600", "all that begin so, of two drives"},
+};
+
 }  // namespace
 
 extern const Command kParamGet;
@@ -72,6 +77,7 @@ const Command kParamGet{
         "`Pn02*` reads all that match. The value is the number the panel shows; where one step is not one "
         "unit, the value in units follows it. In JSON `raw` is the panel's number and `value` is in `unit`.",
     .parameters = kParamGetParameters,
+    .examples = kParamGetExamples,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::reads,
     .run = run_param_get,

@@ -30,6 +30,12 @@ Result<report::Value> run_param_list(Context& context, const Arguments& argument
   return report::Value(show::parameter_table(found, context.chinese));
 }
 
+constexpr Example kParamListExamples[] = {
+    {"param list -d gsd600", "all of the family"},
+    {"param list gain -d gsd600", "a group"},
+    {"param list 'Pn02*' -d gsd600", "those whose number begins so"},
+};
+
 }  // namespace
 
 extern const Command kParamList;
@@ -41,6 +47,7 @@ const Command kParamList{
         "size of one step. `?` marks what the manual does not state, `!` what it states inconsistently; "
         "`param explain` shows which, with line numbers.",
     .parameters = kParamListParameters,
+    .examples = kParamListExamples,
     .needs = Needs::dictionary,
     .effect = Effect::none,
     .run = run_param_list,

@@ -48,6 +48,11 @@ Result<report::Value> run_param_search(Context& context, const Arguments& argume
   return report::Value(show::parameter_table(best, context.chinese));
 }
 
+constexpr Example kParamSearchExamples[] = {
+    {"param search inertia ratio -d gsd600", "both words in number, name, label or note"},
+    {"param search gain -d gsd600 --lang zh", "with the Chinese names; Chinese words are found as well"},
+};
+
 }  // namespace
 
 extern const Command kParamSearch;
@@ -57,6 +62,7 @@ const Command kParamSearch{
     .details =
         "Searches numbers, names, labels and notes; matches in the name come first. Works without a bus.",
     .parameters = kParamSearchParameters,
+    .examples = kParamSearchExamples,
     .needs = Needs::dictionary,
     .effect = Effect::none,
     .run = run_param_search,

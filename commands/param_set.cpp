@@ -67,6 +67,12 @@ Result<std::vector<settings::NamedValue>> parameter_values(const Arguments& argu
   return out;
 }
 
+constexpr Example kParamSetExamples[] = {
+    {"param set Pn0214 45Hz -n 1 -d gsd600", "read back; tells when it takes effect"},
+    {"param set Pn0202=50Hz Pn0214=45Hz --keep -n 1 -d gsd600", "several, kept over power-off"},
+    {"param set Fn_00 20 --unlock --keep -n 1 -d ts", "one that the drive's password locks"},
+};
+
 }  // namespace
 
 extern const Command kParamSet;
@@ -78,6 +84,7 @@ const Command kParamSet{
         "400), a number with a unit is converted (Pn0214 40Hz), a label stands for its value. Stops at the "
         "first refusal. The result shows whether the value was read back and when it takes effect.",
     .parameters = kParamSetParameters,
+    .examples = kParamSetExamples,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::writes,
     .run = run_param_set,

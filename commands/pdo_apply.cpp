@@ -44,6 +44,11 @@ Result<report::Value> run_pdo_apply(Context& context, const Arguments& arguments
       {.keep = arguments.has("--keep"), .unlock = arguments.has("--unlock"), .file = arguments.text("file")});
 }
 
+constexpr Example kPdoApplyExamples[] = {
+    {"pdo apply pdos.toml --dry-run -n 1 -d gsd600", "first: show the frames"},
+    {"pdo apply pdos.toml --keep -n 1 -d gsd600", "all PDOs of the file, kept over power-off"},
+};
+
 }  // namespace
 
 extern const Command kPdoApply;
@@ -55,6 +60,7 @@ const Command kPdoApply{
         "same family, an EDS, a DCF or an ESI. CAN-IDs that contain the node-ID follow the node. PDOs not in the "
         "file stay unchanged.",
     .parameters = kPdoApplyParameters,
+    .examples = kPdoApplyExamples,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::stores,
     .run = run_pdo_apply,

@@ -60,16 +60,29 @@ Result<report::Value> run_pdo_enable(Context& context, const Arguments& argument
 }
 
 template <Action action>
-constexpr Command command(std::string_view path, std::string_view summary, std::string_view details) {
+constexpr Command command(std::string_view path, std::string_view summary, std::string_view details,
+                          std::span<const Example> examples) {
   return {.path = path,
           .summary = summary,
           .details = details,
           .parameters = kPdoEnableParameters,
+          .examples = examples,
           .needs = Needs::node | Needs::dictionary,
           .effect = Effect::stores,
           .run = run_pdo_enable<action>,
           .check = check_pdo_enable};
 }
+
+constexpr Example kPdoEnableExamples[] = {
+    {"pdo enable TPDO3 TPDO4 -n 1 -d gsd600",
+     "as they are mapped: from the factory with position and with speed"},
+};
+constexpr Example kPdoDisableExamples[] = {
+    {"pdo disable TPDO1 -n 1 -d gsd600", "not sent any more; what it carries stays"},
+};
+constexpr Example kPdoClearExamples[] = {
+    {"pdo clear TPDO4 -n 1 -d gsd600", "off, and it carries nothing any more"},
+};
 
 }  // namespace
 
@@ -77,14 +90,17 @@ extern const Command kPdoEnable;
 constexpr Command kPdoEnable = command<Action::enable>(
     "pdo enable", "Switch PDOs on",
     "Clears bit 31 of the COB-ID and keeps the others; on a family that assigns fixed PDOs, the PDO is "
-    "assigned.");
+    "assigned.",
+    kPdoEnableExamples);
 
 extern const Command kPdoDisable;
 constexpr Command kPdoDisable = command<Action::disable>(
-    "pdo disable", "Switch PDOs off", "Sets bit 31 of the COB-ID; the mapping stays for `pdo enable`.");
+    "pdo disable", "Switch PDOs off", "Sets bit 31 of the COB-ID; the mapping stays for `pdo enable`.",
+    kPdoDisableExamples);
 
 extern const Command kPdoClear;
-constexpr Command kPdoClear = command<Action::clear>("pdo clear", "Switch PDOs off, clear mapping",
-                                                     "Switches the PDO off and clears its mapping.");
+constexpr Command kPdoClear =
+    command<Action::clear>("pdo clear", "Switch PDOs off, clear mapping",
+                           "Switches the PDO off and clears its mapping.", kPdoClearExamples);
 
 }  // namespace servoctl::commands

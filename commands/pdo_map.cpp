@@ -186,6 +186,13 @@ Result<report::Value> run_pdo_map(Context& context, const Arguments& arguments) 
                           {.keep = arguments.has("--keep"), .unlock = arguments.has("--unlock")});
 }
 
+constexpr Example kPdoMapExamples[] = {
+    {"pdo map TPDO2 0x6064 0x606C --type 255 --event 10ms -n 1 -d dm --dry-run", "first: show the frames"},
+    {"pdo map TPDO2 0x6064 0x606C --type 255 --event 10ms -n 1 -d dm", "position and speed every 10 ms"},
+    {"pdo map RPDO1 controlword 0x60FF --type 1 --keep -n 1 -d gsd600",
+     "taken over at every SYNC, kept over power-off"},
+};
+
 }  // namespace
 
 extern const Command kPdoMap;
@@ -197,6 +204,7 @@ const Command kPdoMap{
         "read back, by the family's own procedure. If the drive refuses a step, the old PDO is written back. "
         "What is not given stays unchanged. Refused while the drive is energised. --dry-run shows the frames.",
     .parameters = kPdoMapParameters,
+    .examples = kPdoMapExamples,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::stores,
     .run = run_pdo_map,

@@ -45,6 +45,11 @@ Result<report::Value> run_pdo_preset(Context& context, const Arguments& argument
                           {.keep = arguments.has("--keep"), .unlock = arguments.has("--unlock")});
 }
 
+constexpr Example kPdoPresetExamples[] = {
+    {"pdo preset pv -n 1 -d gsd600", "for profile velocity, as the manual says"},
+    {"pdo preset csp -n 1 -d sv2 -b coe:eth0", "for cyclic synchronous position on EtherCAT"},
+};
+
 }  // namespace
 
 extern const Command kPdoPreset;
@@ -55,6 +60,7 @@ const Command kPdoPreset{
         "The mappings in the family's manual for profile position (pp), profile velocity (pv), torque (pt), "
         "homing (home) and others; other PDOs stay unchanged. As safe as `pdo map`.",
     .parameters = kPdoPresetParameters,
+    .examples = kPdoPresetExamples,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::stores,
     .run = run_pdo_preset,

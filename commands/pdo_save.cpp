@@ -34,6 +34,10 @@ Result<report::Value> run_pdo_save(Context& context, const Arguments& arguments)
       {"node", node}, {"file", path.string()}, {"pdos", file.pdos.size(), report::Show::everywhere, "PDOs"}});
 }
 
+constexpr Example kPdoSaveExamples[] = {
+    {"pdo save pdos.toml -n 1 -d gsd600", "to read, to edit, and for `pdo apply`"},
+};
+
 }  // namespace
 
 extern const Command kPdoSave;
@@ -44,6 +48,7 @@ const Command kPdoSave{
         "TOML, to read and edit, or JSON, by the extension. CAN-IDs that contain the node-ID are written "
         "with $NODEID, so that the file fits other nodes. `pdo apply` writes it to a drive.",
     .parameters = kPdoSaveParameters,
+    .examples = kPdoSaveExamples,
     .needs = Needs::node,
     .effect = Effect::reads,
     .run = run_pdo_save,

@@ -134,6 +134,10 @@ Result<Value> run_pdo_send(Context& context, const Arguments& arguments) {
   return Value(std::move(answer));
 }
 
+constexpr Example kPdoSendExamples[] = {
+    {"pdo send RPDO1 0x06 -n 1 -d gsd600", "a controlword that enables nothing; asks first"},
+};
+
 }  // namespace
 
 extern const Command kPdoSend;
@@ -146,6 +150,7 @@ const Command kPdoSend{
         "in use or the node is not operational. PDOs are not answered: `status` or `pdo watch` show the "
         "effect.",
     .parameters = kPdoSendParameters,
+    .examples = kPdoSendExamples,
     .needs = Needs::node | Needs::can,
     .effect = Effect::moves,
     .run = run_pdo_send,

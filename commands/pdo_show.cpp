@@ -157,6 +157,11 @@ Result<Value> run_pdo_show(Context& context, const Arguments&) {
   return Value(std::move(out));
 }
 
+constexpr Example kPdoShowExamples[] = {
+    {"pdo show -n 1 -d gsd600", "all that are in use, and what differs from the factory"},
+    {"pdo show -n all", "also two drives with the same COB-ID"},
+};
+
 }  // namespace
 
 extern const Command kPdoShow;
@@ -168,6 +173,7 @@ const Command kPdoShow{
         "objects; with -d, also what differs from the factory setting. With -n all, also TPDOs of two drives "
         "with the same COB-ID.",
     .parameters = {},
+    .examples = kPdoShowExamples,
     .needs = Needs::node,
     .effect = Effect::reads,
     .run = run_pdo_show,

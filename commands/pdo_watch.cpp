@@ -187,6 +187,11 @@ Result<Value> run_pdo_watch(Context& context, const Arguments& arguments) {
   return Value(report::Record{{"pdos", summary(*watched)}, {"samples", writer.take_kept()}});
 }
 
+constexpr Example kPdoWatchExamples[] = {
+    {"pdo watch -n 1 -d gsd600", "all that are in use, until Ctrl-C"},
+    {"pdo watch TPDO1 --for 10s -n 1 -d gsd600", "one of them, with its period at the end"},
+};
+
 }  // namespace
 
 extern const Command kPdoWatch;
@@ -201,6 +206,7 @@ const Command kPdoWatch{
         "EtherCAT a drive has to be in OP (`state op` before, at the prompt or in a batch file): shown are the "
         "PDOs assigned, one line per change, and every cycle is counted.",
     .parameters = kPdoWatchParameters,
+    .examples = kPdoWatchExamples,
     .needs = Needs::node,
     .effect = Effect::reads,
     .run = run_pdo_watch,

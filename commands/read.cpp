@@ -133,6 +133,12 @@ Result<report::Value> run_read(Context& context, const Arguments& arguments) {
   return report::Value(show::reading_table(context, readings));
 }
 
+constexpr Example kReadExamples[] = {
+    {"read 0x6041 0x6064 -n 1", "two objects by address"},
+    {"read statusword Pn0202 -n 1 -d gsd600", "by name, and by the number on the panel"},
+    {"read '0x60*' -n 1 -d sv2", "every object from 6000h to 60FFh that can be read"},
+};
+
 }  // namespace
 
 extern const Command kRead;
@@ -146,6 +152,7 @@ const Command kRead{
         "them is shown with its abort, and what cannot be read is left out. With --to the bytes of one object of any size go to a "
         "file; block transfer is tried first where the drive may support it.",
     .parameters = kReadParameters,
+    .examples = kReadExamples,
     .needs = Needs::node,
     .effect = Effect::reads,
     .run = run_read,

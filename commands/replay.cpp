@@ -210,6 +210,11 @@ Result<Value> run_replay(Context& context, const Arguments& arguments) {
   return Value(std::move(answer));
 }
 
+constexpr Example kReplayExamples[] = {
+    {"replay session.log --dry-run", "first: count the frames that can move a motor"},
+    {"replay session.log --master --only sdo", "the SDO requests of the master, after a question"},
+};
+
 }  // namespace
 
 extern const Command kReplay;
@@ -226,6 +231,7 @@ const Command kReplay{
         "drive refused an SDO request or did not answer it. To have commands answered by a recording "
         "instead, use --bus replay:FILE.",
     .parameters = kReplayParameters,
+    .examples = kReplayExamples,
     .needs = Needs::can,
     .effect = Effect::moves,
     .run = run_replay,

@@ -258,6 +258,12 @@ Result<Value> run_report(Context& context, const Arguments& arguments) {
   return Value(std::move(out));
 }
 
+constexpr Example kReportExamples[] = {
+    {"report lift.html -n 1 -d gsd600 --title \"Lift, cell 3\"", "a page to print and to hand over"},
+    {"report lift.html --tests test.json -n 1 -d gsd600", "with the tests that were made before"},
+    {"report lift.html --lang zh -n 1 -d gsd600", "in Chinese"},
+};
+
 }  // namespace
 
 extern const Command kReport;
@@ -273,6 +279,7 @@ const Command kReport{
         "changes nothing. One report is of one bus and one family. The file is written whole or not at all; exit "
         "code 1 when a test in it failed.",
     .parameters = kReportParameters,
+    .examples = kReportExamples,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::reads,
     .family = FamilyCheck::always,

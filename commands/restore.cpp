@@ -62,6 +62,12 @@ Result<Value> run_restore(Context& context, const Arguments& arguments) {
   return std::move(done->answer);
 }
 
+constexpr Example kRestoreExamples[] = {
+    {"restore good.json -n 1 -d gsd600 --dry-run", "first: what would be written"},
+    {"restore good.json -n 1 -d gsd600 --keep", "all of it or nothing, kept over power-off"},
+    {"restore good.json --only params -n 2 -d gsd600", "the panel parameters alone, to another drive"},
+};
+
 }  // namespace
 
 extern const Command kRestore;
@@ -81,6 +87,7 @@ const Command kRestore{
         "the rest restored; another tool's file with unusable entries, or entries this drive cannot take, is "
         "refused; --skip-invalid lists and skips them.",
     .parameters = kRestoreParameters,
+    .examples = kRestoreExamples,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::stores,
     .run = run_restore,

@@ -20,6 +20,12 @@ constexpr Parameter kRunParameters[] = {
     {.name = "--check", .help = "check all lines without a bus, run none", .kind = Kind::flag},
 };
 
+constexpr Example kRunExamples[] = {
+    {"run setup.servoctl --check", "look for mistakes in every line, without a bus"},
+    {"run setup.servoctl --dry-run --frames --var NODE=1", "show the frames of every line"},
+    {"run setup.servoctl --var NODE=1 --yes", "run it for node 1, with every question answered by yes"},
+};
+
 }  // namespace
 
 extern const Command kRun;
@@ -37,6 +43,7 @@ const Command kRun{
         "also shows its frames, as its own --dry-run would, or why it would be refused, against the drives "
         "as they are before the first line. `servoctl -` reads standard input.",
     .parameters = kRunParameters,
+    .examples = kRunExamples,
     .of_front_end = true,
 };
 

@@ -126,6 +126,12 @@ Result<report::Value> run_scan(Context& context, const Arguments& arguments) {
                                             arguments.has("--long")));
 }
 
+constexpr Example kScanExamples[] = {
+    {"scan -b can0", "who is on the bus: family and state of each node"},
+    {"scan --long -n 1-10 -b can0", "the identity in numbers, of these nodes only"},
+    {"scan -b coe:eth0", "the ring: name, AL state and links of each slave"},
+};
+
 }  // namespace
 
 extern const Command kScan;
@@ -149,6 +155,7 @@ const Command kScan{
         "another master works with is only looked at. On Modbus, asks the addresses 1 to 127 one after the other; with -d "
         "FAMILY it shows the alarm of each that answers: registers do not say what a device is.",
     .parameters = kScanParameters,
+    .examples = kScanExamples,
     .needs = Needs::bus,
     .effect = Effect::links,
     .reads_without = "--all-bitrates",

@@ -220,6 +220,13 @@ Result<Value> run_scope(Context& context, const Arguments& arguments) {
   return Value(std::move(out));
 }
 
+constexpr Example kScopeExamples[] = {
+    {"scope 0x6064 0x606C --for 2s --svg jog.svg --csv jog.csv -n 1 -d gsd600",
+     "as fast as the bus allows, as a plot and a table"},
+    {"scope 0x606C 0x6077 --map --every 2ms --for 1s --plot -n 1 -d gsd600",
+     "every 2 ms by a TPDO of its own; asks, and puts it back"},
+};
+
 }  // namespace
 
 extern const Command kScope;
@@ -234,6 +241,7 @@ const Command kScope{
         "where there is no value at that time; --svg) or are plotted (--plot); with --json they are in the "
         "result. A drive that no longer answers at the end sets the exit code.",
     .parameters = kScopeParameters,
+    .examples = kScopeExamples,
     .needs = Needs::node,
     .effect = Effect::reads,
     .run = run_scope,

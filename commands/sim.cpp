@@ -72,6 +72,13 @@ Result<report::Value> run_sim(Context& context, const Arguments& arguments) {
   return report::Value();
 }
 
+constexpr Example kSimExamples[] = {
+    {"sim gsd600@1 -b local:cell", "a drive for other terminals: `scan -b local:cell`"},
+    {"sim \"gsd600@1,ts@2?state=memory\" -b local:cell",
+     "two that remember what was written in the file memory"},
+    {"sim sv2@1,sv2@2 -b coe:local:ring", "an EtherCAT ring"},
+};
+
 }  // namespace
 
 extern const Command kSim;
@@ -92,6 +99,7 @@ const Command kSim{
         "or mute. On Modbus, `servoctl sim ts@1 --bus modbus:/dev/pts/4` stands at one end of a serial line, and "
         "--bus modbus://127.0.0.1:1502 listens there; damage=10 damages every 10th answer.",
     .parameters = kSimParameters,
+    .examples = kSimExamples,
     .needs = Needs::bus,
     .effect = Effect::none,
     .run = run_sim,

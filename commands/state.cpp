@@ -118,6 +118,20 @@ constexpr std::string_view kUp =
 constexpr std::string_view kStateElsewhere =
     "on CAN `nmt start`, `nmt stop` and `nmt preop` change the state of a node";
 
+constexpr Example kStateInitExamples[] = {
+    {"state init -n 1 -b coe:eth0", "no objects, no process data"},
+    {"state init -n 1 --take-over -b coe:eth0", "a slave that a master left in OP when it went"},
+};
+constexpr Example kStatePreopExamples[] = {
+    {"state preop -n 1 -b coe:eth0", "objects can be read and written; no process data"},
+};
+constexpr Example kStateSafeopExamples[] = {
+    {"state safeop -n 1 -d sv2 -b coe:eth0", "inputs alone are exchanged, until Ctrl-C"},
+};
+constexpr Example kStateOpExamples[] = {
+    {"state op -n 1 -d sv2 -b coe:eth0", "exchange process data until Ctrl-C; the drive is not enabled"},
+};
+
 }  // namespace
 
 extern const Command kStateInit;
@@ -126,6 +140,7 @@ const Command kStateInit{
     .summary = "Set EtherCAT slaves to INIT: no objects, no process data",
     .details = kDown,
     .parameters = kStateParameters,
+    .examples = kStateInitExamples,
     .needs = Needs::node | Needs::ethercat,
     .effect = Effect::writes,
     .family = FamilyCheck::never,
@@ -139,6 +154,7 @@ const Command kStatePreop{
     .summary = "Set EtherCAT slaves to PRE-OP: objects, no process data",
     .details = kDown,
     .parameters = kStateParameters,
+    .examples = kStatePreopExamples,
     .needs = Needs::node | Needs::ethercat,
     .effect = Effect::writes,
     .family = FamilyCheck::never,
@@ -152,6 +168,7 @@ const Command kStateSafeop{
     .summary = "Set EtherCAT slaves to SAFE-OP: inputs only; holds it",
     .details = kUp,
     .parameters = kStateParameters,
+    .examples = kStateSafeopExamples,
     .needs = Needs::node | Needs::ethercat,
     .effect = Effect::writes,
     .family = FamilyCheck::never,
@@ -165,6 +182,7 @@ const Command kStateOp{
     .summary = "Set EtherCAT slaves to OP: process data; holds it",
     .details = kUp,
     .parameters = kStateParameters,
+    .examples = kStateOpExamples,
     .needs = Needs::node | Needs::ethercat,
     .effect = Effect::writes,
     .family = FamilyCheck::never,

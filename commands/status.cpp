@@ -255,6 +255,12 @@ Result<report::Value> run_status(Context& context, const Arguments& arguments) {
   return report::Value(std::move(out));
 }
 
+constexpr Example kStatusExamples[] = {
+    {"status -n all", "one line for each drive that answers"},
+    {"status -n 1 -d gsd600 --long", "every bit of the statusword, and the fault in full"},
+    {"status -n 1,2 --json", "for a script: `.result[].state`"},
+};
+
 }  // namespace
 
 extern const Command kStatus;
@@ -268,6 +274,7 @@ const Command kStatus{
         "the node sends one, status waits for it. On EtherCAT the slave is asked for its AL state; in SAFE-OP and "
         "OP --long shows the counts of process data as well.",
     .parameters = kStatusParameters,
+    .examples = kStatusExamples,
     .needs = Needs::node,
     .effect = Effect::reads,
     .run = run_status,

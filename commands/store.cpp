@@ -81,6 +81,15 @@ Result<Value> run_defaults(Context& context, const Arguments& arguments) {
                     "restored; takes effect after a restart of the drive"});
 }
 
+constexpr Example kStoreExamples[] = {
+    {"store -n 1 -d gsd600", "what was written to the drive survives power-off"},
+    {"store -n 1 -d gsd600 --dry-run", "only show the frames"},
+};
+constexpr Example kDefaultsExamples[] = {
+    {"defaults -n 1 -d gsd600 --dry-run", "first: show the frames"},
+    {"defaults -n 1 -d gsd600", "all factory values, after a question; `nmt reset` restarts the drive"},
+};
+
 }  // namespace
 
 extern const Command kStore;
@@ -91,6 +100,7 @@ const Command kStore{
         "Writes \"save\" to 1010h, or uses the family's own method. Waits up to 10 s for the drive. Where "
         "values can be kept only at the moment they are written, store says so: use `param set … --keep`.",
     .parameters = kStoreParameters,
+    .examples = kStoreExamples,
     .needs = Needs::node,
     .effect = Effect::stores,
     .run = run_store,
@@ -102,6 +112,7 @@ const Command kDefaults{
     .summary = "Restore the factory values of a drive",
     .details = "Writes \"load\" to 1011h, or uses the family's own method. Takes effect after a restart.",
     .parameters = kStoreParameters,
+    .examples = kDefaultsExamples,
     .needs = Needs::node,
     .effect = Effect::resets,
     .run = run_defaults,

@@ -133,6 +133,17 @@ Result<Value> run_stop(Context& context, const Arguments&) {
   return Value(std::move(result.table));
 }
 
+constexpr Example kSyncOnceExamples[] = {
+    {"sync once", "one SYNC, after a question: a drive may move"},
+};
+constexpr Example kSyncStartExamples[] = {
+    {"sync start --period 4ms", "in the background of the lines that follow; alone until Ctrl-C"},
+    {"sync start --period 10ms --for 5s", "for five seconds, with the periods at the end"},
+};
+constexpr Example kSyncStopExamples[] = {
+    {"sync stop", "the one of this prompt or batch file, with its measured periods"},
+};
+
 }  // namespace
 
 extern const Command kSyncOnce;
@@ -143,6 +154,7 @@ const Command kSyncOnce{
         "Synchronous RPDOs received before take effect, synchronous TPDOs are sent. Asks first, because a "
         "drive may move.",
     .parameters = {},
+    .examples = kSyncOnceExamples,
     .needs = Needs::can,
     .effect = Effect::moves,
     .family = FamilyCheck::never,
@@ -160,6 +172,7 @@ const Command kSyncStart{
         "shows the measured periods: mean, shortest, longest, standard deviation, and how many SYNCs were "
         "missed because the computer was late. There must be no other producer of SYNC on the bus.",
     .parameters = kStartParameters,
+    .examples = kSyncStartExamples,
     .needs = Needs::can,
     .effect = Effect::moves,
     .family = FamilyCheck::never,
@@ -175,6 +188,7 @@ const Command kSyncStop{
         "Shows the measured periods. Drives left energised in a mode that follows SYNC (ip, csp, csv, cst) "
         "are listed: disable them first.",
     .parameters = {},
+    .examples = kSyncStopExamples,
     .needs = Needs::can,
     .effect = Effect::none,
     .family = FamilyCheck::never,

@@ -132,6 +132,12 @@ Result<report::Value> run_test_all(Context& context, const Arguments& arguments)
   return AllTests(context, arguments).run();
 }
 
+constexpr Example kTestAllExamples[] = {
+    {"test all 60rpm -n 1 -d gsd600 --turn 131072 --limit 600rpm",
+     "communication, both directions, and homing at 600 rpm at most"},
+    {"test all 60rpm --no-home --json -n 1 -d sv2", "without homing; the JSON is for `report --tests`"},
+};
+
 }  // namespace
 
 extern const Command kTestAll;
@@ -140,12 +146,11 @@ const Command kTestAll{
     .summary = "Test communication, inputs, both directions and homing, with a verdict",
     .details =
         "Runs `test comm`, `test io` if --expect names inputs, `test jog` and, if the family can home and "
-        "--no-home is not given, `test home` with the drive's present method. If a limit or an option rules "
-        "out any of them, nothing is moved at all. After a failure nothing more is moved. Each motion shows "
-        "its preflight checks and asks, as it would alone. Exit code 1 if a test fails. Example: `test all "
-        "60rpm -n 1 -d gsd600 --yes --json >axis-1.json`, then `report axis-1.html --tests axis-1.json -n 1 "
-        "-d gsd600`.",
+        "--no-home is not given, `test home` with the drive's present method. If a limit or an option "
+        "rules out any of them, nothing is moved at all. After a failure nothing more is moved. Each "
+        "motion shows its preflight checks and asks, as it would alone. Exit code 1 if a test fails.",
     .parameters = kTestAllParameters,
+    .examples = kTestAllExamples,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,
     .family = FamilyCheck::never,

@@ -31,6 +31,11 @@ Result<report::Value> run_test_comm(Context& context, const Arguments& arguments
   return trial::verdicts(context, verdict_options(arguments), results);
 }
 
+constexpr Example kTestCommExamples[] = {
+    {"test comm -n 1", "200 reads and the heartbeat; exit code 1 if it fails"},
+    {"test comm --count 2000 --longest 20ms --junit comm.xml -n 1", "stricter, with a file for a CI"},
+};
+
 }  // namespace
 
 extern const Command kTestComm;
@@ -44,6 +49,7 @@ const Command kTestComm{
         "1 if it fails. On EtherCAT no frame may be lost instead: there is no heartbeat. Changes nothing and moves "
         "nothing.",
     .parameters = kTestCommParameters,
+    .examples = kTestCommExamples,
     .needs = Needs::node,
     .effect = Effect::reads,
     .run = run_test_comm,

@@ -31,6 +31,13 @@ Result<report::Value> run_test_home(Context& context, const Arguments& arguments
   return trial::verdicts(context, verdict_options(arguments), {std::move(*done->result)});
 }
 
+constexpr Example kTestHomeExamples[] = {
+    {"test home 17 --spread 0.5 --limit 900rpm --window 5rev -n 1 -d sv2",
+     "five times, home within half a degree"},
+    {"test home --repeat 3 --limit 600rpm -n 1 -d gsd600 --turn 131072",
+     "three times, with the method that is set in the drive"},
+};
+
 }  // namespace
 
 extern const Command kTestHome;
@@ -41,9 +48,10 @@ const Command kTestHome{
         "Checks, asks, moves and ends as `home` does, --repeat times. Passes if every run finds home, and "
         "neither the final position nor home against the encoder's own count (6063h, or the family's own "
         "object) spreads by more than --spread. --encoder gives the encoder counts per revolution if the "
-        "drive does not report them; a drive that also zeroes the encoder count shows no spread there. Exit "
-        "code 1 when it fails. Example: `test home 33 --repeat 5 --spread 0.5 -n 1 -d gsd600 --yes`.",
+        "drive does not report them; a drive that also zeroes the encoder count shows no spread there. "
+        "Exit code 1 when it fails.",
     .parameters = kTestHomeParameters,
+    .examples = kTestHomeExamples,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,
     .run = run_test_home,

@@ -31,6 +31,12 @@ Result<report::Value> run_test_io(Context& context, const Arguments& arguments) 
   return trial::verdicts(context, verdict_options(arguments), {std::move(*result)});
 }
 
+constexpr Example kTestIoExamples[] = {
+    {"test io --expect negative-limit,positive-limit,home -n 1 -d gsd600",
+     "ends when each of the three was seen at 0 and at 1"},
+    {"test io --for 1m -n 1 -d gsd600", "show every change for a minute"},
+};
+
 }  // namespace
 
 extern const Command kTestIo;
@@ -43,6 +49,7 @@ const Command kTestIo{
         "passes if any input changed. 0 and 1 are the bits as the drive sends them: whether 1 means actuated "
         "depends on the family and on the wiring. Exit code 1 if it fails. Moves nothing.",
     .parameters = kTestIoParameters,
+    .examples = kTestIoExamples,
     .needs = Needs::node,
     .effect = Effect::reads,
     .family = FamilyCheck::always,

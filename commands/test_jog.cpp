@@ -36,6 +36,11 @@ Result<report::Value> run_test_jog(Context& context, const Arguments& arguments)
   return trial::verdicts(context, verdict_options(arguments), {std::move(*done->result)});
 }
 
+constexpr Example kTestJogExamples[] = {
+    {"test jog 60rpm -n 1 -d gsd600 --turn 131072", "two seconds each way, after a question"},
+    {"test jog 100rpm --for 5s --tolerance 5 --junit jog.xml -n 1 -d sv2", "stricter, with a file for a CI"},
+};
+
 }  // namespace
 
 extern const Command kTestJog;
@@ -47,9 +52,9 @@ const Command kTestJog{
         "the commanded direction, held its speed within --tolerance in the second half of the time, its "
         "following error grew by at most 1 % of the distance, it stood still within --stop-within of the "
         "stop command, and the drive was left disabled. What a drive does not report is skipped. --plot "
-        "plots, --csv saves the samples. Exit code 1 if it fails. Example: `test jog 60rpm -n 1 -d gsd600 "
-        "--yes --junit jog.xml`.",
+        "plots, --csv saves the samples. Exit code 1 if it fails.",
     .parameters = kTestJogParameters,
+    .examples = kTestJogExamples,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,
     .run = run_test_jog,

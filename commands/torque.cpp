@@ -28,6 +28,12 @@ Result<report::Value> run_torque(Context& context, const Arguments& arguments) {
                             motion::motion_run(torque, motion::plan_torque, motion::run_torque));
 }
 
+constexpr Example kTorqueExamples[] = {
+    {"torque 5% --for 1s --limit 60rpm -n 1 -d sv2",
+     "5 % of the rated torque for a second, stopped above 1.2 times 60 rpm"},
+    {"torque -0.2Nm --for 500ms --limit 30rpm -n 1 -d dm", "in newton metres, backwards"},
+};
+
 }  // namespace
 
 extern const Command kTorque;
@@ -37,9 +43,9 @@ const Command kTorque{
     .details =
         "Torque mode, supervised and ended like `jog`. --limit is the speed limit: it is set in the drive "
         "where the family has one for this mode, and servoctl always stops a motor that exceeds 1.2 times "
-        "it. Above the rated torque --max-torque is needed; above 6072h is refused. Example: `torque 5% "
-        "--limit 60rpm --for 1s -n 1`.",
+        "it. Above the rated torque --max-torque is needed; above 6072h is refused.",
     .parameters = kTorqueParameters,
+    .examples = kTorqueExamples,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,
     .run = run_torque,

@@ -32,6 +32,10 @@ Result<Value> run_units_forget(Context& context, const Arguments& /*unused*/) {
   return Value(std::move(table));
 }
 
+constexpr Example kUnitsForgetExamples[] = {
+    {"units forget -n 1", "what `units learn` has kept for node 1 of this bus"},
+};
+
 }  // namespace
 
 extern const Command kUnitsForget;
@@ -39,9 +43,10 @@ const Command kUnitsForget{
     .path = "units forget",
     .summary = "Delete the kept counts per revolution",
     .details =
-        "For these nodes on this bus, whatever drive is there now. Nothing is read from the drive or changed "
-        "in it. Example: `units forget -n 1`.",
+        "For these nodes on this bus, whatever drive is there now. Nothing is read from the drive or "
+        "changed in it.",
     .parameters = {},
+    .examples = kUnitsForgetExamples,
     .needs = Needs::node,
     .effect = Effect::none,
     .run = run_units_forget,

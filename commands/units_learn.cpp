@@ -247,6 +247,12 @@ Result<Value> run_units_learn(Context& context, const Arguments& arguments) {
   return answer;
 }
 
+constexpr Example kUnitsLearnExamples[] = {
+    {"units learn -n 1 -d gsd600", "about four turns at 30 rpm, after a question"},
+    {"units learn --speed -15rpm --nameplate 131072 -n 1 -d gsd600",
+     "slowly backwards, compared with the nameplate of the encoder"},
+};
+
 }  // namespace
 
 extern const Command kUnitsLearn;
@@ -255,14 +261,15 @@ const Command kUnitsLearn{
     .summary = "Turn a motor slowly to measure its counts per revolution, and keep them",
     .details =
         "For drives that do not report it. Checks, asks, moves and ends as `jog` does: speeds up until the "
-        "drive's own speed monitor shows 30 rpm, then 6 s at that speed, about 4 turns in all. The result is "
-        "the change of 6064h divided by the integral of the monitor, without the gear 6091h; 606Ch must "
+        "drive's own speed monitor shows 30 rpm, then 6 s at that speed, about 4 turns in all. The result "
+        "is the change of 6064h divided by the integral of the monitor, without the gear 6091h; 606Ch must "
         "agree. It is refused if it may be more than 1 % off, or if the monitor shows nothing or does not "
         "match the position. The power of two within 1 % is taken, else a round decimal number (not where "
-        "the manual prints two scales for the monitor: then --nameplate COUNTS is compared with the result). "
-        "It is kept for this bus, node and identity (1000h, 1008h, 1018h) and used by every motion without "
-        "--turn, with a notice; the drive's own parameters take precedence. Example: `units learn -n 1`.",
+        "the manual prints two scales for the monitor: then --nameplate COUNTS is compared with the "
+        "result). It is kept for this bus, node and identity (1000h, 1008h, 1018h) and used by every "
+        "motion without --turn, with a notice; the drive's own parameters take precedence.",
     .parameters = kUnitsLearnParameters,
+    .examples = kUnitsLearnExamples,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,
     .run = run_units_learn,

@@ -119,6 +119,11 @@ Result<Value> run_units_show(Context& context, const Arguments& arguments) {
   return Value(std::move(table));
 }
 
+constexpr Example kUnitsShowExamples[] = {
+    {"units show -n 1 -d gsd600", "whether counts per revolution are known, and from where"},
+    {"units show -n 1 -d ts --turn 10000", "with the counts that the nameplate says"},
+};
+
 }  // namespace
 
 extern const Command kUnitsShow;
@@ -130,6 +135,7 @@ const Command kUnitsShow{
         "give them: from the drive's parameters, from what `units learn` kept, or from --turn. In JSON "
         "`source` is drive, kept, --turn or null. What is kept but not used is shown with the reason.",
     .parameters = kUnitsShowParameters,
+    .examples = kUnitsShowExamples,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::reads,
     .family = FamilyCheck::always,

@@ -56,6 +56,11 @@ Result<Value> run_verify(Context& context, const Arguments& arguments) {
   return Value(std::move(out));
 }
 
+constexpr Example kVerifyExamples[] = {
+    {"verify good.json -n 1 -d gsd600", "whether the drive still holds the backup; exit code 1 if not"},
+    {"verify factory -n 1 -d gsd600", "whether it is as from the factory"},
+};
+
 }  // namespace
 
 extern const Command kVerify;
@@ -67,6 +72,7 @@ const Command kVerify{
         "another format is refused if it has an unusable entry; --skip-invalid verifies the rest, exit code "
         "1.",
     .parameters = kVerifyParameters,
+    .examples = kVerifyExamples,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::reads,
     .family = FamilyCheck::always,

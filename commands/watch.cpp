@@ -187,6 +187,13 @@ Result<Value> run_watch(Context& context, const Arguments& arguments) {
   return watching.result(arguments.has("--plot"));
 }
 
+constexpr Example kWatchExamples[] = {
+    {"watch 0x6064 0x606C -n 1 -d gsd600", "position and speed, until Ctrl-C or q"},
+    {"watch statusword -n 1 -d gsd600 --changes", "a line when it changes"},
+    {"watch 0x6077 --every 20ms --for 5s --plot -n 1 -d gsd600",
+     "the torque for five seconds, plotted at the end"},
+};
+
 }  // namespace
 
 extern const Command kWatch;
@@ -201,6 +208,7 @@ const Command kWatch{
         "mean and maximum; --plot plots them. `-o jsonl` gives one document per sample. A drive that no "
         "longer answers at the end sets the exit code.",
     .parameters = kWatchParameters,
+    .examples = kWatchExamples,
     .needs = Needs::node,
     .effect = Effect::reads,
     .run = run_watch,

@@ -63,6 +63,10 @@ Result<Value> run_watchdog(Context& context, const Arguments&) {
   return Value(std::move(out));
 }
 
+constexpr Example kWatchdogExamples[] = {
+    {"watchdog -n 1 -d gsd600", "what the drive does when the cable is pulled"},
+};
+
 }  // namespace
 
 extern const Command kWatchdog;
@@ -76,6 +80,7 @@ const Command kWatchdog{
         "watchdog does it. It is what is set now: motions arm a watchdog of their own where there is one. "
         "`heartbeat consume` sets one.",
     .parameters = {},
+    .examples = kWatchdogExamples,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::reads,
     .family = FamilyCheck::always,

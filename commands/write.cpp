@@ -91,6 +91,12 @@ Result<std::vector<settings::NamedValue>> object_values(const Arguments& argumen
                                             .type = od::parse_data_type(arguments.text("--type"))}};
 }
 
+constexpr Example kWriteExamples[] = {
+    {"write 0x6080 120rpm --keep -n 1 -d dm", "a value with its unit, read back, and kept over power-off"},
+    {"write 6060h pv -n 1 -d gsd600 --dry-run", "a label for its number; only show the frames"},
+    {"write 0x1017 500 --type u16 -n 1", "without a family: raw number and type"},
+};
+
 }  // namespace
 
 extern const Command kWrite;
@@ -106,6 +112,7 @@ const Command kWrite{
         "that CiA 301 reserves for another service (NMT, SYNC, EMCY, SDO, error control, restricted) is "
         "refused. A value that begins with - and is not a number goes after --: write 0x2000 -- \"--text\".",
     .parameters = kWriteParameters,
+    .examples = kWriteExamples,
     .needs = Needs::node,
     .effect = Effect::writes,
     .run = run_write,

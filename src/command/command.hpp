@@ -76,11 +76,19 @@ enum class Effect : std::uint8_t { none, reads, links, writes, stores, resets, m
 /// (Context::hold_family()).
 enum class FamilyCheck : std::uint8_t { by_effect, always, never };
 
+/// A command line, and what it is for. The letters themselves and no pointers to them: nothing is to be
+/// relocated when the program starts.
+struct Example {
+  char line[77];  ///< As at the prompt: without the word `servoctl`.
+  char what[83];  ///< Begins in lower case, no full stop.
+};
+
 struct Command {
   std::string_view path;     ///< `param set`; lives in commands/param_set.cpp.
   std::string_view summary;  ///< One line, no full stop.
-  std::string_view details;  ///< More for `help COMMAND`: what it does, what it answers, examples.
+  std::string_view details;  ///< More for `help COMMAND`: what it does, what it answers.
   std::span<const Parameter> parameters;
+  std::span<const Example> examples = {};  ///< One to three: what is needed most.
   Needs needs = Needs::nothing;
   Effect effect = Effect::none;
   FamilyCheck family = FamilyCheck::by_effect;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/text.hpp"
+#include "command/prompt_words.hpp"
 #include "command/registry.hpp"
 
 namespace servoctl::command {
@@ -35,6 +36,15 @@ std::string rows(std::span<const Parameter> parameters, bool options, std::size_
   return out;
 }
 
+/// Each line as it is typed, and under it what it is for.
+std::string example_lines(std::span<const Example> examples, std::size_t width) {
+  if (examples.empty()) return {};
+  std::string out = "\nExamples:\n";
+  for (const auto& example : examples)
+    out += fmt::format("  {}\n      {}\n", example.line, wrapped(example.what, 6, width));
+  return out;
+}
+
 std::string command_help(const Command& command, std::size_t width) {
   auto out = fmt::format("servoctl {}\n\n{}.\n", usage_line(command.path), command.summary);
   if (!command.details.empty()) out += "\n" + wrapped(command.details, 0, width) + "\n";
@@ -42,6 +52,7 @@ std::string command_help(const Command& command, std::size_t width) {
     out += "\nArguments:\n" + words;
   if (const auto options = rows(command.parameters, true, width); !options.empty())
     out += "\nOptions:\n" + options;
+  out += example_lines(command.examples, width);
   std::vector<Parameter> others(global_options().begin(), global_options().end());
   std::erase_if(others, [&](const Parameter& global) { return has_own(command, global); });
   return out + "\nOptions of every command:\n" + rows(others, true, width);
@@ -58,18 +69,30 @@ std::string command_rows(std::string_view group, std::size_t width) {
   return out;
 }
 
+std::string word_help(const PromptWord& word, std::size_t width) {
+  const auto group = command_rows(word.name, width);
+  return fmt::format("At the prompt: {}\n\n{}.\n\n{}\n{}{}", prompt_usage(word),
+                     wrapped(word.summary, 0, width), wrapped(word.details, 0, width),
+                     example_lines(word.examples, width),
+                     group.empty() ? "" : fmt::format("\nservoctl {} …\n\n{}", word.name, group));
+}
+
+std::string word_rows(std::size_t width) {
+  std::string out;
+  for (const auto& word : prompt_words())
+    out += "  " + pad_right(prompt_usage(word), 22) + " " + wrapped(word.summary, 25, width) + "\n";
+  return out;
+}
+
 std::string program_help(std::size_t width) {
   return "servoctl: commissions CANopen servo drives from a terminal\n\n"
          "  servoctl [OPTIONS] COMMAND …    run one command\n"
          "  servoctl [OPTIONS]              the prompt; also reads command lines from a pipe\n"
          "  servoctl [OPTIONS] -            a batch file from standard input (see `help run`)\n\n"
          "Commands:\n" +
-         command_rows({}, width) +
-         "\nAt the prompt also: use NODE, drive FAMILY, bus BUS (for the following lines), undo (the last\n"
-         "`param set` or `write`), log on FILE, log off, exit.\n"
-         "\nOptions of every command:\n" +
-         rows(global_options(), true, width) +
-         "\n`help COMMAND` shows more. Exit codes: 0 done, 1 negative result, 2 usage, 3 bus, 4 no "
+         command_rows({}, width) + "\nAt the prompt also:\n" + word_rows(width) +
+         "\nOptions of every command:\n" + rows(global_options(), true, width) +
+         "\n`help COMMAND` shows more, with examples. Exit codes: 0 done, 1 negative result, 2 usage, 3 bus, 4 no "
          "answer,\n5 refused by the drive, 6 protocol error, 7 file, 8 refused for safety, 70 a bug, 130 "
          "Ctrl-C.\n";
 }
@@ -101,10 +124,12 @@ Result<std::string> help_text(std::string_view path, std::size_t width) {
   const auto columns = width == 0 ? std::size_t{100} : std::clamp<std::size_t>(width, 40, 120);
   if (path.empty()) return program_help(columns);
   if (const auto* command = find_command(path)) return command_help(*command, columns);
+  if (const auto* word = find_prompt_word(path)) return word_help(*word, columns);
   if (const auto group = command_rows(path, columns); !group.empty())
     return fmt::format("servoctl {} …\n\n{}", path, group);
   std::vector<std::string> names;
   for (const auto* command : registry()) names.emplace_back(command->path);
+  for (const auto& word : prompt_words()) names.emplace_back(word.name);
   auto hint = did_you_mean(path, names);
   return fail(Errc::usage, fmt::format("'{}' is not a command", path),
               hint.empty() ? "`help` lists the commands" : std::move(hint));

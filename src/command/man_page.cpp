@@ -4,6 +4,7 @@
 
 #include "base/text.hpp"
 #include "command/help_text.hpp"
+#include "command/prompt_words.hpp"
 #include "command/registry.hpp"
 #include "command/roff.hpp"
 #include "show/explanation.hpp"
@@ -33,12 +34,27 @@ std::string parameter_rows(std::span<const Parameter> parameters) {
   return out;
 }
 
+/// `before`: what stands before each line where it is typed.
+std::string example_rows(std::string_view before, std::span<const Example> examples) {
+  std::string out;
+  for (const auto& example : examples)
+    out += tagged(bold(fmt::format("{}{}", before, example.line)), example.what);
+  return out.empty() ? out : ".PP\nExamples:\n" + out;
+}
+
+std::string word_part(const PromptWord& word) {
+  return fmt::format(".SS {}{}\n", bold(word.name),
+                     roff_literal(prompt_usage(word).substr(word.name.size()))) +
+         roff_text(fmt::format("{}.", word.summary)) + ".PP\n" + roff_text(word.details) +
+         example_rows({}, word.examples);
+}
+
 std::string command_part(const Command& command) {
   const auto line = usage_line(command.path);
   auto out = fmt::format(".SS {}{}\n", bold(command.path), roff_literal(line.substr(command.path.size())));
   out += roff_text(fmt::format("{}.", command.summary));
   if (!command.details.empty()) out += ".PP\n" + roff_text(command.details);
-  return out + parameter_rows(command.parameters);
+  return out + parameter_rows(command.parameters) + example_rows("servoctl ", command.examples);
 }
 
 std::string entries(std::span<const Entry> all) {
@@ -95,10 +111,16 @@ std::string head(std::string_view version, std::string_view date) {
 }  // namespace
 
 std::string man_page(std::string_view version, std::string_view date) {
-  auto out = head(version, date) + section("DESCRIPTION") + description() + section("GLOBAL OPTIONS") +
-             roff_text("They stand before or behind the command.") + parameter_rows(global_options()) +
-             section("COMMANDS");
+  auto out =
+      head(version, date) + section("DESCRIPTION") + description() + section("GLOBAL OPTIONS") +
+      roff_text("They stand before or behind the command.") + parameter_rows(global_options()) +
+      section("COMMANDS") +
+      roff_text(
+          "Where an example has no `-b`, the bus is that of `SERVOCTL_BUS`, of the cabinet file or of the prompt, at "
+          "which the word servoctl is left out.");
   for (const auto* command : registry()) out += command_part(*command);
+  out += section("WORDS OF THE PROMPT");
+  for (const auto& word : prompt_words()) out += word_part(word);
   out += section("BUSES") + roff_text("What `--bus` takes. A real bus is named in one of these forms:") +
          entries(manual_buses());
   out += section("EXIT STATUS") + exit_status() + section("ENVIRONMENT") + entries(manual_environment()) +

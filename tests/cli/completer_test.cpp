@@ -48,6 +48,7 @@ TEST_F(Completing, SaysBesideAWordWhatItIs) {
   EXPECT_NE(hint("param ", "search"), "");
   EXPECT_NE(hint("read --ty", "--type"), "");
   EXPECT_NE(hint("un", "undo"), "");
+  EXPECT_NE(hint("help un", "undo"), "");
 }
 
 TEST_F(Completing, OffersWhatAValueMayBe) {

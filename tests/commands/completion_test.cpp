@@ -6,6 +6,7 @@
 #include "base/text.hpp"
 #include "command/command.hpp"
 #include "command/help_text.hpp"
+#include "command/prompt_words.hpp"
 #include "command/registry.hpp"
 #include "command/shell_completion.hpp"
 #include "tests/source_dir.hpp"
@@ -65,6 +66,46 @@ TEST(Help, OfEveryCommandNamesItsParametersAndFitsEightyColumns) {
   const auto program = help_text("", 80);
   for (const auto* command : registry())
     EXPECT_NE(program->find(command->path), std::string::npos) << command->path;
+}
+
+TEST(Help, OfEveryCommandShowsItsExamplesBetweenItsOptionsAndThoseOfAll) {
+  for (const auto* command : registry()) {
+    EXPECT_GE(command->examples.size(), 1U) << command->path;
+    EXPECT_LE(command->examples.size(), 3U) << command->path;
+    const auto text = help_text(command->path, 80).value();
+    const auto begin = text.find("\nExamples:\n");
+    const auto end = text.find("\nOptions of every command:\n");
+    const auto own = text.find("\nOptions:\n");
+    ASSERT_LT(begin, end) << command->path;
+    EXPECT_TRUE(own == std::string::npos || own < begin) << command->path;
+    for (const auto& example : command->examples) {
+      EXPECT_LT(text.find("\n  " + std::string(example.line) + "\n      "), end) << example.line;
+      EXPECT_TRUE((std::string(example.line) + " ").starts_with(std::string(command->path) + " "))
+          << example.line;
+      EXPECT_NE(std::string_view(example.what).back(), '.') << example.line;
+    }
+  }
+}
+
+TEST(Help, OfAWordOfThePromptTellsWhatItDoes) {
+  for (const auto& word : prompt_words()) {
+    const auto text = help_text(word.name, 80);
+    ASSERT_TRUE(text) << word.name;
+    EXPECT_TRUE(text->starts_with("At the prompt: " + prompt_usage(word) + "\n")) << *text;
+    for (const auto line : split(*text, '\n')) EXPECT_LE(display_width(line), 80U) << line;
+    for (const auto& example : word.examples)
+      EXPECT_NE(text->find("\n  " + std::string(example.line) + "\n"), std::string::npos) << example.line;
+    EXPECT_NE(help_text("", 80)->find("\n  " + prompt_usage(word) + " "), std::string::npos) << word.name;
+  }
+  EXPECT_EQ(help_text("quit", 80).value(), help_text("exit", 80).value());
+  EXPECT_NE(help_text("und", 80).error().hint.find("undo"), std::string::npos);
+}
+
+TEST(Help, OfBusTellsOfTheWordAndOfTheCommands) {
+  const auto text = help_text("bus", 80).value();
+  EXPECT_TRUE(text.starts_with("At the prompt: bus BUS\n")) << text;
+  for (const auto* name : {"bus status", "bus up", "bus down", "bus detect"})
+    EXPECT_NE(text.find("\n  " + std::string(name) + " "), std::string::npos) << text;
 }
 
 TEST(Help, OfAGroupListsItsCommands) {

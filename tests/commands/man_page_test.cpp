@@ -7,6 +7,7 @@
 #include "base/file.hpp"
 #include "base/text.hpp"
 #include "command/man_page.hpp"
+#include "command/prompt_words.hpp"
 #include "command/registry.hpp"
 #include "command/roff.hpp"
 #include "session/open_bus.hpp"
@@ -27,9 +28,10 @@ TEST(ManPage, HasTheSectionsThatAReaderLooksFor) {
   std::string sections;
   for (const auto line : split(page(), '\n'))
     if (line.starts_with(".SH ")) sections += std::string(line.substr(4)) + "\n";
-  EXPECT_EQ(sections,
-            "NAME\nSYNOPSIS\nDESCRIPTION\nGLOBAL OPTIONS\nCOMMANDS\nBUSES\nEXIT STATUS\nENVIRONMENT\nFILES\n"
-            "EXAMPLES\nSEE ALSO\n");
+  EXPECT_EQ(
+      sections,
+      "NAME\nSYNOPSIS\nDESCRIPTION\nGLOBAL OPTIONS\nCOMMANDS\nWORDS OF THE PROMPT\nBUSES\nEXIT STATUS\nENVIRONMENT\nFILES\n"
+      "EXAMPLES\nSEE ALSO\n");
   EXPECT_TRUE(page_has(".TH SERVOCTL 1 \"2026-01-02\" \"servoctl 1.2.3\""));
 }
 
@@ -42,8 +44,19 @@ TEST(ManPage, KnowsEveryCommandAndOption) {
             << entry->path << " " << parameter.name;
       }
   }
+  for (const auto& word : prompt_words())
+    EXPECT_TRUE(page_has(".SS \\fB" + roff_literal(word.name) + "\\fR"));
   for (const auto& option : global_options())
     EXPECT_NE(page().find("\\fB" + roff_literal(option.name) + "\\fR"), std::string::npos) << option.name;
+}
+
+TEST(ManPage, ShowsEveryExampleAsItIsTypedInAShell) {
+  for (const auto* entry : registry())
+    for (const auto& example : entry->examples)
+      EXPECT_TRUE(page_has(".TP\n\\fBservoctl " + roff_literal(example.line) + "\\fR\n")) << example.line;
+  for (const auto& word : prompt_words())
+    for (const auto& example : word.examples)
+      EXPECT_TRUE(page_has(".TP\n\\fB" + roff_literal(example.line) + "\\fR\n")) << example.line;
 }
 
 TEST(ManPage, IsAsciiWithoutALineThatIsTakenForARequest) {

@@ -7,6 +7,7 @@
 
 #include "base/printable.hpp"
 #include "base/text.hpp"
+#include "command/prompt_words.hpp"
 #include "command/registry.hpp"
 #include "drive/topics.hpp"
 
@@ -119,7 +120,10 @@ void Candidates::add_kind(const command::Command* command, const command::Parame
     case Kind::nodes: return add_nodes();
     case Kind::topic: return add_topics(before);
     case Kind::file: any_file_ = place_.in_shell; return place_.in_shell ? void() : add_files();
-    case Kind::command: return add_commands(before, 0);
+    case Kind::command:
+      if (before.empty())
+        for (const auto& word : command::prompt_words()) add(word.name, word.summary);
+      return add_commands(before, 0);
     case Kind::duration: return add_durations();
     default: break;
   }

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "cli/terminal/begun_line.hpp"
-#include "cli/terminal/prompt_words.hpp"
 #include "command/help_text.hpp"
+#include "command/prompt_words.hpp"
 #include "command/registry.hpp"
 
 namespace servoctl::cli {
@@ -83,7 +83,7 @@ void add_positional(Candidates& out, const Command& command, const std::vector<s
 
 bool add_prompt_words(Candidates& out, const std::vector<std::string>& words) {
   if (words.empty()) {
-    for (const auto& word : prompt_words()) out.add(word.name, word.help);
+    for (const auto& word : command::prompt_words()) out.add(word.name, word.summary);
     return false;
   }
   if (words.size() == 2 && words[0] == "log" && words[1] == "on") {

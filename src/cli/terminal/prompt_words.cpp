@@ -1,24 +1,22 @@
 #include "cli/terminal/prompt_words.hpp"
 
 #include <fmt/format.h>
-#include <algorithm>
 #include <set>
-#include <span>
 
 #include "base/printable.hpp"
 #include "base/text.hpp"
+#include "command/prompt_words.hpp"
 #include "command/registry.hpp"
 
 namespace servoctl::cli {
 namespace {
 
 /// `bus up can0` is a command, `bus can0` a choice.
-const PromptWord* find_word(std::span<const PromptWord> all, const std::vector<std::string>& words) {
+const command::PromptWord* find_place_word(const std::vector<std::string>& words) {
   if (words.empty()) return nullptr;
   if (words.size() > 1 && command::find_command(words[0] + " " + words[1]) != nullptr) return nullptr;
-  const auto found = std::find_if(all.begin(), all.end(),
-                                  [&](const PromptWord& w) { return w.name == words.front() && w.is_place; });
-  return found == all.end() ? nullptr : &*found;
+  const auto* word = command::find_prompt_word(words.front());
+  return word != nullptr && word->is_place ? word : nullptr;
 }
 
 /// Numbers, or axes of the cabinet.
@@ -102,31 +100,18 @@ PromptText prompt_text(Shell& shell) {
   return out;
 }
 
-std::vector<PromptWord> prompt_words() {
-  return {{"use", "NODE", "use this node or axis, list or `all` for the following lines", true},
-          {"drive", "FAMILY", "use this drive family for the following lines", true},
-          {"bus", "URL", "switch to this bus", true},
-          {"undo", "", "put back what the last `param set` or `write` replaced"},
-          {"log", "on FILE", "keep all that is typed and answered in a file, until `log off`"},
-          {"exit", "", "leave (also quit, or Ctrl-D)"}};
-}
-
 bool is_exit(const std::vector<std::string>& words) {
   return words.size() == 1 && (words.front() == "exit" || words.front() == "quit");
 }
 
-bool is_choice(const std::vector<std::string>& words) {
-  const auto all = prompt_words();
-  return find_word(all, words) != nullptr;
-}
+bool is_choice(const std::vector<std::string>& words) { return find_place_word(words) != nullptr; }
 
 Result<Settings> chosen(Shell& shell, Settings defaults, const std::vector<std::string>& words) {
-  const auto all = prompt_words();
-  const auto* word = find_word(all, words);
+  const auto* word = find_place_word(words);
   if (word == nullptr) return defaults;
   if (words.size() != 2)
     return fail(Errc::usage, fmt::format("'{}' takes one argument", word->name),
-                fmt::format("{} {}: {}", word->name, word->argument, word->help));
+                fmt::format("`{}`: {}", command::prompt_usage(*word), word->summary));
   if (word->name == "use") {
     if (const auto known = check_nodes(shell, defaults, words[1]); !known) return fail(known.error());
     defaults.nodes = words[1];
@@ -140,8 +125,7 @@ Result<Settings> chosen(Shell& shell, Settings defaults, const std::vector<std::
 }
 
 std::optional<Outcome> choose(Shell& shell, const std::vector<std::string>& words) {
-  const auto all = prompt_words();
-  const auto* word = find_word(all, words);
+  const auto* word = find_place_word(words);
   if (word == nullptr) return std::nullopt;
   auto settings = chosen(shell, shell.defaults(), words);
   if (!settings) return failed(settings.error(), shell.defaults(), word->name);

@@ -2,23 +2,12 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "cli/shell.hpp"
 #include "cli/terminal/line_screen.hpp"
 
 namespace servoctl::cli {
-
-/// One of the words that only make sense where several lines follow each other: `use`, `drive`, `bus`,
-/// `undo`, `log`, `exit`.
-struct PromptWord {
-  std::string_view name;
-  std::string_view argument;  ///< `NODE`; empty: takes none.
-  std::string_view help;
-  bool is_place = false;  ///< It says where the following lines go.
-};
-std::vector<PromptWord> prompt_words();
 
 /// Where lines go that name no place, and how it is there: bus, node, family and state; of axes of the
 /// cabinet those of the file. `servoctl can0 node 1 gsd600 [operation enabled]> `. A `?` behind the state:
