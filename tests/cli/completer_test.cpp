@@ -48,7 +48,9 @@ TEST_F(Completing, SaysBesideAWordWhatItIs) {
   EXPECT_NE(hint("param ", "search"), "");
   EXPECT_NE(hint("read --ty", "--type"), "");
   EXPECT_NE(hint("un", "undo"), "");
-  EXPECT_NE(hint("help un", "undo"), "");
+  EXPECT_TRUE(offers_word("un", "undo"));
+  EXPECT_TRUE(offers_word("help un", "undo"));
+  EXPECT_EQ(hint("help un", "undo"), hint("un", "undo"));
 }
 
 TEST_F(Completing, OffersWhatAValueMayBe) {
