@@ -112,7 +112,9 @@ TEST_F(TabAnswers, KnowEveryCommandOptionAndChoice) {
     for (const auto& parameter : command->parameters) {
       const std::string name(parameter.name);
       const bool option = name.starts_with("-");
-      if (option) EXPECT_NE(options.find("\n" + name + "\t"), std::string::npos) << command->path << name;
+      if (option) {
+        EXPECT_NE(options.find("\n" + name + "\t"), std::string::npos) << command->path << name;
+      }
       auto before = words;
       if (option) before.push_back(name);
       for (const auto choice : parameter.choices)
