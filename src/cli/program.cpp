@@ -101,8 +101,11 @@ int run_lines(Shell& shell, const std::vector<std::string>& words, StandardConso
   return run_prompt(shell, console);
 }
 
-/// For the completion script of a shell. It waits for nothing, so that a signal ends it.
+/// For the completion script of a shell. Any signal ends it.
 int run_tab(const std::vector<std::string>& words, StandardConsole& console) {
+  // What is named as a file may be a pipe into which nobody writes.
+  constexpr unsigned kLongestWaitSeconds = 2;
+  ::alarm(kLongestWaitSeconds);
   Shell::Options options;
   options.defaults = settings_from_environment();
   options.drive_folders = drive::drive_folders();

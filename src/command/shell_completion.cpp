@@ -5,7 +5,8 @@
 namespace servoctl::command {
 namespace {
 
-constexpr std::string_view kBash = R"sh(# Completion of servoctl for bash; written by `servoctl completion bash`.
+constexpr std::string_view kBash =
+    R"sh(# Completion of servoctl for bash; written by `servoctl completion bash`.
 # The program is asked what may stand at the cursor: it reads files, opens no bus and sends nothing.
 _servoctl() {
   local program=${COMP_WORDS[0]} answer
@@ -49,7 +50,8 @@ elif (( $+functions[compdef] )); then
 fi
 )sh";
 
-constexpr std::string_view kFish = R"sh(# Completion of servoctl for fish; written by `servoctl completion fish`.
+constexpr std::string_view kFish =
+    R"sh(# Completion of servoctl for fish; written by `servoctl completion fish`.
 # The program is asked what may stand at the cursor: it reads files, opens no bus and sends nothing.
 function __servoctl_complete
     set -l words (commandline -opc)

@@ -5,7 +5,8 @@
 
 namespace servoctl::command {
 
-/// The completion script for `bash`, `zsh` or `fish`. It knows no word itself: at each Tab it asks the program
+/// The completion script for `bash`, `zsh` or `fish`. It knows no word itself: at each Tab it asks the
+/// program
 /// (`servoctl __complete …`, cli/tab_answer), which opens no bus for it.
 std::string completion_script(std::string_view shell);
 

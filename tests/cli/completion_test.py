@@ -64,6 +64,8 @@ LINES = [
     ("status -n lift,fee~", "status|-n|lift,feeder"),
     ("jog fee~60rp~", "jog|feeder|60rpm"),
     ("param get lift pn0214~", "param|get|lift|Pn0214"),
+    # a pipe into which nobody writes
+    ("-d pipe param get x~", "-d|pipe|param|get|x"),
     ("--cabinet other/c.toml status -n cra~", "--cabinet|other/c.toml|status|-n|crane"),
 ]
 
@@ -95,6 +97,7 @@ def prepare():
                        ("other/c.toml", CABINET.replace("feeder", "crane")), ("evil/$(touch owned)'\".eds", "")):
         with open(f"{here}/{name}", "w") as out:
             out.write(text)
+    os.mkfifo(f"{here}/pipe")
     os.environ.update(HOME=f"{work}/home", PATH=f"{work}/bin:{os.environ['PATH']}", SERVOCTL_DRIVES=f"{source}/eds",
                       ZDOTDIR=f"{work}/home")
     for name in ("SERVOCTL_LANG", "SERVOCTL_CABINET", "INPUTRC", "XDG_CONFIG_HOME", "XDG_DATA_HOME"):
