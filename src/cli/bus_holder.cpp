@@ -30,20 +30,6 @@ constexpr Duration kTelling = std::chrono::seconds(1);
 
 }  // namespace
 
-std::string bus_hint(std::span<const std::string> can, std::span<const std::string> coe) {
-  std::string ring;
-  if (!coe.empty())
-    ring = fmt::format("for EtherCAT drives on {}: --bus {}",
-                       coe.size() == 1 ? "the Ethernet port with a link" : "an Ethernet port with a link",
-                       one_of(coe));
-  if (!can.empty())
-    return fmt::format("add --bus {} or set SERVOCTL_BUS{}{}", one_of(can), ring.empty() ? "" : "; ", ring);
-  return fmt::format(
-      "this machine has no CAN interface; {}{}try `--bus sim:FAMILY@1` (`drives` lists families), or "
-      "local:NAME",
-      ring, ring.empty() ? "" : "; else ");
-}
-
 Result<session::Session*> BusHolder::open(const Settings& settings) {
   if (settings.bus.empty())
     return fail(Errc::usage, "which bus?", bus_hint(can::can_interfaces(), session::ethercat_links()));

@@ -28,9 +28,7 @@ std::string file_of(const cabinet::Cabinet& cabinet) {
   return std::filesystem::canonical(cabinet.file, error).string();
 }
 
-bool is_url(const std::string& bus) {
-  return bus.find(':') != std::string::npos || can::is_interface(bus);
-}
+bool is_url(const std::string& bus) { return bus.find(':') != std::string::npos || can::is_interface(bus); }
 
 /// Behind a serial port or an Ethernet port may be another device today, and to open it sends something. What
 /// is no URL is a bus of the cabinet, or an interface that is gone, as is told.

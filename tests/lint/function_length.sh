@@ -6,6 +6,7 @@
 # usage: function_length.sh SOURCE_DIR
 set -euo pipefail
 cd "$1"
+# shellcheck disable=SC2016
 git ls-files 'src/*.cpp' 'src/*.hpp' 'commands/*.cpp' | xargs -n 5000 awk '
   function indent() { match($0, /^ */); return RLENGTH }
   FNR == 1 { begin = 0; raw = 0; scope = 0 }
