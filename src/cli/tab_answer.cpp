@@ -21,7 +21,7 @@ struct Tab {
 };
 
 /// What goes on behind it: a URL, a folder, an assignment.
-bool goes_on(std::string_view word) {
+bool word_goes_on(std::string_view word) {
   return !word.empty() && std::string_view("/:=@").find(word.back()) != std::string_view::npos;
 }
 
@@ -47,7 +47,7 @@ Tab find_words(Words words, const std::string& begun, Shell& shell, bool lists_f
     out.head = "files";
   else if (out.candidates.empty() && !found.note().empty())
     out.head = "note " + printable(found.note());
-  else if (out.candidates.size() == 1 && goes_on(out.candidates.front().word))
+  else if (out.candidates.size() == 1 && word_goes_on(out.candidates.front().word))
     out.head = "open";
   return out;
 }
@@ -70,7 +70,7 @@ std::string for_fish(const Tab& tab) {
 std::string for_zsh(const Tab& tab) {
   std::vector<std::string> lines;
   for (const auto& one : tab.candidates) {
-    std::string word = goes_on(one.word) ? "+" : "-";
+    std::string word = word_goes_on(one.word) ? "+" : "-";
     for (const char c : one.word) word += c == ':' || c == '\\' ? std::string("\\") + c : std::string(1, c);
     lines.push_back(one.hint.empty() ? word : word + ":" + one.hint);
   }

@@ -182,11 +182,11 @@ TEST_F(TabAnswers, OpenNoBusAndSurviveQuestionsThatAreNone) {
     static_cast<void>(bash(line));
   EXPECT_EQ(shell.session(), nullptr);
   EXPECT_EQ(console.out_text + console.err_text, "");
-  using Words = std::vector<std::string>;
-  EXPECT_EQ(answer_tab(Words{}, shell), "");
-  EXPECT_EQ(answer_tab(Words{"bash"}, shell), "");
-  EXPECT_EQ(answer_tab(Words{"bash", "x", "y", "", ""}, shell), "");
-  EXPECT_EQ(answer_tab(Words{"ksh", ""}, shell), "");
+
+  EXPECT_EQ(answer_tab(std::vector<std::string>{}, shell), "");
+  EXPECT_EQ(answer_tab(std::vector<std::string>{"bash"}, shell), "");
+  EXPECT_EQ(answer_tab(std::vector<std::string>{"bash", "x", "y", "", ""}, shell), "");
+  EXPECT_EQ(answer_tab(std::vector<std::string>{"ksh", ""}, shell), "");
 }
 
 TEST_F(TabAnswers, OfferNoNameThatLooksLikeAnOption) {

@@ -10,7 +10,7 @@ namespace servoctl::cli {
 namespace {
 
 /// Between two columns.
-constexpr std::size_t kGap = 2;
+constexpr std::size_t kColumnGap = 2;
 
 std::size_t widest(std::span<const Candidate> candidates) {
   std::size_t out = 0;
@@ -22,8 +22,9 @@ std::vector<std::string> rows_with_hints(std::span<const Candidate> candidates, 
   const auto width = std::min(widest(candidates), columns / 2);
   std::vector<std::string> out;
   for (const auto& one : candidates)
-    out.push_back(clip(one.hint.empty() ? printable(one.word)
-                                        : pad_right(printable(one.word), width + kGap) + printable(one.hint),
+    out.push_back(clip(one.hint.empty()
+                           ? printable(one.word)
+                           : pad_right(printable(one.word), width + kColumnGap) + printable(one.hint),
                        columns - 1));
   return out;
 }
@@ -49,7 +50,7 @@ std::vector<std::string> candidate_rows(std::span<const Candidate> candidates, s
   const bool hints =
       std::any_of(candidates.begin(), candidates.end(), [](const auto& one) { return !one.hint.empty(); });
   if (hints && candidates.size() <= rows) return rows_with_hints(candidates, columns);
-  const auto width = std::min(widest(candidates) + kGap, columns - 1);
+  const auto width = std::min(widest(candidates) + kColumnGap, columns - 1);
   const auto across = std::max<std::size_t>(1, (columns - 1) / width);
   const bool all = candidates.size() <= across * rows;
   const auto shown = all ? candidates.size() : across * (rows - 1);
