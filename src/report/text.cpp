@@ -3,6 +3,7 @@
 
 #include "base/printable.hpp"
 #include "base/text.hpp"
+#include "base/utf8.hpp"
 #include "report/line.hpp"
 #include "report/plot.hpp"
 #include "report/value.hpp"
@@ -18,6 +19,7 @@ template <class... Fs>
 Overloaded(Fs...) -> Overloaded<Fs...>;  // clang 14 has no aggregate deduction.
 
 constexpr std::size_t kColumnGap = 2;
+constexpr std::size_t kMostLines = 4;  ///< Of a cell that does not fit into its column.
 
 }  // namespace
 
@@ -64,6 +66,30 @@ bool has_own_lines(const Value& value) {
          std::holds_alternative<Plot>(value.data());
 }
 
+/// The cell in lines of its column: broken at blanks, and between characters where a word is wider than it.
+std::vector<std::string> cell_lines(std::string_view cell, std::size_t width) {
+  if (display_width(cell) <= width) return {std::string(cell)};
+  std::vector<std::string> out;
+  const auto broken = wrapped(cell, 0, width);
+  for (auto line : split(std::string_view(broken), '\n')) {
+    while (display_width(line) > width) {
+      std::size_t end = 0;
+      for (auto next = end; display_width(line.substr(0, next)) <= width;) {
+        end = next;
+        next += decode_utf8(line.substr(next)).size;
+      }
+      out.emplace_back(line.substr(0, end));
+      line.remove_prefix(end);
+    }
+    out.emplace_back(line);
+  }
+  if (out.size() <= kMostLines) return out;
+  out.resize(kMostLines);
+  auto& last = out.back();
+  last = clip(last + "…", width);
+  return out;
+}
+
 class TableText {
  public:
   TableText(const Table& table, std::size_t width) {
@@ -107,7 +133,8 @@ class TableText {
     return out;
   }
 
-  /// Takes what is too much from the widest column; a column of at most 12 is left alone.
+  /// Takes what is too much from the widest column; a column of at most 12 is left alone. Nothing is lost by
+  /// it but the end of what needs more than kMostLines.
   void shrink(std::size_t width) {
     for (;;) {
       std::size_t total = columns_.empty() ? 0 : (columns_.size() - 1) * kColumnGap;
@@ -121,13 +148,24 @@ class TableText {
   }
 
   void add_line(const Table& table, const List* row) {
-    std::string line;
+    std::vector<std::vector<std::string>> cells;
+    std::size_t lines = 1;
     for (const auto& column : columns_) {
       const auto& head = table.columns[column.index];
       const auto cell = row == nullptr ? title_of(head) : cell_text((*row)[column.index]);
-      const auto clipped = clip(cell, column.width);
-      if (!line.empty()) line += std::string(kColumnGap, ' ');
-      line += column.right ? pad_left(clipped, column.width) : pad_right(clipped, column.width);
+      cells.push_back(cell_lines(cell, column.width));
+      lines = std::max(lines, cells.back().size());
+    }
+    for (std::size_t i = 0; i < lines; ++i) add_cells(cells, i);
+  }
+
+  void add_cells(const std::vector<std::vector<std::string>>& cells, std::size_t line_of_cell) {
+    std::string line;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const auto& column = columns_[i];
+      const auto text = line_of_cell < cells[i].size() ? std::string_view(cells[i][line_of_cell]) : "";
+      if (i > 0) line += std::string(kColumnGap, ' ');
+      line += column.right ? pad_left(text, column.width) : pad_right(text, column.width);
     }
     line.erase(line.find_last_not_of(' ') + 1);
     out_ += line + '\n';

@@ -40,13 +40,27 @@ TEST(Json, KeepsNumbersNumbersAndTheOrderOfFields) {
             R"({"b":1,"a":true,"h":24641})");
 }
 
-TEST(Text, ShrinksTheWidestColumnToTheTerminal) {
+TEST(Text, BreaksTheCellsOfTheWidestColumnToFitTheTerminal) {
   Table t;
-  t.columns = {{"id"}, {"note"}};
-  t.rows = {{1, std::string(100, 'x')}, {2, "位置环增益位置环增益位置环增益"}};
-  const auto text = to_text(t, 40);
-  for (const auto line : split(std::string_view(text), '\n')) EXPECT_LE(display_width(line), 40U);
-  EXPECT_NE(text.find("…"), std::string::npos);
+  t.columns = {{"id"}, {"result"}, {"note"}};
+  t.rows = {{1, "written, read back", std::string(60, 'x')}, {2, "", "位置环增益位置环增益位置环增益"}};
+  EXPECT_EQ(to_text(t, 40),
+            "id  result              note\n"
+            " 1  written, read back  xxxxxxxxxxxxxxxx\n"
+            "                        xxxxxxxxxxxxxxxx\n"
+            "                        xxxxxxxxxxxxxxxx\n"
+            "                        xxxxxxxxxxxx\n"
+            " 2                      位置环增益位置环\n"
+            "                        增益位置环增益\n");
+  EXPECT_EQ(to_text(t, 34),
+            "id  result            note\n"
+            " 1  written, read     xxxxxxxxxxxx\n"
+            "    back              xxxxxxxxxxxx\n"
+            "                      xxxxxxxxxxxx\n"
+            "                      xxxxxxxxxxx…\n"
+            " 2                    位置环增益位\n"
+            "                      置环增益位置\n"
+            "                      环增益\n");
   EXPECT_EQ(to_text(t).find("…"), std::string::npos);
 }
 
