@@ -46,13 +46,15 @@ const Command kCabinetApply{
     .summary = "Make the drives hold what the cabinet file says",
     .details =
         "A drive that its serial number tells at another node of the bus gets the node of its axis first, as "
-        "`address` does it, after a question of its own. Then the plan is shown, asked for once, and exactly "
+        "`address` does it, after a question of its own (not with --all-or-nothing, --only, --resume or "
+        "--dry-run). Then the plan is shown, asked for once, and exactly "
         "that is written, to all drives at the same time. Each drive is "
         "changed as `restore` does it: its present values are saved next to the cabinet file "
         "(FILE.before-AXIS.json), every value is read back, and at the end all are kept (--no-keep: not). "
         "If a write fails, the old values of that drive are written back and the others go on; with "
         "--all-or-nothing all are put back. A drive that has changed since the plan was shown, one that is "
-        "energised, and one that is another than the file says is left alone. After a pulled cable or a "
+        "energised, and one that is another than the file says is left alone; with --all-or-nothing nothing is "
+        "written to any then. After a pulled cable or a "
         "crash --resume continues; `restore FILE.before-AXIS.json -n AXIS` restores the old values. A second "
         "apply does nothing.",
     .parameters = kCabinetApplyParameters,

@@ -200,7 +200,7 @@ Result<Value> run_cabinet_init(Context& context, const Arguments& arguments) {
   const auto name = arguments.has("--name") ? std::string(arguments.text("--name")) : std::string("main");
   if (!cabinet::is_name(name))
     return fail(Errc::usage, fmt::format("'{}' cannot be the name of a bus", name),
-                "a letter first, no spaces");
+                "a letter first, then letters, digits, `_` and `-`; `all` is no name");
   const auto file = arguments.has("file") ? fs::path(arguments.text("file")) : fs::path("cabinet.toml");
   return Init(context, file, name, std::move(*families)).run();
 }

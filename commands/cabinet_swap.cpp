@@ -77,7 +77,7 @@ const Command kCabinetSwap{
     .path = "cabinet swap",
     .summary = "Put a new drive into the place of an axis",
     .details =
-        "Step by step, each asking: the new drive is found (at the node of the axis, or --from NODE), held "
+        "Step by step, and what changes the drive asks first: the new drive is found (at the node of the axis, or --from NODE), held "
         "against the family of the axis, and its serial number is shown beside the one in the file; it "
         "gets the node of the axis as `address` does it, and the parameters, PDOs and heartbeat of the "
         "file as `cabinet apply` does it. --backup DIR restores everything that was saved of the axis "

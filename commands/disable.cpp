@@ -1,5 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <map>
+
+#include "canopen/node_list.hpp"
 #include "command/command.hpp"
 #include "drive/cia402.hpp"
 #include "motion/power.hpp"
@@ -22,7 +26,7 @@ report::Table state_table() {
 
 /// What is known of one node now goes into the table and beside it.
 void tell_power_off(Context& context, std::uint8_t node, const motion::PowerDownResult& done,
-                    std::string_view done_word, report::Table& table) {
+                    motion::PowerAim aim, std::string_view done_word, report::Table& table) {
   if (!done.outcome) context.errors.push_back(done.outcome.error());
   const bool energised = !done.statusword || drive::is_energised(done.state());
   table.rows.push_back({node, done.statusword ? Value(drive::name(done.state())) : Value(), Value(energised),
@@ -32,8 +36,9 @@ void tell_power_off(Context& context, std::uint8_t node, const motion::PowerDown
   if (energised)
     context.notices.push_back(
         done.statusword
-            ? fmt::format("node {} is still energised: {}; `disable` de-energises it", node,
-                          drive::name(done.state()))
+            ? fmt::format("node {} is still energised: {}; {}", node, drive::name(done.state()),
+                          aim == motion::PowerAim::disable ? "repeat `disable`, or switch off the supply"
+                                                           : "`disable` de-energises it")
             : fmt::format("NODE {} MAY BE ENERGISED, STATE UNKNOWN: SWITCH OFF THE SUPPLY", node));
 }
 
@@ -44,19 +49,47 @@ Value planned_disable(const Context& context, motion::PowerAim aim) {
   return show::planned_messages(context, messages);
 }
 
+/// Whether something tells that there is a drive of this number, although it may answer nothing.
+bool is_known(session::Session& session, std::uint8_t node) {
+  const auto& heard = session.network().records();
+  return session.energised().contains(node) || heard.state(node) || heard.boots(node) > 0 ||
+         heard.heartbeats(node) > 0 || !heard.emergencies(node).empty();
+}
+
+/// The nodes of the line; of `all` every number there is, those first of which something is known.
+std::vector<std::uint8_t> nodes_to_reach(Context& context) {
+  if (context.nodes.front() != 0) return context.nodes;
+  auto out = canopen::every_node_id();
+  std::stable_partition(out.begin(), out.end(), [&](auto node) { return is_known(*context.session, node); });
+  return out;
+}
+
 /// All nodes are told at the same time, whatever becomes of the others.
 Result<Value> power_down(Context& context, motion::PowerAim aim, std::string_view done_word) {
   if (context.dry_run) return planned_disable(context, aim);
-  auto table = state_table();
+  const bool reaches_all = context.nodes.front() == 0;
   std::vector<motion::PowerDownPlan> plans;
-  for (const auto node : context.nodes) {
+  for (const auto node : nodes_to_reach(context)) {
     plans.emplace_back();
     plans.back().node = node;
     plans.back().aim = aim;
+    plans.back().may_be_absent = reaches_all && !is_known(*context.session, node);
   }
   const auto done = motion::take_down(*context.session, plans);
+  std::map<std::uint8_t, const motion::PowerDownResult*> there;
   for (std::size_t i = 0; i < plans.size(); ++i)
-    tell_power_off(context, plans[i].node, done[i], done_word, table);
+    if (!reaches_all || !done[i].silent || is_known(*context.session, plans[i].node))
+      there.emplace(plans[i].node, &done[i]);
+  if (there.empty())
+    return fail(
+        Errc::timeout, fmt::format("no node answered on {}", context.session->url()),
+        "what has power there keeps it: switch off the supply; then check cable, termination and bitrate");
+  auto table = state_table();
+  context.nodes.clear();
+  for (const auto& [node, result] : there) {
+    context.nodes.push_back(node);
+    tell_power_off(context, node, *result, aim, done_word, table);
+  }
   return Value(std::move(table));
 }
 
@@ -69,11 +102,11 @@ Result<Value> run_quick_stop(Context& context, const Arguments&) {
 
 constexpr Example kDisableExamples[] = {
     {"disable -n 1", "de-energise a drive; nothing is asked"},
-    {"disable -n all", "every drive that answers"},
+    {"disable -n all", "every drive of the bus, those that answer nothing too"},
 };
 constexpr Example kQuickStopExamples[] = {
     {"quick-stop -n 1", "stop a motor; `disable` de-energises it"},
-    {"quick-stop -n all", "every drive that answers, before waiting for any"},
+    {"quick-stop -n all", "every drive of the bus, before waiting for any"},
 };
 
 }  // namespace
@@ -85,8 +118,9 @@ const Command kDisable{
     .details =
         "Sends controlwords 07h and 00h to all nodes at the same time, without asking. 00h is written in "
         "every state, even Fault. A turning motor coasts, or ramps down if 605Ch says so; use `quick-stop` "
-        "first to stop it. A drive that does not obey or answer is also sent NMT pre-operational. The result "
-        "is the state read afterwards. Over EtherCAT a drive that `state op` took to OP is in OP behind it, its outputs "
+        "first to stop it. A drive that does not obey or answer is also sent NMT pre-operational. On CAN "
+        "-n all goes to all 127 node-IDs; with a cabinet file in use it is the axes of that. The result is the state "
+        "read afterwards. Over EtherCAT a drive that `state op` took to OP is in OP behind it, its outputs "
         "preset anew; any other goes back to PRE-OP.",
     .parameters = {},
     .examples = kDisableExamples,
@@ -94,6 +128,7 @@ const Command kDisable{
     .effect = Effect::writes,
     .family = FamilyCheck::never,
     .run = run_disable,
+    .to_silent = true,
 };
 
 extern const Command kQuickStopCommand;
@@ -101,14 +136,17 @@ const Command kQuickStopCommand{
     .path = "quick-stop",
     .summary = "Stop a motor by quick stop",
     .details =
-        "Sends controlword 02h to all nodes before waiting for any answer, without asking. 605Ah sets what a "
-        "drive does once stopped: some stay energised, and the result says so.",
+        "Sends controlword 02h to all nodes before waiting for any answer, without asking. A drive that does not "
+        "answer is also sent NMT pre-operational. On CAN -n all goes to all 127 node-IDs; with a cabinet file in use "
+        "it is the axes of that. 605Ah sets how a drive stops, and what it does then: some stay energised, and the "
+        "result says so.",
     .parameters = {},
     .examples = kQuickStopExamples,
     .needs = Needs::node,
     .effect = Effect::writes,
     .family = FamilyCheck::never,
     .run = run_quick_stop,
+    .to_silent = true,
 };
 
 }  // namespace servoctl::commands

@@ -119,7 +119,8 @@ const Command kEnable{
     .details =
         "Shows the preflight checks, asks, sets the targets so that nothing moves (60FFh and 6071h to 0, "
         "607Ah to the actual position), and goes to \"operation enabled\" by controlwords 06h, 07h, 0Fh, "
-        "waiting for each state. The drive stays energised when servoctl ends: `disable` de-energises it. Over "
+        "waiting for each state. The drive stays energised when a single command, or lines that ended without an error, are "
+        "done: `disable` de-energises it. Lines that end with an error, and a lost terminal, stop and disable it. Over "
         "EtherCAT it stays so only while servoctl exchanges process data with it: a single command holds it until "
         "Ctrl-C, and then stops and disables it. "
         "`jog` and `move` enable and disable by themselves.",

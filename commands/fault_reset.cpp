@@ -88,7 +88,8 @@ Result<Value> run_clear(Context& context, const Arguments&) {
 }
 
 constexpr Example kFaultResetExamples[] = {
-    {"fault reset -n 1 -d gsd600", "after the cause is gone; the drive stays disabled"},
+    {"fault reset -n 1 -d da200", "after the cause is gone; the drive stays disabled"},
+    {"fault reset -n 1 -d gsd600", "needs Pn0032 = 1; with 0, the factory value, a power cycle resets it"},
 };
 constexpr Example kFaultClearHistoryExamples[] = {
     {"fault clear-history -n 1", "empty 1003h, after a question"},

@@ -16,7 +16,8 @@ constexpr Parameter kHelpParameters[] = {
 Result<report::Value> run_help(Context& context, const Arguments& arguments) {
   std::string path;
   for (const auto& word : arguments.all("command")) append(path, word, " ");
-  auto text = help_text(path, context.audience == nullptr ? 0 : context.audience->width());
+  auto text = help_text(path, context.audience == nullptr ? 0 : context.audience->width(),
+                        context.chinese && !context.keeps_samples && !context.wants_records);
   if (!text) return fail(text.error());
   if (!text->empty() && text->back() == '\n') text->pop_back();
   return report::Value(std::move(*text));

@@ -1,5 +1,6 @@
 #include "command/command.hpp"
 #include "command/motion_options.hpp"
+#include "drive/standard_objects.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -17,7 +18,7 @@ constexpr auto kHomeParameters = with_motion_options(std::to_array<Parameter>({
     kCsvOption,
 }));
 
-Result<report::Value> run_home(Context& context, const Arguments& arguments) {
+Result<motion::Home> parse_home(const Arguments& arguments) {
   motion::Home home;
   home.method = arguments.text("method");
   home.fast = arguments.text("--speed");
@@ -26,13 +27,34 @@ Result<report::Value> run_home(Context& context, const Arguments& arguments) {
   const auto longest = duration_option(arguments, "--within");
   if (!longest) return fail(longest.error());
   home.longest = *longest;
+  return home;
+}
+
+Result<void> check_home(Context& context, const Arguments& arguments) {
+  if (const auto home = parse_home(arguments); !home) return fail(home.error());
+  using Least = motion::WrittenQuantity::Least;
+  return check_motion_words(context, arguments,
+                            {{.word = "method", .object = objects::kHomingMethod, .least = Least::any},
+                             {.word = "--speed", .object = objects::kHomingSpeedSwitch},
+                             {.word = "--search", .object = objects::kHomingSpeedZero},
+                             {.word = "--offset",
+                              .object = objects::kHomeOffset,
+                              .kind = motion::MotionUnits::Kind::way,
+                              .least = Least::any}});
+}
+
+Result<report::Value> run_home(Context& context, const Arguments& arguments) {
+  const auto home = parse_home(arguments);
+  if (!home) return fail(home.error());
   const auto request = motion_request(context, arguments);
   if (!request) return fail(request.error());
-  return motion::run_motion(context, *request, motion::motion_run(home, motion::plan_home, motion::run_home));
+  return motion::run_motion(context, *request,
+                            motion::motion_run(*home, motion::plan_home, motion::run_home));
 }
 
 constexpr Example kHomeExamples[] = {
-    {"home 35 --speed 30rpm --search 5rpm -n 1 -d gsd600 --turn 131072", "the present position becomes home"},
+    {"home 35 --speed 30rpm --search 5rpm -n 1 -d gsd600 --turn 131072",
+     "the present position becomes home; 131072: take your motor's counts a turn"},
     {"home 17 --speed 60rpm --search 10rpm --window 5rev -n 1 -d sv2",
      "to the negative limit switch, 5 turns at most"},
 };
@@ -53,6 +75,7 @@ const Command kHome{
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,
     .run = run_home,
+    .check = check_home,
 };
 
 }  // namespace servoctl::commands

@@ -102,9 +102,14 @@ Result<report::Value> run_jog(Context& context, const Arguments& arguments) {
   return motion::run_motion(context, *request, motion);
 }
 
+Result<void> check_jog(Context& context, const Arguments& arguments) {
+  if (const auto jog = parse_jog(arguments); !jog) return fail(jog.error());
+  return check_motion_words(context, arguments, {written_speed("speed")});
+}
+
 constexpr Example kJogExamples[] = {
     {"jog 60rpm --for 2s -n 1 -d gsd600 --turn 131072",
-     "turn for two seconds; --turn where the drive does not tell its counts"},
+     "131072 counts a turn: take your motor's, a wrong number is a wrong speed"},
     {"jog -30rpm --turns 3 -n 1 -d sv2 --max-torque 30%", "three turns backwards, stopped above 30 % torque"},
     {"jog 400rpm --for 1s --limit 500rpm -n 1 -d sv2 --plot --csv jog.csv",
      "faster than the safe default, with the samples"},
@@ -118,18 +123,21 @@ const Command kJog{
     .summary = "Turn a motor at a speed, for a time, some turns, or while a key is held",
     .details =
         "Checks the drive and shows the result, asks, then enables the drive in its velocity mode, turns, "
-        "stops and disables it, and restores everything it changed, however it ends, including Ctrl-C and "
-        "lost connections. --limit is needed above 300 rpm, or above the rated speed if that is lower (or "
-        "above a tenth of the drive's own limit, where counts cannot be converted to rpm). Ramps take 0.5 "
-        "s by default. It stops at once if the drive sends an emergency, does not answer, turns the wrong "
-        "way or not at all, or exceeds a limit given. A drive with a heartbeat consumer (1016h) watches "
-        "servoctl meanwhile and stops by itself 0.5 s after the last heartbeat. Position, speed and torque "
-        "are shown during the motion; -o jsonl has every sample.",
+        "stops and disables it, and restores everything it changed, also after Ctrl-C; over a connection that was lost "
+        "once it is back, and where it does not come back it says so. --limit is needed above 300 rpm, or above the "
+        "rated speed if that is lower (or above a tenth of the drive's own limit, where counts cannot be converted to "
+        "rpm). Ramps take 0.5 s by default. It stops at once if the drive sends an emergency, does not answer, turns "
+        "the wrong way or not at all, or exceeds a limit given; also if the drive's own speed monitor, where the family's "
+        "data name one, shows 1.5 times the speed that was asked for, and 60 rpm more: then --turn is wrong. A drive "
+        "with a heartbeat consumer (1016h) is set to watch servoctl meanwhile, with a consumer time of 0.5 s; the check "
+        "says what it then does, and where that is assumed. Position, speed and torque are shown during the motion; "
+        "-o jsonl has every sample.",
     .parameters = kJogParameters,
     .examples = kJogExamples,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,
     .run = run_jog,
+    .check = check_jog,
 };
 
 }  // namespace servoctl::commands

@@ -256,7 +256,8 @@ const Command kLssScan{
         "--vendor and --product it looks for slaves of that kind instead, with a node-ID or without (and "
         "--revision, --serial). --assign 5 gives those that were found the node-IDs 5, 6, 7 …, in the "
         "order of their identity, after a question that names each: none of these may be in use. --keep "
-        "stores them. Two slaves of one identity are told, and get nothing.",
+        "stores them. Two slaves of one identity are told; then, as after any other error of the search, no "
+        "slave gets a node-ID.",
     .parameters = kLssScanParameters,
     .examples = kLssScanExamples,
     .needs = Needs::can,

@@ -105,6 +105,15 @@ std::string question_lss_set_bitrate(const BitrateWish& wish) {
   return out;
 }
 
+/// What holds after one of several slaves did not do as the others.
+std::string not_activated(const canopen::LssRequest& request, std::string_view more) {
+  const bool stores = request.answer == canopen::LssService::store;
+  return fmt::format(
+      "nothing was activated{}; {}",
+      stores ? ", but slaves that confirmed have stored it, and take it when they are switched on" : "",
+      more);
+}
+
 /// All who confirm; one that refuses is an error, and so is one of the `expected` that is silent.
 Result<std::size_t> order_all(session::LssDialogue& lss, const canopen::LssRequest& request,
                               std::size_t expected, Duration patience) {
@@ -119,11 +128,11 @@ Result<std::size_t> order_all(session::LssDialogue& lss, const canopen::LssReque
     return fail(
         Errc::negative,
         fmt::format("an LSS slave of {} refuses: {}", answers->size(), canopen::lss_error_text(*refused)),
-        "nothing was activated; `lss inquire` shows what each slave is");
+        not_activated(request, "`lss inquire` shows what each slave is"));
   if (answers->size() < expected)
     return fail(Errc::negative,
                 fmt::format("of {} LSS slaves {} confirmed what was set", expected, answers->size()),
-                "nothing was activated; one that does not support a request may leave it unanswered");
+                not_activated(request, "one that does not support a request may leave it unanswered"));
   return answers->size();
 }
 

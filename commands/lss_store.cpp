@@ -54,7 +54,7 @@ const Command kLssStore{
     .details =
         "What `lss set-node` and `lss set-bitrate` set is lost with the power unless it is stored, by --keep there or "
         "by this. What is stored is what was set last, also where it is not in force yet. Not every slave can; one "
-        "that cannot says so. The slave is named as for `lss inquire`.",
+        "that cannot says so, or does not answer. The slave is named as for `lss inquire`.",
     .parameters = kLssStoreParameters,
     .examples = kLssStoreExamples,
     .needs = Needs::can,

@@ -106,6 +106,12 @@ Result<Value> run_mode(Context& context, const Arguments& arguments) {
   return Value(std::move(table));
 }
 
+Result<void> check_mode_word(Context& context, const Arguments& arguments) {
+  if (!arguments.has("mode") || context.profile == nullptr) return {};
+  const auto mode = parse_mode(*context.profile, arguments.text("mode"));
+  return mode ? Result<void>() : fail(mode.error());
+}
+
 constexpr Example kModeExamples[] = {
     {"mode -n 1 -d gsd600", "the present mode"},
     {"mode pv -n 1 -d gsd600", "profile velocity; only while de-energised"},
@@ -127,6 +133,7 @@ const Command kMode{
     .effect = Effect::writes,
     .reads_without = "mode",
     .run = run_mode,
+    .check = check_mode_word,
 };
 
 }  // namespace servoctl::commands

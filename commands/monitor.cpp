@@ -160,7 +160,7 @@ Result<Value> run_monitor(Context& context, const Arguments& arguments) {
 constexpr Example kMonitorExamples[] = {
     {"monitor -b can0 -d gsd600", "every frame in words, until Ctrl-C; nothing is sent"},
     {"monitor --table -b can0 -d gsd600", "a row for each CAN-ID, with its period"},
-    {"monitor --service emcy --for 10m -b can0 -d gsd600", "emergencies alone, for ten minutes"},
+    {"monitor --service emcy --for 10min -b can0 -d gsd600", "emergencies alone, for ten minutes"},
 };
 
 }  // namespace

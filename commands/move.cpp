@@ -1,5 +1,6 @@
 #include "command/command.hpp"
 #include "command/motion_options.hpp"
+#include "drive/standard_objects.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -29,10 +30,22 @@ Result<report::Value> run_move(Context& context, const Arguments& arguments) {
   return motion::run_motion(context, *request, motion::motion_run(move, motion::plan_move, motion::run_move));
 }
 
+Result<void> check_move(Context& context, const Arguments& arguments) {
+  const auto* profile = context.profile;
+  const auto speed = profile == nullptr ? Result<drive::Target>(drive::Target{})
+                                        : drive::resolve(profile, profile->rules.motion.position_speed);
+  return check_motion_words(context, arguments,
+                            {{.word = "target",
+                              .object = objects::kTargetPosition,
+                              .kind = motion::MotionUnits::Kind::way,
+                              .least = motion::WrittenQuantity::Least::any},
+                             {.word = "--speed", .object = speed ? speed->address : ObjectAddress{}}});
+}
+
 constexpr Example kMoveExamples[] = {
     {"move 90deg --relative --speed 30rpm -n 1 -d sv2", "a quarter turn from here"},
     {"move 2rev --speed 60rpm --window 3rev -n 1 -d ts --turn 10000",
-     "to a position, stopped when it has moved further than 3 turns"},
+     "3 turns at most; 10000 counts a turn: take your motor's"},
     {"move lift 20mm --relative --speed 10mm/s", "an axis whose load the cabinet file tells"},
 };
 
@@ -52,6 +65,7 @@ const Command kMove{
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,
     .run = run_move,
+    .check = check_move,
 };
 
 }  // namespace servoctl::commands

@@ -20,6 +20,9 @@ using session::NodeEvent;
 
 constexpr Duration kSlice = std::chrono::milliseconds(100);
 
+constexpr std::uint32_t kNoSuchObject = 0x0602'0000;    ///< CiA 301, table of SDO abort codes.
+constexpr std::uint32_t kNoSuchSubindex = 0x0609'0011;  ///< The same.
+
 constexpr Parameter kNmtWatchParameters[] = {
     kForOption,
     {.name = "--guard", .help = "use node guarding, with this guard time", .kind = Kind::duration},
@@ -176,7 +179,10 @@ class Log {
       if (period == 0)
         hint = fmt::format("`write 0x1017 500 -n {}` switches it on; or {}", row.node, std::move(hint));
     } else if (answered(row)) {
-      what = "no heartbeat came, and it has no 1017h to enable one";
+      const auto code = row.told->error().abort_code;
+      what = code == kNoSuchObject || code == kNoSuchSubindex
+                 ? std::string("no heartbeat came, and it has no 1017h to enable one")
+                 : "no heartbeat came, and 1017h could not be read: " + row.told->error().message;
     } else if (heard(row)) {
       what = "no heartbeat and no SDO answer; only boot-up or emergency messages were received";
     } else {
@@ -233,7 +239,7 @@ Result<Value> run_nmt_watch(Context& context, const Arguments& arguments) {
 
 constexpr Example kNmtWatchExamples[] = {
     {"nmt watch -n 1,2", "by their heartbeats, until Ctrl-C"},
-    {"nmt watch -n 1 --for 10m", "for ten minutes; exit code 1 if the node was lost"},
+    {"nmt watch -n 1 --for 10min", "for ten minutes; exit code 1 if the node was lost"},
     {"nmt watch -n 3 --guard 200ms --life 3", "by node guarding, for a node without heartbeat"},
 };
 

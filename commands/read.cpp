@@ -146,8 +146,8 @@ const Command kRead{
     .path = "read",
     .summary = "Read objects of a node",
     .details =
-        "Without --drive only addresses are accepted, and the value is shown as an unsigned number of its "
-        "length. Index and sub-index are hexadecimal. With a dictionary the index of a record or an array alone "
+        "Names and patterns need the family: --drive, or, with a notice, the one that the identity of the drive "
+        "fits. An address needs none, and its value is then shown as an unsigned number of its length. Index and sub-index are hexadecimal. With a dictionary the index of a record or an array alone "
         "reads all of it, and a pattern ('0x60*', '*velocity*') every object that fits; what the drive refuses of "
         "them is shown with its abort, and what cannot be read is left out. With --to the bytes of one object of any size go to a "
         "file; block transfer is tried first where the drive may support it.",

@@ -1,6 +1,7 @@
 #include "command/command.hpp"
 #include "command/motion_options.hpp"
 #include "command/trial_options.hpp"
+#include "drive/standard_objects.hpp"
 #include "trial/motion_trials.hpp"
 #include "trial/verdict.hpp"
 
@@ -31,11 +32,19 @@ Result<report::Value> run_test_home(Context& context, const Arguments& arguments
   return trial::verdicts(context, verdict_options(arguments), {std::move(*done->result)});
 }
 
+Result<void> check_test_home(Context& context, const Arguments& arguments) {
+  if (const auto test = parse_home_test(arguments, arguments.text("method")); !test)
+    return fail(test.error());
+  return check_motion_words(
+      context, arguments,
+      {{.word = "method", .object = objects::kHomingMethod, .least = motion::WrittenQuantity::Least::any}});
+}
+
 constexpr Example kTestHomeExamples[] = {
     {"test home 17 --spread 0.5 --limit 900rpm --window 5rev -n 1 -d sv2",
-     "five times, home within half a degree"},
-    {"test home --repeat 3 --limit 600rpm -n 1 -d gsd600 --turn 131072",
-     "three times, with the method that is set in the drive"},
+     "five times at 900 rpm (from the factory), home within half a degree"},
+    {"test home --limit 600rpm --window 5rev -n 1 -d gsd600 --turn 131072",
+     "by the method set in the drive, 5 turns at most; 131072: your motor's counts"},
 };
 
 }  // namespace
@@ -55,6 +64,7 @@ const Command kTestHome{
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,
     .run = run_test_home,
+    .check = check_test_home,
 };
 
 }  // namespace servoctl::commands

@@ -34,7 +34,7 @@ Result<report::Value> run_test_io(Context& context, const Arguments& arguments) 
 constexpr Example kTestIoExamples[] = {
     {"test io --expect negative-limit,positive-limit,home -n 1 -d gsd600",
      "ends when each of the three was seen at 0 and at 1"},
-    {"test io --for 1m -n 1 -d gsd600", "show every change for a minute"},
+    {"test io --for 1min -n 1 -d gsd600", "show every change for a minute"},
 };
 
 }  // namespace

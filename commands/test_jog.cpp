@@ -36,8 +36,14 @@ Result<report::Value> run_test_jog(Context& context, const Arguments& arguments)
   return trial::verdicts(context, verdict_options(arguments), {std::move(*done->result)});
 }
 
+Result<void> check_test_jog(Context& context, const Arguments& arguments) {
+  if (const auto test = parse_jog_test(arguments, arguments.text("speed")); !test) return fail(test.error());
+  return check_motion_words(context, arguments, {written_speed("speed")});
+}
+
 constexpr Example kTestJogExamples[] = {
-    {"test jog 60rpm -n 1 -d gsd600 --turn 131072", "two seconds each way, after a question"},
+    {"test jog 60rpm -n 1 -d gsd600 --turn 131072",
+     "131072 counts a turn: take your motor's, a wrong number is a wrong speed"},
     {"test jog 100rpm --for 5s --tolerance 5 --junit jog.xml -n 1 -d sv2", "stricter, with a file for a CI"},
 };
 
@@ -58,6 +64,7 @@ const Command kTestJog{
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,
     .run = run_test_jog,
+    .check = check_test_jog,
 };
 
 }  // namespace servoctl::commands

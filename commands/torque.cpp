@@ -1,5 +1,6 @@
 #include "command/command.hpp"
 #include "command/motion_options.hpp"
+#include "drive/standard_objects.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -12,7 +13,7 @@ constexpr auto kTorqueParameters = with_motion_options(std::to_array<Parameter>(
     kCsvOption,
 }));
 
-Result<report::Value> run_torque(Context& context, const Arguments& arguments) {
+Result<motion::Torque> parse_torque(const Arguments& arguments) {
   if (!arguments.has("--limit"))
     return fail(Errc::usage, "an unloaded motor runs away in torque mode: a speed limit is needed",
                 "add --limit 60rpm");
@@ -22,10 +23,25 @@ Result<report::Value> run_torque(Context& context, const Arguments& arguments) {
   if (!length) return fail(length.error());
   if (!*length) return fail(Errc::usage, "how long?", "add --for 1s");
   torque.length = **length;
+  return torque;
+}
+
+Result<void> check_torque_words(Context& context, const Arguments& arguments) {
+  if (const auto torque = parse_torque(arguments); !torque) return fail(torque.error());
+  return check_motion_words(context, arguments,
+                            {{.word = "torque",
+                              .object = objects::kTargetTorque,
+                              .kind = motion::MotionUnits::Kind::way,
+                              .least = motion::WrittenQuantity::Least::any}});
+}
+
+Result<report::Value> run_torque(Context& context, const Arguments& arguments) {
+  const auto torque = parse_torque(arguments);
+  if (!torque) return fail(torque.error());
   const auto request = motion_request(context, arguments);
   if (!request) return fail(request.error());
   return motion::run_motion(context, *request,
-                            motion::motion_run(torque, motion::plan_torque, motion::run_torque));
+                            motion::motion_run(*torque, motion::plan_torque, motion::run_torque));
 }
 
 constexpr Example kTorqueExamples[] = {
@@ -49,6 +65,7 @@ const Command kTorque{
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,
     .run = run_torque,
+    .check = check_torque_words,
 };
 
 }  // namespace servoctl::commands

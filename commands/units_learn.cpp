@@ -247,6 +247,13 @@ Result<Value> run_units_learn(Context& context, const Arguments& arguments) {
   return answer;
 }
 
+Result<void> check_units_learn(Context& context, const Arguments& arguments) {
+  if (const auto rpm = learning_speed(arguments); !rpm) return fail(rpm.error());
+  if (const auto length = length_of(arguments); !length) return fail(length.error());
+  if (const auto nameplate = nameplate_of(arguments); !nameplate) return fail(nameplate.error());
+  return check_motion_words(context, arguments, {});
+}
+
 constexpr Example kUnitsLearnExamples[] = {
     {"units learn -n 1 -d gsd600", "about four turns at 30 rpm, after a question"},
     {"units learn --speed -15rpm --nameplate 131072 -n 1 -d gsd600",
@@ -273,6 +280,7 @@ const Command kUnitsLearn{
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,
     .run = run_units_learn,
+    .check = check_units_learn,
 };
 
 }  // namespace servoctl::commands

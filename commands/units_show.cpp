@@ -121,7 +121,7 @@ Result<Value> run_units_show(Context& context, const Arguments& arguments) {
 
 constexpr Example kUnitsShowExamples[] = {
     {"units show -n 1 -d gsd600", "whether counts per revolution are known, and from where"},
-    {"units show -n 1 -d ts --turn 10000", "with the counts that the nameplate says"},
+    {"units show -n 1 -d ts --turn 10000", "with the counts of your motor's nameplate"},
 };
 
 }  // namespace

@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "base/number.hpp"
+#include "base/regular_files.hpp"
 #include "base/text.hpp"
 
 namespace servoctl {
@@ -233,6 +234,9 @@ Result<void> write_through(const fs::path& path, const Target& target, std::stri
 }  // namespace
 
 Result<std::string> read_file(const std::filesystem::path& path, std::uintmax_t max_bytes) {
+  struct stat found {};
+  if (RegularFilesOnly::hold() && ::stat(path.c_str(), &found) == 0 && !S_ISREG(found.st_mode))
+    return fail(Errc::file, fmt::format("{} is no regular file", path.string()));
   const FilePtr file(std::fopen(path.c_str(), "rbe"));
   if (!file) return fail(Errc::file, fmt::format("cannot open {}: {}", path.string(), why(errno)));
   std::string content;

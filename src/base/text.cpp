@@ -14,6 +14,38 @@ char lower_char(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A
 /// A byte that is no UTF-8 is shown as one character.
 std::size_t columns_of(const CodePoint& c) { return c.value ? columns(*c.value) : 1; }
 
+/// What does not begin a line, and what does not end one (JIS X 4051, GB/T 15834): marks that belong to the
+/// character beside them.
+constexpr std::u32string_view kNotFirst = U"，。；：！？、）】》」』〉”’…·％～,.;:!?)]}%";
+constexpr std::u32string_view kNotLast = U"（【《「『〈“‘([{";
+
+bool has(std::u32string_view marks, const CodePoint& c) {
+  return c.value && marks.find(*c.value) != std::u32string_view::npos;
+}
+
+/// A word without blanks in pieces between which a line may be broken: beside wide characters, which have no
+/// blanks between words; not within Latin words, and not in backticks.
+std::vector<std::string_view> unbroken_pieces(std::string_view word) {
+  std::vector<std::string_view> out;
+  std::size_t begin = 0;
+  std::size_t at = 0;
+  CodePoint last{};
+  bool code = false;
+  while (at < word.size()) {
+    const auto c = decode_utf8(word.substr(at));
+    const bool wide = columns_of(c) == 2 || columns_of(last) == 2;
+    if (at > begin && wide && !code && !has(kNotFirst, c) && !has(kNotLast, last)) {
+      out.push_back(word.substr(begin, at - begin));
+      begin = at;
+    }
+    if (word[at] == '`') code = !code;
+    last = c;
+    at += c.size;
+  }
+  out.push_back(word.substr(begin));
+  return out;
+}
+
 }  // namespace
 
 std::string lower(std::string_view text) {
@@ -93,17 +125,21 @@ std::string wrapped(std::string_view text, std::size_t indent, std::size_t width
   std::string out;
   std::size_t used = 0;
   for (const auto word : split(text, ' ')) {
-    const auto size = display_width(word);
-    if (used > 0 && width > 0 && indent + used + 1 + size > width) {
-      out += '\n' + std::string(indent, ' ');
-      used = 0;
+    std::size_t blank = 1;
+    for (const auto piece : unbroken_pieces(word)) {
+      const auto size = display_width(piece);
+      if (used > 0 && width > 0 && indent + used + blank + size > width) {
+        out += '\n' + std::string(indent, ' ');
+        used = 0;
+      }
+      if (used > 0) {
+        out.append(blank, ' ');
+        used += blank;
+      }
+      out += piece;
+      used += size;
+      blank = 0;
     }
-    if (used > 0) {
-      out += ' ';
-      ++used;
-    }
-    out += word;
-    used += size;
   }
   return out;
 }

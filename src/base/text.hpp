@@ -35,8 +35,8 @@ std::string pad_left(std::string_view text, std::size_t width);
 /// At most `width` columns of `text`; where something is cut, the last column is `…`.
 std::string clip(std::string_view text, std::size_t width);
 
-/// `text` broken at spaces so that no line is wider than `width` columns (0: not broken); lines after the
-/// first are indented.
+/// `text` broken at spaces, and beside East Asian wide characters, so that no line is wider than `width`
+/// columns (0: not broken); lines after the first are indented. None begins with a mark such as `，` or `）`.
 std::string wrapped(std::string_view text, std::size_t indent, std::size_t width);
 
 /// Levenshtein distance with transpositions, ASCII case ignored.

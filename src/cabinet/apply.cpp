@@ -175,7 +175,7 @@ class Applying {
   }
 
   settings::RestoringOptions restoring(const AxisRun& run) const {
-    settings::RestoringOptions out;
+    settings::RestoringOptions out{.choice = {.with_address = true}};
     out.keep = options_->keep && session::can_store(*run.station.profile);
     out.unlock = options_->unlock && has_password(*run.station.profile);
     out.resume = options_->resume;

@@ -10,6 +10,7 @@
 #include "session/pdo_change.hpp"
 #include "session/state_pause.hpp"
 #include "settings/change.hpp"
+#include "settings/comparison.hpp"
 
 namespace servoctl::cabinet {
 namespace {
@@ -73,7 +74,9 @@ Result<std::vector<AxisNeed>> needs_of(session::Session& session, const drive::P
     const auto target = drive::target_at(&profile, object);
     const auto who = target.parameter != nullptr ? target.parameter->id : settings::name_of(target);
     const auto effect = drive::meaning(target, node).effect;
-    if (effect == od::Effect::restart) add_need(out, AxisNeed::Kind::restart, who);
+    // A drive that answers is where the file says: what is stored for its next start waits for none.
+    const bool is_place = settings::is_address(&profile, object);
+    if (effect == od::Effect::restart && !is_place) add_need(out, AxisNeed::Kind::restart, who);
     if (effect == od::Effect::standstill) add_need(out, AxisNeed::Kind::standstill, who);
     if (is_locked(profile, target.parameter)) add_need(out, AxisNeed::Kind::password, who);
   }

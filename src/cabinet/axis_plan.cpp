@@ -9,6 +9,7 @@
 #include "cabinet/axis_values.hpp"
 #include "drive/bitrate.hpp"
 #include "drive/naming.hpp"
+#include "session/open_bus.hpp"
 #include "session/pdo_setup.hpp"
 #include "session/snapshot.hpp"
 #include "session/state_pause.hpp"
@@ -112,7 +113,7 @@ class AxisPlanner {
 
   Result<void> compare_wanted() {
     settings::RestoreTarget target(*desk_, out_.wanted, cabinet_->file.string(), axis_->node,
-                                   {.keep = choice_->keep, .only_looks = true});
+                                   {.with_address = true, .keep = choice_->keep, .only_looks = true});
     if (const auto fits = target.prepare(); !fits) return fail(fits.error());
     out_.present = target.present();
     const auto node = axis_->node;
@@ -195,8 +196,8 @@ class AxisPlanner {
     return {};
   }
 
-  /// A bitrate that is stored and not that of the file takes the drive off the bus when it starts next. No
-  /// apply writes it: the nodes of a bus change theirs together.
+  /// A bitrate that is stored and not that of the file, where nothing tells that the bus runs at that of the
+  /// file: no apply writes it.
   Result<void> note_bitrate() {
     const auto& profile = *desk_->profile;
     const auto* bus = cabinet_->bus(axis_->bus);
@@ -204,15 +205,24 @@ class AxisPlanner {
     if (bus == nullptr || bus->bitrate.empty() || !object || desk_->session->network().is_ring()) return {};
     const auto rate = drive::parse_bitrate(bus->bitrate);
     const auto code = rate ? drive::bitrate_code(profile, *rate) : Result<std::int64_t>(fail(rate.error()));
-    if (!code) return {};
+    if (!code || session::runs_at(desk_->session->url(), *rate)) return {};
     const auto held = desk_->session->upload(axis_->node, *object);
     if (!held) return fail(held.error());
     if (static_cast<std::int64_t>(load_le(*held)) == *code) return {};
-    desk_->notices.push_back(fmt::format(
-        "axis {}: {} is {}, and bus {} runs at {}: when the drive starts next it is not on this bus any more; "
-        "`address --bitrate {} -n {}` sets it",
-        axis_->name, profile.rules.nmt.bitrate, stored_bitrate(profile, load_le(*held)), bus->name,
-        drive::bitrate_text(*rate), bus->bitrate, axis_->name));
+    const auto runs = session::bitrate_of(desk_->session->url());
+    const auto stored = stored_bitrate(profile, load_le(*held));
+    const auto said = drive::bitrate_text(*rate);
+    desk_->notices.push_back(
+        runs
+            ? fmt::format(
+                  "axis {}: {} is {}, the file says {}, and bus {} runs at {}: no bitrate is written; correct "
+                  "the file, or the bus (`bus status`)",
+                  axis_->name, profile.rules.nmt.bitrate, stored, said, bus->name, drive::bitrate_text(*runs))
+            : fmt::format(
+                  "axis {}: {} is {}, the file says {}, and nothing tells at which bitrate bus {} runs: none is "
+                  "written; where it is that of the file, `address --bitrate {} -n {}` sets it",
+                  axis_->name, profile.rules.nmt.bitrate, stored, said, bus->name, bus->bitrate,
+                  axis_->name));
     return {};
   }
 

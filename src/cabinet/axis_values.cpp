@@ -4,9 +4,12 @@
 #include <algorithm>
 
 #include "base/text.hpp"
+#include "drive/bitrate.hpp"
+#include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
 #include "pdo/pdo_recipes.hpp"
 #include "pdo/pdo_source.hpp"
+#include "session/open_bus.hpp"
 #include "session/pdo_change.hpp"
 #include "session/pdo_setup.hpp"
 #include "settings/change.hpp"
@@ -58,6 +61,8 @@ class Wanted {
   }
 
   Result<settings::Backup> make() {
+    if (held_ == nullptr && keep_)
+      if (const auto done = add_place(); !done) return fail(done.error());
     for (const auto& setting : axis_->parameters)
       if (const auto done = add_parameter(setting); !done) return fail(done.error());
     if (axis_->pdos.said())
@@ -70,6 +75,34 @@ class Wanted {
   }
 
  private:
+  /// A node-ID or a bitrate that is stored and not that of the file takes the drive away when it starts next.
+  /// The bitrate is written only where the bus runs at that of the file: else it would lead away itself.
+  Result<void> add_place() {
+    const auto& profile = *desk_->profile;
+    if (desk_->session->network().is_ring() || desk_->session->modbus() != nullptr) return {};
+    if (const auto done = add_stored(profile.rules.nmt.node_id, axis_->node, axis_->at); !done) return done;
+    const auto* bus = cabinet_->bus(axis_->bus);
+    if (bus == nullptr || bus->bitrate.empty()) return {};
+    const auto rate = drive::parse_bitrate(bus->bitrate);
+    if (!rate || !session::runs_at(desk_->session->url(), *rate)) return {};
+    const auto code = drive::bitrate_code(profile, *rate);
+    return code ? add_stored(profile.rules.nmt.bitrate, *code, bus->at) : Result<void>();
+  }
+
+  /// A parameter of the drive's address; its length is the drive's.
+  Result<void> add_stored(const std::string& name, std::int64_t value, Place place) {
+    if (name.empty()) return {};
+    const auto target = drive::resolve(desk_->profile, name);
+    if (!target) return fail(target.error());
+    const auto held = desk_->session->upload(axis_->node, target->address);
+    if (!held) return fail(held.error());
+    const auto meaning = drive::fitted(drive::meaning(*target, axis_->node), held->size());
+    const auto data = od::encode(meaning.type, od::Value(value));
+    if (!data) return at_place(*cabinet_, *axis_, place, data.error());
+    if (*data != *held) add_entry(target->address, *data, place);
+    return {};
+  }
+
   Result<void> add_parameter(const Setting& setting) {
     const auto target = drive::resolve(desk_->profile, setting.name);
     if (!target) return at_place(*cabinet_, *axis_, setting.at, target.error());
@@ -155,6 +188,12 @@ class Wanted {
       if (*first->bytes == data) return {};
       return refuse(fmt::format("has another value in line {}", first->line), "remove one of them");
     }
+    add_entry(object, data, place);
+    return {};
+  }
+
+  void add_entry(ObjectAddress object, const Bytes& data, Place place) {
+    const auto target = drive::target_at(desk_->profile, object);
     settings::Backup::Entry entry;
     entry.object = object;
     entry.id = target.parameter != nullptr ? target.parameter->id : std::string();
@@ -163,7 +202,6 @@ class Wanted {
     entry.bytes = data;
     entry.line = place.line;
     out_.entries.push_back(std::move(entry));
-    return {};
   }
 
   show::Desk* desk_;

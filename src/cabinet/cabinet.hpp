@@ -25,7 +25,7 @@ struct Place {
 struct Bus {
   std::string name;
   std::string url;      ///< As `--bus` takes it.
-  std::string bitrate;  ///< `500k`; told, not written. Empty: not said.
+  std::string bitrate;  ///< `500k`; drives that store another one get it. Empty: not said.
   Place at;
 };
 

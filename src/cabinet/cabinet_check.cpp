@@ -192,10 +192,44 @@ class ToldOnce {
   std::set<std::string> told_;
 };
 
+/// Names that differ in the case of letters alone: one letter too large moves another motor.
+class AlikeNames {
+ public:
+  explicit AlikeNames(const Cabinet& cabinet) : cabinet_(&cabinet) {}
+
+  std::vector<Error> find() {
+    for (const auto& bus : cabinet_->buses) add("bus", bus.name, bus.at, buses_);
+    for (const auto& axis : cabinet_->axes) add("axis", axis.name, axis.at, axes_);
+    for (const auto& axis : cabinet_->axes)
+      for (const auto& group : axis.groups) add("group", group, axis.at, axes_);
+    return std::move(errors_);
+  }
+
+ private:
+  using Names = std::map<std::string, std::string>;  ///< In small letters, and as they are.
+
+  void add(std::string_view what, const std::string& name, Place at, Names& names) {
+    const auto& first = names.emplace(lower(name), name).first->second;
+    if (first == name || !told_.insert(name).second) return;
+    auto error =
+        file_error(cabinet_->file.string(), at.line, at.column,
+                   fmt::format("{} {} differs from {} in the case of letters alone", what, name, first));
+    error.hint = "a slip at the keyboard would move the other: give one of them another name";
+    errors_.push_back(std::move(error));
+  }
+
+  const Cabinet* cabinet_;
+  Names buses_;
+  Names axes_;
+  std::set<std::string> told_;
+  std::vector<Error> errors_;
+};
+
 }  // namespace
 
 CabinetFindings check_cabinet(const Cabinet& cabinet, const LoadProfile& load) {
   CabinetFindings out;
+  out.errors = AlikeNames(cabinet).find();
   ToldOnce told;
   for (const auto& axis : cabinet.axes) {
     const auto profile = load(axis.family);

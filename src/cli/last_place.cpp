@@ -53,7 +53,7 @@ void tell(Shell& shell, const std::string& text) { shell.console().note("notice:
 
 /// Another folder may have another cabinet file, with the same names for other drives.
 Result<void> check_cabinet(Shell& shell, const LastPlace& place) {
-  if (place.cabinet.empty()) return {};
+  if (place.cabinet.empty() && !names_axes(place.nodes)) return {};
   const auto* cabinet = cabinet_in_use(shell);
   if (cabinet != nullptr && file_of(*cabinet) == place.cabinet) return {};
   return fail(Errc::usage,
@@ -71,8 +71,12 @@ Result<void> go_to(Shell& shell, const LastPlace& place) {
     if (!now) return fail(now.error());
     settings = std::move(*now);
   }
-  if (!place.bus.empty() && opens_silently(shell, place.bus))
-    if (const auto opened = open_chosen_bus(shell, settings); !opened) return fail(opened.error());
+  // What was an interface is none of a cabinet's buses, though one may have its name.
+  const bool was_interface = place.cabinet.empty() && !is_url(place.bus);
+  if (!place.bus.empty() && (was_interface || opens_silently(shell, place.bus))) {
+    const auto opened = was_interface ? shell.open(settings) : open_chosen_bus(shell, settings);
+    if (!opened) return fail(opened.error());
+  }
   shell.defaults() = std::move(settings);
   return {};
 }
@@ -137,13 +141,13 @@ void keep_last_place(Shell& shell, const std::filesystem::path& state_folder) {
   const auto* cabinet = of_cabinet ? cabinet_in_use(shell) : nullptr;
   if (of_cabinet && cabinet == nullptr) return;
   // All nodes of a bus are none to begin with.
-  if (now.nodes == "all") return;
+  const auto nodes = equals_nocase(now.nodes, "all") ? std::string() : now.nodes;
   std::error_code error;
   const bool is_file = std::filesystem::is_regular_file(now.drive, error);
   const auto drive = is_file ? std::filesystem::canonical(now.drive, error).string() : now.drive;
   // Where the prompt was is worth no word when it cannot be kept.
   (void)LastPlaceFile(state_folder)
-      .write({now.bus, now.nodes, drive, cabinet == nullptr ? "" : file_of(*cabinet), utc_now_text()});
+      .write({now.bus, nodes, drive, cabinet == nullptr ? "" : file_of(*cabinet), utc_now_text()});
 }
 
 }  // namespace servoctl::cli

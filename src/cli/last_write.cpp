@@ -5,11 +5,13 @@
 #include <array>
 
 #include "cabinet/cabinet.hpp"
+#include "cli/axis_lines.hpp"
 #include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/identify.hpp"
 #include "session/pdo_change.hpp"
 #include "settings/change.hpp"
+#include "settings/comparison.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -21,12 +23,26 @@ using command::Context;
 constexpr std::array<std::uint16_t, 11> kMoving{0x6040, 0x6042, 0x6060, 0x6071, 0x607A, 0x60B0,
                                                 0x60B1, 0x60B2, 0x60C1, 0x60FE, 0x60FF};
 
-std::string why_not_back(const drive::Target& target, const drive::Meaning& meaning) {
+bool is_moving(ObjectAddress object) {
+  return std::find(kMoving.begin(), kMoving.end(), object.index) != kMoving.end();
+}
+
+/// Also where the family has another name for it: a panel parameter that is the same value, or what an
+/// enabled drive follows at once. `profile` may be null.
+bool drives_motor(const drive::Profile* profile, const drive::Target& target) {
+  const auto* parameter = target.parameter;
+  const bool same = parameter != nullptr && parameter->mirror && is_moving(*parameter->mirror);
+  const bool followed = profile != nullptr && settings::is_target(*profile, target.address);
+  return is_moving(target.address) || same || followed;
+}
+
+/// `profile` may be null.
+std::string why_not_back(const drive::Profile* profile, const drive::Target& target,
+                         const drive::Meaning& meaning) {
   const auto* entry = target.entry;
   const auto* parameter = target.parameter;
   const auto index = target.address.index;
-  if (std::find(kMoving.begin(), kMoving.end(), index) != kMoving.end())
-    return "it drives the motor, and is no setting";
+  if (drives_motor(profile, target)) return "it drives the motor, and is no setting";
   const bool action = index == objects::kStoreIndex || index == objects::kRestoreIndex ||
                       (entry != nullptr && entry->command) || (parameter != nullptr && parameter->command);
   if (action) return "it starts an action";
@@ -83,7 +99,9 @@ void LastWrite::look(const command::Command& command, const command::Arguments& 
                   .bus = settings.bus,
                   .place = place_,
                   .drive = settings.drive,
-                  .of_cabinet = !context.axes.empty(),
+                  .by_axis = !context.axes.empty() && (settings.nodes_typed || names_axes(place_)),
+                  .of_cabinet = settings.of_cabinet,
+                  .names = settings.names,
                   .keep = arguments.has("--keep"),
                   .unlock = arguments.has("--unlock"),
                   .values = {},
@@ -104,7 +122,7 @@ void LastWrite::look_at(const Context& context, const settings::NamedValue& name
   if (!target) return;  // The line will be refused.
   auto meaning = drive::meaning(*target, node);
   if (named.type) meaning.type = *named.type;
-  auto why = why_not_back(*target, meaning);
+  auto why = why_not_back(context.profile, *target, meaning);
   const auto before = why.empty() ? context.session->upload(node, target->address) : Result<Bytes>(Bytes());
   if (why.empty() && before && !named.type) meaning = with_known_type(node, *target, meaning, *before);
   if (why.empty() && before && pending_->keep && context.profile != nullptr) {

@@ -39,7 +39,9 @@ class LastWrite {
     std::string bus;
     std::string place;        ///< The nodes that the prompt had in use.
     std::string drive;        ///< Family as after -d; empty: none was named.
-    bool of_cabinet = false;  ///< The axes say bus and family.
+    bool by_axis = false;     ///< Its axes were named, by the line or by `use`: they say bus and family.
+    bool of_cabinet = false;  ///< Settings::of_cabinet.
+    show::AxisNames names;    ///< Settings::names.
     bool keep = false;        ///< --keep was given.
     bool unlock = false;      ///< --unlock was given.
     std::vector<Value> values;

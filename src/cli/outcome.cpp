@@ -1,6 +1,7 @@
 #include "cli/outcome.hpp"
 
 #include "base/printable.hpp"
+#include "report/chinese_value.hpp"
 #include "show/records.hpp"
 
 namespace servoctl::cli {
@@ -19,6 +20,12 @@ std::string errors_text(std::span<const Error> errors) {
     if (!errors[i].hint.empty() && !again) out += "  hint: " + printable(errors[i].hint) + "\n";
   }
   return out;
+}
+
+/// Help is in the language of who reads already.
+Value shown(const Outcome& outcome) {
+  const bool english = !outcome.settings.shows_chinese() || outcome.command == "help";
+  return english ? outcome.result : report::chinese_value(outcome.result);
 }
 
 report::Record envelope(const Outcome& outcome) {
@@ -49,7 +56,7 @@ int show(Console& console, const Outcome& outcome) {
   if (outcome.settings.json) {
     console.out(report::to_json(envelope(outcome)) + "\n");
   } else {
-    console.out(report::to_text(outcome.result, console.width()));
+    console.out(report::to_text(shown(outcome), console.width()));
     show_remarks(console, outcome);
   }
   return outcome.code();

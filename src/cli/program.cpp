@@ -83,6 +83,7 @@ std::string standard_text() { return standard_input().take_rest(); }
 
 int run_lines(Shell& shell, const std::vector<std::string>& words, StandardConsole& console) {
   const auto first = match_command(words).first;
+  console.set_chinese(wants_chinese(words, shell.defaults().chinese));
   if (first < words.size() && words[first] == "-")
     return run_batch(shell, as_run(words, first), standard_text);
   if (is_batch(words)) return run_batch(shell, words, standard_text);
@@ -93,6 +94,7 @@ int run_lines(Shell& shell, const std::vector<std::string>& words, StandardConso
   auto settings = settings_for_lines(shell.defaults(), words);
   if (!settings) return shell.report_error(settings.error(), false);
   shell.defaults() = std::move(*settings);
+  console.set_chinese(shell.defaults().chinese);
   if (::isatty(STDIN_FILENO) != 1) return run_pipe(shell);
   if (shell.defaults().bus.empty())
     take_last_place(shell, state_folder());

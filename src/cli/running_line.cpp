@@ -22,9 +22,10 @@ Result<void> RunningLine::confirm(std::string_view question) {
   const auto turn = shell_->take_turn();
   auto& console = shell_->console();
   const auto shown = printable(settings_->names.in(question));
+  const auto asked = printable(settings_->names.in(console.in_language(question)));
   if (!console.can_ask())
     return fail(Errc::refused, fmt::format("confirmation needed: {}", shown), "add --yes to confirm");
-  if (console.ask(shown)) return {};
+  if (console.ask(asked)) return {};
   return fail(Errc::refused, "not confirmed; nothing was sent");
 }
 
@@ -38,7 +39,8 @@ void RunningLine::emit(const report::Record& sample, std::string_view line) {
     names.put_into(named);
     shell_->console().out(report::to_json(named) + "\n");
   } else if (!settings_->json && !line.empty()) {
-    shell_->console().out(printable(names.empty() ? std::string(line) : names.in(line)) + "\n");
+    const auto shown = shell_->console().in_language(line);
+    shell_->console().out(printable(names.empty() ? shown : names.in(shown)) + "\n");
   }
 }
 
@@ -51,7 +53,8 @@ void RunningLine::tell(std::string_view text) {
   const auto turn = shell_->take_turn();
   shell_->end_progress();
   // What a question is about stands before it.
-  if (!settings_->quiet || !settings_->yes) shell_->console().err(settings_->names.in(text));
+  if (!settings_->quiet || !settings_->yes)
+    shell_->console().err(settings_->names.in(shell_->console().in_language(text)));
 }
 
 std::size_t RunningLine::width() const { return shell_->console().width(); }

@@ -19,6 +19,27 @@ std::string variable(const char* name) {
 
 }  // namespace
 
+bool wants_json(const std::vector<std::string>& words) {
+  for (std::size_t i = 0; i < words.size() && words[i] != "--"; ++i) {
+    if (words[i] == "--json" || words[i] == "--output=json" || words[i] == "--output=jsonl" ||
+        words[i] == "-ojson" || words[i] == "-ojsonl")
+      return true;
+    if ((words[i] == "-o" || words[i] == "--output") && i + 1 < words.size() &&
+        (words[i + 1] == "json" || words[i + 1] == "jsonl"))
+      return true;
+  }
+  return false;
+}
+
+bool wants_chinese(const std::vector<std::string>& words, bool otherwise) {
+  constexpr std::string_view kLang = "--lang";
+  for (std::size_t i = 0; i < words.size() && words[i] != "--"; ++i) {
+    if (words[i].starts_with("--lang=")) otherwise = words[i].substr(kLang.size() + 1) == "zh";
+    if (words[i] == kLang && i + 1 < words.size()) otherwise = words[i + 1] == "zh";
+  }
+  return otherwise;
+}
+
 Settings settings_from_environment() {
   Settings out;
   out.bus = variable("SERVOCTL_BUS");

@@ -33,11 +33,19 @@ struct Settings {
   std::filesystem::path cabinet;  ///< That was named; empty: the one found from the current folder.
   bool of_cabinet = false;        ///< Bus, nodes and family are those of axes: other buses stay open.
   show::AxisNames names;          ///< Of the nodes of the bus.
+
+  /// Whether results, errors and notices are text in Chinese. In JSON only names from data are.
+  bool shows_chinese() const { return chinese && !json; }
 };
 
 /// Defaults from $SERVOCTL_BUS, $SERVOCTL_NODE, $SERVOCTL_DRIVE, $SERVOCTL_CABINET and $SERVOCTL_LANG (or a
 /// Chinese $LANG).
 Settings settings_from_environment();
+
+/// What the words say of it, in a line that may be wrong elsewhere.
+bool wants_json(const std::vector<std::string>& words);
+/// The same of the language; `otherwise` where they say nothing.
+bool wants_chinese(const std::vector<std::string>& words, bool otherwise);
 
 /// `base` with the global options of one line on top. Errc::usage for a value that is none.
 Result<Settings> apply_options(Settings base, const command::Arguments& arguments);

@@ -7,10 +7,12 @@
 #include <span>
 #include <utility>
 
+#include "base/object_address.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "cli/terminal/signals.hpp"
 #include "command/help_text.hpp"
+#include "report/catalogue.hpp"
 #include "session/ethercat_network.hpp"
 #include "session/modbus_network.hpp"
 #include "session/scan.hpp"
@@ -25,18 +27,6 @@ using command::Effect;
 using command::Needs;
 using report::Value;
 
-bool wants_json(const std::vector<std::string>& words) {
-  for (std::size_t i = 0; i < words.size() && words[i] != "--"; ++i) {
-    if (words[i] == "--json" || words[i] == "--output=json" || words[i] == "--output=jsonl" ||
-        words[i] == "-ojson" || words[i] == "-ojsonl")
-      return true;
-    if ((words[i] == "-o" || words[i] == "--output") && i + 1 < words.size() &&
-        (words[i + 1] == "json" || words[i + 1] == "jsonl"))
-      return true;
-  }
-  return false;
-}
-
 /// How a slave is reached, and which registers a unit has, the data of its family tell.
 void learn_family(session::Session& session, std::span<const std::uint8_t> nodes,
                   const drive::Profile& profile) {
@@ -48,6 +38,15 @@ void learn_family(session::Session& session, std::span<const std::uint8_t> nodes
   }
 }
 
+/// Whether a word stands for objects that only a dictionary knows: a name, or a pattern.
+bool names_objects(const command::Command& command, const command::Arguments& arguments) {
+  const auto is_name = [](const std::string& word) { return !parse_object_address(word); };
+  return std::any_of(command.parameters.begin(), command.parameters.end(), [&](const auto& parameter) {
+    const auto words = arguments.all(parameter.name);
+    return parameter.kind == command::Kind::object && std::any_of(words.begin(), words.end(), is_name);
+  });
+}
+
 /// Whatever is told of a line speaks of axes by their names.
 void name_axes_in(const show::AxisNames& names, command::Context& context, Value& result) {
   for (auto& error : context.errors) {
@@ -56,6 +55,15 @@ void name_axes_in(const show::AxisNames& names, command::Context& context, Value
   }
   for (auto& notice : context.notices) notice = names.in(notice);
   names.put_into(result);
+}
+
+/// What is told of `node 3` is looked for under that name, before it has another.
+void put_into_chinese(command::Context& context) {
+  for (auto& error : context.errors) {
+    error.message = report::in_chinese(error.message);
+    error.hint = report::in_chinese(error.hint);
+  }
+  for (auto& notice : context.notices) notice = report::in_chinese(notice);
 }
 
 }  // namespace
@@ -69,7 +77,9 @@ Shell::Shell(Console& console, Options options)
         console_->set_care(worst);
       }),
       bus_(console, {.drive_folders = options_.drive_folders, .trace = {}, .clock = options_.clock},
-           session_options()) {}
+           session_options()) {
+  console_->set_chinese(options_.defaults.chinese);
+}
 
 session::Options Shell::session_options() {
   session::Options out;
@@ -102,6 +112,8 @@ Outcome Shell::perform(const std::vector<std::string>& words) {
   const auto path = match.command != nullptr ? match.command->path : std::string_view();
   auto settings = options_.defaults;
   settings.json = settings.json || wants_json(words);
+  settings.chinese = wants_chinese(words, settings.chinese);
+  console_->set_chinese(settings.chinese);
   if (asks_for_help(words)) return help(words, std::move(settings));
   auto parsed = parse_line(name_axes(words, match));
   if (!parsed) return failed(parsed.error(), std::move(settings), path);
@@ -117,7 +129,7 @@ Outcome Shell::help(const std::vector<std::string>& words, Settings settings) {
   const std::string path = match.command != nullptr     ? std::string(match.command->path)
                            : match.first < words.size() ? words[match.first]
                                                         : std::string();
-  auto text = command::help_text(path, console_->width());
+  auto text = command::help_text(path, console_->width(), settings.chinese);
   if (!text) return failed(text.error(), std::move(settings));
   settings.json = false;
   if (!text->empty() && text->back() == '\n') text->pop_back();
@@ -151,7 +163,8 @@ Result<void> Shell::prepare(Run& run, const command::Arguments& arguments) {
   if (on_bus && includes(command.needs, Needs::node) && run.settings.nodes.empty())
     return fail(no_node(command));
   if (const auto right = check_words(command, run.context, arguments); !right) return right;
-  if (!run.settings.drive.empty() || includes(command.needs, Needs::dictionary))
+  if (!run.settings.drive.empty() || includes(command.needs, Needs::dictionary) ||
+      (on_bus && names_objects(command, arguments)))
     if (const auto ready = prepare_profile(run, command.effect_with(arguments) > Effect::reads); !ready)
       return ready;
   if (!on_bus) return name_nodes(run);
@@ -184,7 +197,9 @@ Result<void> Shell::prepare_nodes(Run& run) {
   if (run.settings.nodes.empty()) return {};
   auto nodes = parse_nodes(run.settings.nodes);
   if (!nodes) return fail(nodes.error());
-  const bool takes_all = run.command->to_all || !includes(run.command->needs, Needs::node);
+  const bool reaches_silent =
+      run.command->to_silent && !run.settings.dry_run && run.context.session->can() != nullptr;
+  const bool takes_all = run.command->to_all || reaches_silent || !includes(run.command->needs, Needs::node);
   if (nodes->front() == 0 && !takes_all) {
     nodes = session::nodes_present(*run.context.session);
     if (!nodes) return fail(nodes.error());
@@ -222,6 +237,7 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
   if (!errors.empty() && errors.front().code == Errc::bus && session != nullptr) bus_.lose(*session);
   auto words = errors.empty() ? std::string() : show::abort_words(run.context, errors.front());
   auto value = result ? *result : Value();
+  if (run.settings.shows_chinese() && !run.settings.names.empty()) put_into_chinese(run.context);
   name_axes_in(run.settings.names, run.context, value);
   return {.command = std::string(run.command->path),
           .settings = run.settings,

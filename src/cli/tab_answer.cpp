@@ -42,6 +42,7 @@ Tab find_words(Words words, const std::string& begun, Shell& shell, bool lists_f
   // Names come from files: one that looks like an option is not put where none was begun.
   if (!begun.starts_with('-'))
     std::erase_if(out.candidates, [](const Candidate& one) { return one.word.starts_with('-'); });
+  prefer_exact(out.candidates, begun);
   for (auto& one : out.candidates) one.hint = printable(one.hint);
   if (found.any_file() && !lists_files && out.candidates.empty())
     out.head = "files";
@@ -105,8 +106,8 @@ void add_hints(std::vector<std::string>& entries, const std::vector<Candidate>& 
 std::string for_bash(std::span<const std::string> question, Shell& shell) {
   const auto type = parse_digits(question[0], 10).value_or(0);
   const auto columns = parse_digits(question[1], 10).value_or(0);
-  auto line = begun_line(question[3], question[2]);
-  if (line.words.empty()) return {};
+  auto line = begun_line(question[3], question[2], LineSyntax::bash);
+  if (line.words.empty() || line.comment) return {};
   line.words.erase(line.words.begin());
   const auto tab = find_words(line.words, line.last, shell, false);
   std::vector<std::string> entries;
@@ -128,6 +129,11 @@ std::string bash_text(std::string_view text, char quote) {
   constexpr std::string_view kInDouble = "\"\\$`";
   std::string out;
   for (const char c : text) {
+    // Within double quotes bash would look for it in its history, and a backslash stays.
+    if (quote == '"' && c == '!') {
+      out += "\"\\!\"";
+      continue;
+    }
     if (quote == '\'' && c == '\'')
       out += "'\\'";
     else if (quote != '\'' && (quote == '"' ? kInDouble : kNotPlain).find(c) != std::string_view::npos)
@@ -143,7 +149,8 @@ std::string answer_tab(std::span<const std::string> question, Shell& shell) {
   const Words words(question.begin() + 2, question.end());
   // fish quotes what it is given, but completes paths of a word only once its quotes are taken away.
   const bool fish = question[0] == "fish";
-  const auto tab = find_words(words, begun_line(question[1]).last, shell, fish);
+  const auto begun = begun_line(question[1], {}, fish ? LineSyntax::fish : LineSyntax::zsh);
+  const auto tab = find_words(words, begun.last, shell, fish);
   if (fish) return for_fish(tab);
   return question[0] == "zsh" ? for_zsh(tab) : std::string();
 }

@@ -4,6 +4,7 @@
 
 #include "base/printable.hpp"
 #include "base/text.hpp"
+#include "can/socketcan.hpp"
 #include "cli/last_write.hpp"
 #include "cli/shell.hpp"
 #include "session/identify.hpp"
@@ -37,13 +38,23 @@ Result<void> check_value(session::Session& session, std::uint64_t opening, const
   return {};
 }
 
+/// A name without a colon that is no interface may be that of a bus of the cabinet.
+std::string url_in_use(Shell& shell) {
+  const auto& bus = shell.defaults().bus;
+  const bool may_be_name = bus.find(':') == std::string::npos && !can::is_interface(bus);
+  const auto cabinet =
+      may_be_name ? shell.cabinet(shell.defaults()) : Result<const cabinet::Cabinet*>(nullptr);
+  const auto* known = cabinet && *cabinet != nullptr ? (*cabinet)->bus(bus) : nullptr;
+  return session::canonical_url(known != nullptr ? known->url : bus);
+}
+
 /// The session, where the prompt still is where the line was, and all drives hold what it wrote.
 Result<void> check_line(Shell& shell, const WrittenLine& line) {
   if (!line.why_not.empty())
     return fail(Errc::refused, "the last write is not put back: " + line.why_not,
                 "`param set` or `write` writes a value by hand");
   auto settings = shell.defaults();
-  if (!line.of_cabinet && session::canonical_url(settings.bus) != session::canonical_url(line.bus))
+  if (!line.by_axis && url_in_use(shell) != session::canonical_url(line.bus))
     return fail(Errc::refused,
                 fmt::format("the last write was on {}, and the prompt is not there any more", line.bus),
                 fmt::format("`bus {}`, and then `undo`", line.bus));
@@ -56,6 +67,7 @@ Result<void> check_line(Shell& shell, const WrittenLine& line) {
                                    : fmt::format("`use {}`, and then `undo`", line.place));
   settings.bus = line.bus;
   settings.of_cabinet = line.of_cabinet;
+  settings.names = line.names;
   const auto session = shell.open(settings);
   if (!session) return fail(session.error());
   for (const auto& value : line.values)
@@ -81,7 +93,7 @@ Result<void> confirm_undo(Shell& shell, const WrittenLine& line, bool yes) {
   const auto shown = printable(undo_question(line));
   if (!shell.console().can_ask())
     return fail(Errc::refused, "confirmation needed: " + shown, "`undo --yes` confirms");
-  if (shell.console().ask(shown)) return {};
+  if (shell.console().ask(shell.console().in_language(shown))) return {};
   return fail(Errc::refused, "not confirmed; nothing was sent");
 }
 
@@ -101,8 +113,31 @@ std::vector<std::string> words_of(const WrittenLine& line, const WrittenValue& v
   return out;
 }
 
+/// What the lines that put back have of the line they put back, though their words name a bus and numbers:
+/// the cabinet's other buses stay open, and answers speak of axes.
+class AsOfCabinet {
+ public:
+  AsOfCabinet(Shell& shell, const WrittenLine& line)
+      : defaults_(&shell.defaults()), of_cabinet_(defaults_->of_cabinet), names_(defaults_->names) {
+    defaults_->of_cabinet = line.of_cabinet;
+    defaults_->names = line.names;
+  }
+  AsOfCabinet(const AsOfCabinet&) = delete;
+  AsOfCabinet& operator=(const AsOfCabinet&) = delete;
+  ~AsOfCabinet() {
+    defaults_->of_cabinet = of_cabinet_;
+    defaults_->names = std::move(names_);
+  }
+
+ private:
+  Settings* defaults_;
+  bool of_cabinet_;
+  show::AxisNames names_;
+};
+
 /// From the last to the first; what is left when one fails can be put back later.
 int put_back(Shell& shell, const WrittenLine& line, bool yes) {
+  const AsOfCabinet as(shell, line);
   auto left = line;
   int code = 0;
   while (!left.values.empty() && code == 0) {

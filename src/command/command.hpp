@@ -99,7 +99,10 @@ struct Command {
   Result<void> (*check)(Context&, const Arguments&) = nullptr;
   /// The values it writes, for a batch file that is read as settings; null: it writes none.
   Result<std::vector<settings::NamedValue>> (*settings)(const Arguments&) = nullptr;
-  bool to_all = false;        ///< Node 0 stays one message to all, and is not taken for those that answer.
+  bool to_all = false;  ///< Node 0 stays one message to all, and is not taken for those that answer.
+  /// `-n all` stays node 0 on CAN: it goes to every node-ID, because a drive that answers nothing may have
+  /// power.
+  bool to_silent = false;
   bool opens_bus = false;     ///< Its words decide which end of the bus it needs: it opens it itself.
   bool of_front_end = false;  ///< It runs other command lines: the front end does it, `run` is null.
   bool goes_on = false;       ///< It shows what comes until it is ended: one bus and family at a time.

@@ -35,7 +35,7 @@ constexpr Parameter kGlobal[] = {
      .choices = kOutputForms,
      .short_name = "-o"},
     {.name = "--lang",
-     .help = "language of names: en or zh (default $SERVOCTL_LANG)",
+     .help = "language of what people read: en or zh (default $SERVOCTL_LANG)",
      .kind = Kind::choice,
      .choices = kLanguages},
     {.name = "--yes", .help = "answer yes to every question", .kind = Kind::flag, .short_name = "-y"},

@@ -7,6 +7,7 @@
 #include "base/text.hpp"
 #include "command/prompt_words.hpp"
 #include "command/registry.hpp"
+#include "report/catalogue.hpp"
 
 namespace servoctl::command {
 namespace {
@@ -26,76 +27,104 @@ std::string option_words(const Parameter& parameter) {
   return out;
 }
 
-std::string rows(std::span<const Parameter> parameters, bool options, std::size_t width) {
-  std::string out;
-  for (const auto& parameter : parameters) {
-    if (parameter.name.starts_with("-") != options) continue;
-    const auto left = options ? option_words(parameter) : value_word(parameter);
-    out += "  " + pad_right(left, 22) + " " + wrapped(parameter.help, 25, width) + "\n";
+/// The pages, in a language and so many columns wide.
+class HelpPage {
+ public:
+  HelpPage(std::size_t width, bool chinese) : width_(width), chinese_(chinese) {}
+
+  std::string of(const Command& command) const {
+    auto out = fmt::format("servoctl {}\n\n{}\n", usage_line(command.path),
+                           chinese_ ? sentence(command.summary) : std::string(command.summary) + ".");
+    if (!command.details.empty()) out += "\n" + wrapped(said(command.details), 0, width_) + "\n";
+    if (const auto words = rows(command.parameters, false); !words.empty())
+      out += "\n" + said("Arguments:") + "\n" + words;
+    if (const auto options = rows(command.parameters, true); !options.empty())
+      out += "\n" + said("Options:") + "\n" + options;
+    out += example_lines(command.examples);
+    std::vector<Parameter> others(global_options().begin(), global_options().end());
+    std::erase_if(others, [&](const Parameter& global) { return has_own(command, global); });
+    return out + "\n" + said("Options of every command:") + "\n" + rows(others, true);
   }
-  return out;
-}
 
-/// Each line as it is typed, and under it what it is for.
-std::string example_lines(std::span<const Example> examples, std::size_t width) {
-  if (examples.empty()) return {};
-  std::string out = "\nExamples:\n";
-  for (const auto& example : examples)
-    out += fmt::format("  {}\n      {}\n", example.line, wrapped(example.what, 6, width));
-  return out;
-}
+  std::string of(const PromptWord& word) const {
+    const auto group = command_rows(word.name);
+    return fmt::format("{} {}\n\n{}\n\n{}\n{}{}", said("At the prompt:"), prompt_usage(word),
+                       sentence(word.summary), wrapped(said(word.details), 0, width_),
+                       example_lines(word.examples),
+                       group.empty() ? "" : fmt::format("\nservoctl {} …\n\n{}", word.name, group));
+  }
 
-std::string command_help(const Command& command, std::size_t width) {
-  auto out = fmt::format("servoctl {}\n\n{}.\n", usage_line(command.path), command.summary);
-  if (!command.details.empty()) out += "\n" + wrapped(command.details, 0, width) + "\n";
-  if (const auto words = rows(command.parameters, false, width); !words.empty())
-    out += "\nArguments:\n" + words;
-  if (const auto options = rows(command.parameters, true, width); !options.empty())
-    out += "\nOptions:\n" + options;
-  out += example_lines(command.examples, width);
-  std::vector<Parameter> others(global_options().begin(), global_options().end());
-  std::erase_if(others, [&](const Parameter& global) { return has_own(command, global); });
-  return out + "\nOptions of every command:\n" + rows(others, true, width);
-}
+  std::string of_program() const {
+    return said("servoctl: commissions CANopen servo drives from a terminal") + "\n\n" +
+           usage("  servoctl [OPTIONS] COMMAND …    ", "run one command") +
+           usage("  servoctl [OPTIONS]              ", "the prompt; also reads command lines from a pipe") +
+           usage("  servoctl [OPTIONS] -            ", "a batch file from standard input (see `help run`)") +
+           "\n" + said("Commands:") + "\n" + command_rows({}) + "\n" + said("At the prompt also:") + "\n" +
+           word_rows() + "\n" + said("Options of every command:") + "\n" + rows(global_options(), true) +
+           "\n" + end() + "\n";
+  }
 
-std::string command_rows(std::string_view group, std::size_t width) {
-  std::size_t longest = 0;
-  for (const auto* command : registry()) longest = std::max(longest, command->path.size());
-  std::string out;
-  for (const auto* command : registry())
-    if (group.empty() || command->path.starts_with(std::string(group) + " "))
-      out += "  " + pad_right(command->path, longest) + "  " + wrapped(command->summary, longest + 4, width) +
-             "\n";
-  return out;
-}
+  std::string command_rows(std::string_view group) const {
+    std::size_t longest = 0;
+    for (const auto* command : registry()) longest = std::max(longest, command->path.size());
+    std::string out;
+    for (const auto* command : registry())
+      if (group.empty() || command->path.starts_with(std::string(group) + " "))
+        out += "  " + pad_right(command->path, longest) + "  " +
+               wrapped(said(command->summary), longest + 4, width_) + "\n";
+    return out;
+  }
 
-std::string word_help(const PromptWord& word, std::size_t width) {
-  const auto group = command_rows(word.name, width);
-  return fmt::format("At the prompt: {}\n\n{}.\n\n{}\n{}{}", prompt_usage(word),
-                     wrapped(word.summary, 0, width), wrapped(word.details, 0, width),
-                     example_lines(word.examples, width),
-                     group.empty() ? "" : fmt::format("\nservoctl {} …\n\n{}", word.name, group));
-}
+ private:
+  std::string said(std::string_view text) const {
+    return chinese_ ? report::in_chinese(text) : std::string(text);
+  }
 
-std::string word_rows(std::size_t width) {
-  std::string out;
-  for (const auto& word : prompt_words())
-    out += "  " + pad_right(prompt_usage(word), 22) + " " + wrapped(word.summary, 25, width) + "\n";
-  return out;
-}
+  /// With its full stop.
+  std::string sentence(std::string_view text) const {
+    return chinese_ ? wrapped(said(text) + "。", 0, width_) : wrapped(text, 0, width_) + ".";
+  }
 
-std::string program_help(std::size_t width) {
-  return "servoctl: commissions CANopen servo drives from a terminal\n\n"
-         "  servoctl [OPTIONS] COMMAND …    run one command\n"
-         "  servoctl [OPTIONS]              the prompt; also reads command lines from a pipe\n"
-         "  servoctl [OPTIONS] -            a batch file from standard input (see `help run`)\n\n"
-         "Commands:\n" +
-         command_rows({}, width) + "\nAt the prompt also:\n" + word_rows(width) +
-         "\nOptions of every command:\n" + rows(global_options(), true, width) +
-         "\n`help COMMAND` shows more, with examples. Exit codes: 0 done, 1 negative result, 2 usage, 3 bus, 4 no "
-         "answer,\n5 refused by the drive, 6 protocol error, 7 file, 8 refused for safety, 70 a bug, 130 "
-         "Ctrl-C.\n";
-}
+  std::string usage(std::string_view line, std::string_view what) const {
+    return std::string(line) + said(what) + "\n";
+  }
+
+  std::string end() const {
+    constexpr std::string_view kEnd =
+        "`help COMMAND` shows more, with examples. Exit codes: 0 done, 1 negative result, 2 usage, 3 bus, 4 no "
+        "answer,\n5 refused by the drive, 6 protocol error, 7 file, 8 refused for safety, 70 a bug, 130 Ctrl-C.";
+    return chinese_ ? wrapped(said(kEnd), 0, width_) : std::string(kEnd);
+  }
+
+  std::string rows(std::span<const Parameter> parameters, bool options) const {
+    std::string out;
+    for (const auto& parameter : parameters) {
+      if (parameter.name.starts_with("-") != options) continue;
+      const auto left = options ? option_words(parameter) : value_word(parameter);
+      out += "  " + pad_right(left, 22) + " " + wrapped(said(parameter.help), 25, width_) + "\n";
+    }
+    return out;
+  }
+
+  /// Each line as it is typed, and under it what it is for.
+  std::string example_lines(std::span<const Example> examples) const {
+    if (examples.empty()) return {};
+    auto out = "\n" + said("Examples:") + "\n";
+    for (const auto& example : examples)
+      out += fmt::format("  {}\n      {}\n", example.line, wrapped(said(example.what), 6, width_));
+    return out;
+  }
+
+  std::string word_rows() const {
+    std::string out;
+    for (const auto& word : prompt_words())
+      out += "  " + pad_right(prompt_usage(word), 22) + " " + wrapped(said(word.summary), 25, width_) + "\n";
+    return out;
+  }
+
+  std::size_t width_;
+  bool chinese_;
+};
 
 }  // namespace
 
@@ -120,12 +149,13 @@ bool has_own(const Command& command, const Parameter& global) {
                      [&](const Parameter& parameter) { return parameter.name == global.name; });
 }
 
-Result<std::string> help_text(std::string_view path, std::size_t width) {
+Result<std::string> help_text(std::string_view path, std::size_t width, bool chinese) {
   const auto columns = width == 0 ? std::size_t{100} : std::clamp<std::size_t>(width, 40, 120);
-  if (path.empty()) return program_help(columns);
-  if (const auto* command = find_command(path)) return command_help(*command, columns);
-  if (const auto* word = find_prompt_word(path)) return word_help(*word, columns);
-  if (const auto group = command_rows(path, columns); !group.empty())
+  const HelpPage page(columns, chinese);
+  if (path.empty()) return page.of_program();
+  if (const auto* command = find_command(path)) return page.of(*command);
+  if (const auto* word = find_prompt_word(path)) return page.of(*word);
+  if (const auto group = page.command_rows(path); !group.empty())
     return fmt::format("servoctl {} …\n\n{}", path, group);
   std::vector<std::string> names;
   for (const auto* command : registry()) names.emplace_back(command->path);

@@ -4,6 +4,7 @@
 
 #include "base/number.hpp"
 #include "canopen/cob_id.hpp"
+#include "drive/standard_objects.hpp"
 
 namespace servoctl::command {
 namespace {
@@ -53,6 +54,28 @@ Result<motion::MotionRequest> motion_request(const Context& context, const Argum
   if (const auto load = context.loads.find(*node); load != context.loads.end()) options->load = load->second;
   return motion::MotionRequest{*node, std::move(*options), std::string(arguments.text("--csv")),
                                arguments.has("--plot")};
+}
+
+motion::WrittenQuantity written_speed(std::string_view word) {
+  return {.word = word,
+          .object = objects::kTargetVelocity,
+          .kind = motion::MotionUnits::Kind::way,
+          .least = motion::WrittenQuantity::Least::not_zero};
+}
+
+Result<void> check_motion_words(const Context& context, const Arguments& arguments,
+                                std::initializer_list<motion::WrittenQuantity> own) {
+  auto options = motion_options(context, arguments);
+  if (!options) return fail(options.error());
+  if (context.profile == nullptr || context.nodes.empty()) return {};
+  // All may be one in the end.
+  const auto node = context.nodes.front();
+  if (node != 0)
+    if (const auto one = one_node(context); !one) return fail(one.error());
+  if (const auto load = context.loads.find(node); load != context.loads.end()) options->load = load->second;
+  std::vector<motion::WrittenQuantity> quantities(own);
+  for (auto& quantity : quantities) quantity.text = arguments.text(quantity.word);
+  return motion::check_written(*context.profile, node, *options, quantities);
 }
 
 }  // namespace servoctl::command

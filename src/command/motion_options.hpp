@@ -5,6 +5,7 @@
 
 #include "command/duration_option.hpp"
 #include "motion/motion_run.hpp"
+#include "motion/written_motion.hpp"
 
 /// What jog, move, home and torque have in common on the command line.
 namespace servoctl::command {
@@ -48,5 +49,13 @@ Result<std::uint8_t> one_node(const Context& context);
 
 /// The options above, with the node. Errc::usage as those of one_node() and motion_options().
 Result<motion::MotionRequest> motion_request(const Context& context, const Arguments& arguments);
+
+/// The speed of a jog, whose sign is the direction, for check_motion_words().
+motion::WrittenQuantity written_speed(std::string_view word);
+
+/// For Command::check of a motion: what is wrong with the options above, and with quantities of the command's
+/// own (whose text is filled in here). Without a family nothing can be said.
+Result<void> check_motion_words(const Context& context, const Arguments& arguments,
+                                std::initializer_list<motion::WrittenQuantity> own);
 
 }  // namespace servoctl::command

@@ -61,8 +61,8 @@ constexpr PromptWord kPromptWords[] = {
      .details =
          "Asks first, naming node and values; each value is written and read back as its line was, with --keep and "
          "--unlock where that had them. A second `undo` puts back what the first replaced. Refused, and nothing is "
-         "sent, when bus or node in use are others now, the drive has restarted, is another one, or no longer holds "
-         "what was written, and for what drives the motor or starts an action. Not in batch files.",
+         "sent, when bus or node in use are others now, the drive is known to have restarted, is another one, or no "
+         "longer holds what was written, and for what drives the motor or starts an action. Not in batch files.",
      .examples = kUndoExamples},
     {.name = "log",
      .argument = "on FILE",

@@ -11,6 +11,10 @@ constexpr std::string_view kBash =
 _servoctl() {
   local program=${COMP_WORDS[0]} answer
   [[ $program == */* && -x $program ]] || program=servoctl
+  # Behind a redirection stands a file.
+  case ${COMP_WORDS[COMP_CWORD-1]} in
+    *'>' | *'<' | *'>|') COMPREPLY=(); compopt -o default; return ;;
+  esac
   mapfile -t answer < <("$program" __complete bash "${COMP_TYPE:-9}" "${COLUMNS:-80}" "$COMP_WORDBREAKS" \
     "${COMP_LINE:0:COMP_POINT}" 2>/dev/null)
   COMPREPLY=("${answer[@]:1}")

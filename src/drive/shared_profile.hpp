@@ -11,8 +11,8 @@
 namespace servoctl::drive {
 
 /// As load_profile(); but the files of a family by its name are read once by the process as long as they
-/// (its own, not those of its parents) stay as they are, for whoever asks: the simulated drive and the command
-/// that speaks to it, another thread. A user's own file is read anew each time.
+/// (its own, not those of its parents) stay as they are, for whoever asks: the simulated drive and the
+/// command that speaks to it, another thread. A user's own file is read anew each time.
 Result<std::shared_ptr<const Profile>> shared_profile(std::string_view family,
                                                       std::span<const std::filesystem::path> folders);
 

@@ -9,8 +9,11 @@
 #include <utility>
 #include <vector>
 
-#define TOML_HEADER_ONLY 1  // The shared library is built with exceptions.
+// What is not a template is compiled once, in toml_inside.cpp: it took a file half a minute. The shared
+// library is built with exceptions.
+#define TOML_HEADER_ONLY 0
 #define TOML_EXCEPTIONS 0
+#define TOML_ENABLE_FORMATTERS 0  // Nothing is written; they want log10() of libm.
 // toml++ 3.3 asserts (or, without assertions, assumes) of a key what its input need not hold: "[=]". The code
 // behind it reports the error in order.
 #undef NDEBUG

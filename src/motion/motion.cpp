@@ -49,7 +49,15 @@ Result<void> Motion::prepare() {
 }
 
 Result<std::vector<PreflightItem>> Motion::look(bool chinese) {
-  return preflight(*session_, *units_, node_, watchdog_, chinese);
+  auto items = preflight(*session_, *units_, node_, watchdog_, chinese);
+  const auto speeds = units_->unit(objects::kTargetVelocity);
+  if (items && speed_cap_ && options_.speed_limit.empty() && speeds != "rpm")
+    items->push_back(
+        {PreflightItem::Weight::caution, "speed",
+         fmt::format("the counts of a turn are not known (--turn), so no limit in rpm holds: it is {} {}, a "
+                     "tenth of what the drive allows",
+                     number_text(*speed_cap_), speeds.empty() ? std::string("of its unit") : speeds)});
+  return items;
 }
 
 void Motion::set_standstill(double speed) {
@@ -66,11 +74,13 @@ bool Motion::stands_still(const MotionSample& sample) const {
 bool Motion::supervise_speed(double limit) {
   if (units_->unit(objects::kVelocityActual) != units_->unit(objects::kTargetVelocity)) return false;
   monitor_->limits().speed = limit;
+  if (units_->unit(objects::kTargetVelocity) == "rpm") told_rpm_ = std::abs(limit);
   return true;
 }
 
 void Motion::supervise_overspeed(double speed) {
   (void)supervise_speed(std::abs(speed) * kOverspeed + standstill_ * kNoiseOfOverspeed);
+  if (told_rpm_) told_rpm_ = std::abs(speed);
 }
 
 bool Motion::add_setting(ObjectAddress object, double value, MotionPlan& plan) const {

@@ -138,6 +138,8 @@ class Motion {
  private:
   Result<bool> supervise(const std::function<Result<bool>(const MotionSample&)>& done, Duration longest);
   Result<void> check_turn(const MotionSample& sample);
+  Result<void> check_kept_turn(const MotionSample& sample, double shown);
+  Result<std::optional<double>> monitored_speed();
   Error quarrel(double shown, double speed) const;
   Result<void> look_again();
   Result<void> make_ready(MotionGuard& guard, std::int8_t mode, const std::vector<MotionSetting>& settings,
@@ -160,7 +162,9 @@ class Motion {
   WatchdogPlan watchdog_;
   Result<double> speed_cap_ = 0.0;
   double standstill_ = 0;
-  std::string turn_unchecked_;  ///< Why the counts of a turn were not held against the monitor.
+  std::string turn_unchecked_;      ///< Why the counts of a turn were not held against the monitor.
+  std::optional<double> told_rpm_;  ///< The speed of this motion, where it is told in rpm; above 0.
+  int fast_looks_ = 0;              ///< In a row, at which the monitor showed a motor that turns too fast.
   int odd_looks_ = 0;  ///< In a row, at which the monitor of the speed contradicted the counts of a turn.
 };
 

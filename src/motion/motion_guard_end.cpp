@@ -142,7 +142,10 @@ void MotionGuard::put_back(const Changed& changed) {
   if (now_holds && *now_holds == changed.before) return;
   if (!now_holds && now_holds.error().code == Errc::sdo_abort)
     return;  // The drive has taken it, and tells no more.
-  if (!now_holds) return note(what + " for certain: it was not read back", now_holds.error());
+  if (!now_holds)
+    return note(fmt::format("object {} was written back to {}, but could not be read back",
+                            to_string(changed.object), to_hex(changed.before)),
+                now_holds.error());
   result_.left.push_back(fmt::format("{}: it was written and reads {}; does another master use the drive?",
                                      what, to_hex(*now_holds)));
 }

@@ -17,6 +17,9 @@ namespace {
 constexpr double kComparedRpm = 10;
 constexpr double kMostContradiction = 1.5;
 constexpr int kOddLooks = 2;
+/// A motor turns too fast that the monitor shows so much faster than it was told to turn.
+constexpr double kTooFastFactor = 1.5;
+constexpr double kTooFastRpm = 60;
 /// A torque in per cent is one of the rated torque.
 constexpr double kRatedTorque = 100;
 
@@ -78,32 +81,55 @@ std::optional<double> Motion::read_as(ObjectAddress as, ObjectAddress object) co
   return value && value->value > 0 ? std::optional(value->value) : std::nullopt;
 }
 
-/// Counts of a turn that were measured once may be those of another motor, and parameters that tell them may
-/// not be in force: what they make of 606Ch is held against the drive's own monitor, in every look.
-Result<void> Motion::check_turn(const MotionSample& sample) {
-  const auto speed = sample[Signal::velocity];
+/// What the drive's own monitor of the speed shows, in rpm; empty where it has none, or refuses to give it.
+Result<std::optional<double>> Motion::monitored_speed() {
   const auto& name = profile_->rules.learn.speed;
-  const auto monitor = units_->turn_way() != nullptr ? units_->object(name) : std::nullopt;
-  if (!monitor || !speed || units_->unit(objects::kVelocityActual) != "rpm") return {};
+  const auto monitor = units_->object(name);
+  if (!monitor || !turn_unchecked_.empty()) return std::optional<double>();
   const session::Hurry hurry(*session_, kMovingPatience, 1);
-  if (!turn_unchecked_.empty()) return {};
   const auto answer = session_->upload(node_, *monitor);
   // Kept counts were measured by this monitor; what the drive's own parameters tell holds without it.
   if (!answer && answer.error().code == Errc::sdo_abort && !units_->uses_learned()) {
     turn_unchecked_ =
         fmt::format("its counts per revolution were not compared with {}, which it refuses to give", name);
-    return {};
+    return std::optional<double>();
   }
   if (!answer) return fail(answer.error());
   const auto shown = units_->physical(*monitor, *answer);
-  if (!shown) return {};
+  return shown ? std::optional(shown->value) : std::nullopt;
+}
+
+/// Counts of a turn that were measured once may be those of another motor, those that were told wrong, and
+/// parameters that tell them may not be in force: what they make of 606Ch and of the speed that was asked for
+/// is held against the drive's own monitor, in every look.
+Result<void> Motion::check_turn(const MotionSample& sample) {
+  if (units_->unit(objects::kVelocityActual) != "rpm") return {};
+  const auto shown = monitored_speed();
+  if (!shown) return fail(shown.error());
+  if (!*shown) return {};
+  if (const auto fits = check_kept_turn(sample, **shown); !fits) return fits;
+  if (!told_rpm_) return {};
+  const double most = std::max(*told_rpm_ * kTooFastFactor, *told_rpm_ + kTooFastRpm);
+  fast_looks_ = std::abs(**shown) > most ? fast_looks_ + 1 : 0;
+  if (fast_looks_ < kOddLooks) return {};
+  return fail(error(Errc::negative,
+                    fmt::format("turns at {} rpm by {}, but {} rpm were asked for: stopped",
+                                number_text(**shown), profile_->rules.learn.speed, number_text(*told_rpm_)),
+                    "its counts per revolution are probably wrong: `units learn` measures them, --turn takes "
+                    "those of 6064h"));
+}
+
+/// Counts that the user has told are not compared with 606Ch: they are the way on where the monitor lies.
+Result<void> Motion::check_kept_turn(const MotionSample& sample, double shown) {
+  const auto speed = sample[Signal::velocity];
+  if (units_->turn_way() == nullptr || !speed) return {};
   const double one = std::abs(*speed);
-  const double other = std::abs(shown->value);
+  const double other = std::abs(shown);
   const bool odd = std::max(one, other) >= kComparedRpm &&
                    std::max(one, other) > kMostContradiction * std::min(one, other);
   odd_looks_ = odd ? odd_looks_ + 1 : 0;
   if (odd_looks_ < kOddLooks) return {};
-  return fail(quarrel(shown->value, *speed));
+  return fail(quarrel(shown, *speed));
 }
 
 /// Between the monitor of the speed and 606Ch by the counts of a turn, both in rpm.

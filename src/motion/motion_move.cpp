@@ -25,6 +25,8 @@ constexpr double kNearDegrees = 0.5;
 constexpr double kNearCounts = 10;
 /// A motor that has not moved is not there, however short the way.
 constexpr double kMostOfWay = 0.5;
+/// So much of the way the target may be further off than at the start.
+constexpr double kMostAstray = 0.05;
 constexpr double kDefaultPart = 0.2;
 
 double near(const MotionPlan& plan) { return plan.unit == "deg" ? kNearDegrees : kNearCounts; }
@@ -102,8 +104,22 @@ class Moving {
                                  "is it blocked, or are its ramps too steep for the load?"));
     const auto position = sample[Signal::position];
     last_ = position.value_or(last_);
+    if (const auto right = check_direction(position); !right) return fail(right.error());
     const bool near = !position || std::abs(*position - plan_->value) <= window_;
     return (sample.statusword & kTargetReached) != 0 && near && motion_->stands_still(sample);
+  }
+
+  /// The way that is left does not grow: else the motor goes where nobody sent it.
+  Result<void> check_direction(std::optional<double> position) const {
+    if (!position) return {};
+    const double way = std::abs(plan_->way);
+    const double away = std::abs(plan_->value - *position) - way;
+    if (away <= std::max(window_, way * kMostAstray)) return {};
+    return fail(
+        motion_->error(Errc::negative,
+                       fmt::format("goes the wrong way: it is at {} {}, further from {} than at the start",
+                                   number_text(*position), plan_->unit, number_text(plan_->value)),
+                       "check encoder direction, polarity (607Eh), motor wiring"));
   }
 
   Motion* motion_;

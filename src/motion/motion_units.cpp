@@ -19,6 +19,8 @@ Physical physical_of(const drive::Meaning& what, const od::Value& value) {
 
 /// Whole numbers beyond it have no double of their own.
 constexpr double kMostSteps = 9.0e15;
+/// In place of what only the drive tells: which units there are does not depend on it.
+constexpr double kSomeMeasure = 1000;
 
 }  // namespace
 
@@ -35,6 +37,16 @@ MotionUnits::MotionUnits(session::Session& session, const drive::Profile& profil
     measures_[questions[i].measure] = answers[i]->value;
     if (questions[i].measure == drive::Measure::increments_per_turn && !turn) turn_way_ = answers[i]->way;
   }
+  tell(turn, encoder);
+}
+
+MotionUnits::MotionUnits(const drive::Profile& profile, std::uint8_t node, std::optional<double> turn,
+                         std::optional<double> encoder, std::optional<drive::LoadUnit> load)
+    : profile_(&profile), node_(node), load_(std::move(load)) {
+  tell(turn, encoder);
+}
+
+void MotionUnits::tell(std::optional<double> turn, std::optional<double> encoder) {
   if (turn) measures_[drive::Measure::increments_per_turn] = *turn;
   if (encoder) measures_[drive::Measure::pulses_per_turn] = *encoder;
 }
@@ -93,6 +105,22 @@ Result<Physical> MotionUnits::parse_physical(ObjectAddress object, std::string_v
   }
   if (!value) return fail(unusable(object, text, motor, value.error()));
   return physical_of(what, *value);
+}
+
+Result<double> MotionUnits::check(ObjectAddress object, std::string_view text, Kind kind,
+                                  bool between) const {
+  auto what = meaning(object);
+  const bool unknown = what.measure && !what.bridge;
+  if (unknown) what.bridge = drive::bridge(what.unit, object, kSomeMeasure);
+  if ((unknown || between) && what.encoding == od::Encoding::plain && od::is_integer(what.type)) {
+    what.type = od::DataType::f64;
+    what.least.reset();
+    if (unknown) what.min = what.max = std::nullopt;
+  }
+  const auto motor = for_motor(text, kind);
+  const auto quantity = drive::nearest_quantity(what, motor);
+  if (!quantity) return fail(unusable(object, text, motor, quantity.error()));
+  return drive::scaled(what, quantity->value);
 }
 
 std::optional<Bytes> MotionUnits::bytes(ObjectAddress object, double value) const {

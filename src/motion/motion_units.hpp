@@ -36,6 +36,10 @@ class MotionUnits {
               std::optional<double> turn, std::optional<double> encoder = {},
               std::optional<double> learned = {}, std::optional<drive::LoadUnit> load = {});
 
+  /// The same without a drive: what only it tells is not known.
+  MotionUnits(const drive::Profile& profile, std::uint8_t node, std::optional<double> turn,
+              std::optional<double> encoder, std::optional<drive::LoadUnit> load);
+
   bool has(ObjectAddress object) const;
   drive::Meaning meaning(ObjectAddress object) const;
   /// Whether what a user wrote has a direction: of a load that runs the other way than its motor a way is
@@ -48,6 +52,9 @@ class MotionUnits {
   /// What a user wrote about this object, as a number in the same unit as physical(); nothing is written, so
   /// nothing is rounded.
   Result<Physical> parse_physical(ObjectAddress object, std::string_view text, Kind kind) const;
+  /// Whether what a user wrote can be read at all, also where only the drive tells what its unit is worth:
+  /// then its sign alone is of use. `between`: it may lie between two steps of the object.
+  Result<double> check(ObjectAddress object, std::string_view text, Kind kind, bool between) const;
   /// The bytes for a number in the unit of physical() that servoctl itself chose: the nearest step within the
   /// object's limits, and never zero for what is not. Empty when it cannot be said in this object.
   std::optional<Bytes> bytes(ObjectAddress object, double value) const;
@@ -73,6 +80,8 @@ class MotionUnits {
  private:
   /// What the user wrote of the load, as it is for the motor.
   std::string for_motor(std::string_view text, Kind kind) const;
+  /// Puts in what was told beside the drive.
+  void tell(std::optional<double> turn, std::optional<double> encoder);
   /// The error about a number, in the user's words where `motor` is not what they wrote, with what to do
   /// where nobody has told how many counts a turn has.
   Error unusable(ObjectAddress object, std::string_view text, const std::string& motor, Error error) const;

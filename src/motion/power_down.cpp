@@ -20,6 +20,10 @@ using drive::DriveState;
 constexpr Duration kStepPause = std::chrono::milliseconds(5);
 /// Answers in a row that do not come.
 constexpr int kMostSilences = 4;
+/// Where there may be no drive at all.
+constexpr int kFewSilences = 2;
+/// A message that names so many nodes is read by nobody.
+constexpr std::size_t kMostNamed = 32;
 
 }  // namespace
 
@@ -112,6 +116,7 @@ DialogueStep PowerDown::next(TimePoint now) {
 void PowerDown::on_answer(Result<Bytes> answer, TimePoint now) {
   if (!answer && answer.error().code == Errc::timeout) return on_silence(answer.error(), now);
   silences_ = 0;
+  plan_.may_be_absent = false;
   switch (state_) {
     case State::look: return on_look(answer, now);
     case State::halt: gently_ = gently_ || answer.has_value(); return enter(State::read_mode, now);
@@ -154,9 +159,9 @@ void PowerDown::on_silence(const Error& error, TimePoint now) {
   const bool cutting = state_ >= State::switch_off && plan_.aim != PowerAim::stop;
   if (state_ == State::stopping) state_ = State::quick_stop;
   if (state_ == State::cutting) state_ = State::cut;
-  if (++silences_ == 1) return;
+  if (++silences_ == 1 && !plan_.may_be_absent) return;
   if (!std::exchange(told_silence_, true) && plan_.on_silence) plan_.on_silence();
-  if (silences_ >= kMostSilences) {
+  if (silences_ >= (plan_.may_be_absent ? kFewSilences : kMostSilences)) {
     result_.silent = true;
     result_.written = false;
     unread_ = error;
@@ -227,7 +232,9 @@ std::vector<PowerDownResult> take_down(session::Session& session, std::vector<Po
     drives.push_back(std::make_unique<PowerDown>(std::move(plan)));
     dialogues.push_back(drives.back().get());
   }
-  session::LinkWait link(session, fmt::format("stopping node{} {}", plans.size() == 1 ? "" : "s", nodes));
+  session::LinkWait link(session, plans.size() > kMostNamed ? std::string("stopping all nodes")
+                                  : plans.size() == 1       ? fmt::format("stopping node {}", nodes)
+                                                            : fmt::format("stopping nodes {}", nodes));
   hold_all(session, dialogues, [&](const Error& lost) { return link.comes_back(lost); });
   std::vector<PowerDownResult> out;
   for (const auto& drive : drives) {

@@ -45,6 +45,9 @@ struct PowerDownPlan {
   const session::Network* network = nullptr;
   bool keeps_exchange = false;            ///< Process data go on behind it; else they end with its power.
   std::function<void()> on_silence = {};  ///< Called once, when the drive does not answer for the first time.
+  /// Nothing tells that there is a drive of this number: without an answer it is woken at once, and asked
+  /// once more.
+  bool may_be_absent = false;
 };
 
 /// What was seen of it.

@@ -39,8 +39,7 @@ class Preflight {
     if (const auto done = look_at_needs(); !done) return fail(done.error());
     if (const auto done = look_at_objects(); !done) return fail(done.error());
     if (const auto done = look_at_cautions(); !done) return fail(done.error());
-    const bool sure = watchdog.kind != WatchdogPlan::Kind::none && !watchdog.assumed;
-    add(sure ? Weight::good : Weight::caution, "watchdog", to_string(watchdog));
+    add(watchdog.is_sure() ? Weight::good : Weight::caution, "watchdog", to_string(watchdog));
     return std::move(items_);
   }
 

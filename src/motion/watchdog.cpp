@@ -196,14 +196,16 @@ Result<WatchdogPlan> plan_watchdog(session::Session& session, const drive::Profi
 std::string to_string(const WatchdogPlan& plan) {
   auto then = plan.reaction.empty() ? std::string() : fmt::format("; its reaction: {}", plan.reaction);
   if (!plan.remark.empty()) then += "; " + plan.remark;
-  if (plan.assumed) then += "; ASSUMED: the manual does not say what the motor then does";
+  if (plan.assumed)
+    then += "; ASSUMED: the manual does not say what the motor then does";
+  else if (plan.reaction.empty() && plan.kind != WatchdogPlan::Kind::sync_manager)
+    then += "; NOT KNOWN is what the motor then does: no 6007h tells it";
   switch (plan.kind) {
     case WatchdogPlan::Kind::heartbeat:
-      return fmt::format(
-          "servoctl sends heartbeats as node {}: the drive stops by itself {} after the last one{}",
-          plan.producer, servoctl::to_string(plan.time), then);
+      return fmt::format("servoctl sends heartbeats as node {}: the drive notices {} after the last one{}",
+                         plan.producer, servoctl::to_string(plan.time), then);
     case WatchdogPlan::Kind::guarding:
-      return fmt::format("life guarding by servoctl: the drive stops by itself {} after the last request{}",
+      return fmt::format("life guarding by servoctl: the drive notices {} after the last request{}",
                          servoctl::to_string(plan.time), then);
     case WatchdogPlan::Kind::sync_manager:
       return fmt::format(

@@ -29,6 +29,10 @@ struct WatchdogPlan {
   std::string reaction = {};            ///< What the drive does then, by 6007h; empty when it does not tell.
   bool reaction_off = false;            ///< 6007h is 0, no action: it has to be set as well.
   bool assumed = false;  ///< The manual does not say what the motor does when the master is lost.
+  /// Whether it is known that the motor stops: CiA 301 promises a change of the NMT state alone (1029h).
+  bool is_sure() const {
+    return kind != Kind::none && !assumed && (kind == Kind::sync_manager || !reaction.empty());
+  }
   std::vector<std::string> alarms = {};  ///< What the manual calls a lost communication; it tells no more.
   std::string remark = {};               ///< Why there is none, or on what it depends; may be empty.
 };

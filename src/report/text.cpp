@@ -19,7 +19,8 @@ template <class... Fs>
 Overloaded(Fs...) -> Overloaded<Fs...>;  // clang 14 has no aggregate deduction.
 
 constexpr std::size_t kColumnGap = 2;
-constexpr std::size_t kMostLines = 4;  ///< Of a cell that does not fit into its column.
+constexpr std::size_t kLeftAlone = 12;  ///< A column this wide is never made narrower.
+constexpr std::size_t kMostLines = 4;   ///< Of a cell that does not fit into its column.
 
 }  // namespace
 
@@ -66,22 +67,32 @@ bool has_own_lines(const Value& value) {
          std::holds_alternative<Plot>(value.data());
 }
 
+/// The bytes of the longest beginning that is no wider.
+std::size_t fitting(std::string_view text, std::size_t width) {
+  std::size_t used = 0;
+  std::size_t at = 0;
+  while (at < text.size()) {
+    const auto c = decode_utf8(text.substr(at));
+    used += c.value ? columns(*c.value) : 1;
+    if (used > width) break;
+    at += c.size;
+  }
+  return at;
+}
+
 /// The cell in lines of its column: broken at blanks, and between characters where a word is wider than it.
 std::vector<std::string> cell_lines(std::string_view cell, std::size_t width) {
   if (display_width(cell) <= width) return {std::string(cell)};
   std::vector<std::string> out;
   const auto broken = wrapped(cell, 0, width);
   for (auto line : split(std::string_view(broken), '\n')) {
-    while (display_width(line) > width) {
-      std::size_t end = 0;
-      for (auto next = end; display_width(line.substr(0, next)) <= width;) {
-        end = next;
-        next += decode_utf8(line.substr(next)).size;
-      }
+    while (out.size() <= kMostLines && display_width(line) > width) {
+      const auto end = fitting(line, width);
       out.emplace_back(line.substr(0, end));
       line.remove_prefix(end);
     }
     out.emplace_back(line);
+    if (out.size() > kMostLines) break;
   }
   if (out.size() <= kMostLines) return out;
   out.resize(kMostLines);
@@ -133,17 +144,25 @@ class TableText {
     return out;
   }
 
-  /// Takes what is too much from the widest column; a column of at most 12 is left alone. Nothing is lost by
-  /// it but the end of what needs more than kMostLines.
+  /// Of all columns where none is wider than `most`, with the gaps.
+  std::size_t width_at(std::size_t most) const {
+    std::size_t out = (columns_.size() - 1) * kColumnGap;
+    for (const auto& column : columns_) out += std::min(column.width, most);
+    return out;
+  }
+
+  /// Takes what is too much from the widest columns, so that those that give are as wide as each other; a
+  /// column of at most kLeftAlone is left as it is. Nothing is lost by it but the end of what needs more than
+  /// kMostLines.
   void shrink(std::size_t width) {
-    for (;;) {
-      std::size_t total = columns_.empty() ? 0 : (columns_.size() - 1) * kColumnGap;
-      for (const auto& column : columns_) total += column.width;
-      const auto widest =
-          std::max_element(columns_.begin(), columns_.end(),
-                           [](const Column& a, const Column& b) { return a.width < b.width; });
-      if (total <= width || widest == columns_.end() || widest->width <= 12) return;
-      widest->width = std::max<std::size_t>(12, widest->width - std::min(widest->width, total - width));
+    if (width_at(std::string::npos) <= width) return;
+    auto most = std::max(width, kLeftAlone);
+    while (most > kLeftAlone && width_at(most) > width) --most;
+    auto left = width - std::min(width, width_at(most));
+    for (auto& column : columns_) {
+      if (column.width <= most) continue;
+      column.width = most + (left > 0 ? 1 : 0);
+      left -= left > 0 ? 1 : 0;
     }
   }
 

@@ -98,6 +98,13 @@ std::optional<std::uint32_t> bitrate_of(std::string_view url) {
   return place ? std::optional(place->bitrate) : std::nullopt;
 }
 
+bool runs_at(std::string_view url, std::uint32_t bitrate) {
+  if (const auto known = bitrate_of(url)) return *known == bitrate;
+  // A driver may keep its bitrate to itself: only what cannot have one takes any.
+  if (const auto link = link_of(url)) return link->kind == "vcan" || link->kind == "vxcan";
+  return url.starts_with("sim:") || url.starts_with("local:");
+}
+
 bool carries_remote_frames(std::string_view url) { return !url.starts_with("socketcand:"); }
 
 std::optional<can::LinkState> link_of(std::string_view url) {

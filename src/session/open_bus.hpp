@@ -41,6 +41,10 @@ bool carries_remote_frames(std::string_view url);
 /// The bitrate of a bus in bit/s, where its URL or the kernel tells it.
 std::optional<std::uint32_t> bitrate_of(std::string_view url);
 
+/// Whether a bus that is open runs at this bitrate, in bit/s: what its URL or the kernel tells is that. A bus
+/// that is simulated or virtual has none, and any is right; of a gateway or a socketcand nothing is known.
+bool runs_at(std::string_view url, std::uint32_t bitrate);
+
 /// What the kernel knows of the CAN interface behind a URL; empty for any other bus.
 std::optional<can::LinkState> link_of(std::string_view url);
 

@@ -25,8 +25,7 @@ class Run {
     boots_ = session_->watch().boots(node_);
     StorageScope storage(*session_, profile_, node_);
     Result<void> done = storage.open(options.keep, options.unlock, true);
-    const auto plan =
-        plan_writes(profile_, storage.worked_in_ram() ? in_flash(options.unlock) : *present_, *wanted_);
+    const auto plan = planned(storage, options);
     touched_ = touched_by(plan, *present_);
     if (done) done = write(plan, out_.writes);
     if (done) done = check();
@@ -47,7 +46,21 @@ class Run {
     return std::move(out_);
   }
 
+  Result<void> rehearse(const RestoreOptions& options, Rehearsal& rehearsal) {
+    StorageScope storage(*session_, profile_, node_);
+    storage.rehearse(rehearsal);
+    if (const auto opened = storage.open(options.keep, options.unlock, true); !opened) return opened;
+    const auto plan = planned(storage, options);
+    for (const auto& step : plan) rehearsal.add(planned_write({node_, step.object, step.data}));
+    const auto closed = storage.close(true, plan.size());
+    return closed ? Result<void>() : fail(closed.error());
+  }
+
  private:
+  std::vector<PlannedWrite> planned(const StorageScope& storage, const RestoreOptions& options) {
+    return plan_writes(profile_, storage.worked_in_ram() ? in_flash(options.unlock) : *present_, *wanted_);
+  }
+
   /// What the flash of a drive that worked in its RAM holds: unknown, so everything of the vendor's is
   /// written and not only what differs. What stands behind a password that is not given cannot have been
   /// tried.
@@ -178,6 +191,12 @@ class Run {
 RestoreOutcome restore(Session& session, const drive::Profile* profile, std::uint8_t node,
                        const Values& present, const Values& wanted, const RestoreOptions& options) {
   return Run(session, profile, node, present, wanted).carry_out(options);
+}
+
+Result<void> rehearse_restore(Session& session, const drive::Profile* profile, std::uint8_t node,
+                              const Values& present, const Values& wanted, const RestoreOptions& options,
+                              Rehearsal& rehearsal) {
+  return Run(session, profile, node, present, wanted).rehearse(options, rehearsal);
 }
 
 }  // namespace servoctl::session

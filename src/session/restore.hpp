@@ -40,4 +40,10 @@ struct RestoreOutcome {
 RestoreOutcome restore(Session& session, const drive::Profile* profile, std::uint8_t node,
                        const Values& present, const Values& wanted, const RestoreOptions& options);
 
+/// What restore() would send while nothing goes wrong, with what is written for the memory, the password and
+/// the storing. Errors as StorageScope::open() and close().
+Result<void> rehearse_restore(Session& session, const drive::Profile* profile, std::uint8_t node,
+                              const Values& present, const Values& wanted, const RestoreOptions& options,
+                              Rehearsal& rehearsal);
+
 }  // namespace servoctl::session

@@ -4,6 +4,8 @@
 #include <optional>
 
 #include "canopen/pdo.hpp"
+#include "drive/naming.hpp"
+#include "drive/standard_objects.hpp"
 #include "session/communication_order.hpp"
 
 namespace servoctl::session {
@@ -93,12 +95,40 @@ void add_blocks(const std::vector<BlockPlan>& blocks, std::vector<PlannedWrite>&
   for (const auto& block : blocks) block.add_switching_on(out);
 }
 
+/// When a value is written. A drive is first told where it is, then what it does, then what it sends.
+enum class Step : std::uint8_t { address, parameter, communication, pdo, heartbeat };
+
+class Order {
+ public:
+  /// `profile` may be null: no object is known as an address then.
+  explicit Order(const drive::Profile* profile) {
+    if (profile == nullptr) return;
+    node_id_ = drive::place_of(*profile, profile->rules.nmt.node_id);
+    bitrate_ = drive::place_of(*profile, profile->rules.nmt.bitrate);
+  }
+
+  Step step_of(ObjectAddress object) const {
+    if (object == node_id_ || object == bitrate_) return Step::address;
+    if (object.index >= kFirstOfMaker) return Step::parameter;
+    if (block_of(object.index)) return Step::pdo;
+    const bool is_heartbeat =
+        object.index == objects::kProducerHeartbeat.index || object.index == kConsumerHeartbeat;
+    return is_heartbeat ? Step::heartbeat : Step::communication;
+  }
+
+ private:
+  static constexpr std::uint16_t kFirstOfMaker = 0x2000;  // CiA 301, table 37: below it is communication.
+  static constexpr std::uint16_t kConsumerHeartbeat = 0x1016;
+
+  std::optional<ObjectAddress> node_id_;
+  std::optional<ObjectAddress> bitrate_;
+};
+
 /// `in_order` puts the writes of communication objects in theirs.
 template <class InOrder>
-std::vector<PlannedWrite> plan(bool by_count, const Values& present, const Values& wanted,
+std::vector<PlannedWrite> plan(const Order& order, bool by_count, const Values& present, const Values& wanted,
                                const InOrder& in_order) {
-  std::vector<PlannedWrite> before;
-  std::vector<PlannedWrite> after;
+  std::vector<PlannedWrite> out;
   std::set<std::uint16_t> blocks;
   for (const auto& [object, data] : wanted) {
     const auto found = present.find(object);
@@ -106,14 +136,22 @@ std::vector<PlannedWrite> plan(bool by_count, const Values& present, const Value
     if (const auto block = block_of(object.index))
       blocks.insert(*block);
     else
-      (blocks.empty() ? before : after).push_back({object, data});
+      out.push_back({object, data});
   }
-  before = in_order(std::move(before));
+  out = in_order(std::move(out));
+  const auto by_step = [&](const PlannedWrite& a, const PlannedWrite& b) {
+    return order.step_of(a.object) < order.step_of(b.object);
+  };
+  std::stable_sort(out.begin(), out.end(), by_step);
+  const auto behind = std::find_if(out.begin(), out.end(), [&](const PlannedWrite& write) {
+    return order.step_of(write.object) > Step::pdo;
+  });
   std::vector<BlockPlan> plans;
   for (const auto block : blocks) plans.emplace_back(by_count, present, wanted, block);
-  add_blocks(plans, before);
-  before.insert(before.end(), after.begin(), after.end());
-  return before;
+  std::vector<PlannedWrite> pdos;
+  add_blocks(plans, pdos);
+  out.insert(behind, pdos.begin(), pdos.end());
+  return out;
 }
 
 /// What stands for a value from before: another one, but for a COB-ID (the PDO is valid, and so made invalid
@@ -137,15 +175,15 @@ Bytes any_before(const Values& wanted, ObjectAddress object, const Bytes& data) 
 std::vector<PlannedWrite> plan_writes(const drive::Profile* profile, const Values& present,
                                       const Values& wanted) {
   const bool by_count = profile != nullptr && profile->rules.pdo.disable_by_count;
-  return plan(by_count, present, wanted,
+  return plan(Order(profile), by_count, present, wanted,
               [&](auto writes) { return in_allowed_order(std::move(writes), present); });
 }
 
 std::vector<PlannedWrite> plan_writes_for_any_drive(const Values& wanted) {
   Values present;
   for (const auto& [object, data] : wanted) present.emplace(object, any_before(wanted, object, data));
-  auto out =
-      plan(false, present, wanted, [](auto writes) { return in_order_for_any_drive(std::move(writes)); });
+  auto out = plan(Order(nullptr), false, present, wanted,
+                  [](auto writes) { return in_order_for_any_drive(std::move(writes)); });
   // A COB-ID that stands alone belongs to no procedure.
   for (const auto& [object, data] : wanted) {
     const auto planned = [&object = object](const PlannedWrite& write) { return write.object == object; };

@@ -125,9 +125,10 @@ std::string_view reason_to_ask(const drive::Profile* profile, const Change& chan
       (entry != nullptr && entry->command) || (parameter != nullptr && parameter->command))
     return "This starts an action, or stores or restores parameters.";
   if (enables(change)) return "This enables the drive: the motor is energised and may move.";
-  if (profile != nullptr && (is_parameter(*profile, change, profile->rules.nmt.node_id) ||
-                             is_parameter(*profile, change, profile->rules.nmt.bitrate)))
+  if (profile != nullptr && is_parameter(*profile, change, profile->rules.nmt.node_id))
     return "After a restart the drive has another node-ID.";
+  if (profile != nullptr && is_parameter(*profile, change, profile->rules.nmt.bitrate))
+    return "After a restart the drive has another bitrate.";
   return {};
 }
 

@@ -157,8 +157,9 @@ void RestoreTarget::add_copies(const std::map<ObjectAddress, std::string_view>& 
     const auto setting = settings.find(object);
     const bool reached =
         desk_->session->modbus() == nullptr || desk_->profile->rules.modbus.register_of(object);
-    if (setting != settings.end() && setting->second.empty() && reached)
-      wanted_.emplace(object, std::move(value));
+    const auto* parameter = desk_->profile->parameter(object);
+    if (setting == settings.end() || !setting->second.empty() || !reached || parameter == nullptr) continue;
+    if (wanted_.emplace(object, std::move(value)).second) copies_.emplace(object, *parameter->mirror);
   }
 }
 
@@ -189,7 +190,9 @@ Result<void> RestoreTarget::read_present() {
   return {};
 }
 
+/// Of a copy that of what it is one of.
 std::uint32_t RestoreTarget::line_of(ObjectAddress object) const {
+  if (const auto copy = copies_.find(object); copy != copies_.end()) object = copy->second;
   for (const auto& entry : backup_->entries)
     if (entry.object == object) return entry.line;
   return 0;
@@ -197,7 +200,9 @@ std::uint32_t RestoreTarget::line_of(ObjectAddress object) const {
 
 tl::unexpected<Error> RestoreTarget::unfit(Errc code, ObjectAddress object, std::string_view what,
                                            std::string hint) const {
-  const auto name = name_of(drive::target_at(desk_->profile, object));
+  const auto copy = copies_.find(object);
+  const auto of = copy == copies_.end() ? "" : to_string(copy->second) + ": its stored copy ";
+  const auto name = of + name_of(drive::target_at(desk_->profile, object));
   auto error =
       fail(code, fmt::format("{}:{}: {}: {}", title_, line_of(object), name, what), std::move(hint)).value();
   error.node = node_;
@@ -223,10 +228,16 @@ Result<void> RestoreTarget::check_value(ObjectAddress object, const Bytes& data,
 
 /// Nothing is written unless everything can be. What the drive holds already is none of it. A backup of ours
 /// says what a drive held, within its limits or not: that is named and stays as it is, and keeps nobody from
-/// the rest.
+/// the rest. What the file says is wrong before what is made of it.
 Result<void> RestoreTarget::check_values() {
+  const auto of_file = check_each(false);
+  return of_file ? check_each(true) : of_file;
+}
+
+Result<void> RestoreTarget::check_each(bool copies) {
   for (auto next = wanted_.begin(); next != wanted_.end();) {
     const auto [object, data] = *next++;
+    if ((copies_.count(object) > 0) != copies) continue;
     bool outside = false;
     const auto fits = present_.at(object) == data ? Result<void>() : check_value(object, data, outside);
     if (fits) continue;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -55,6 +56,7 @@ class RestoreTarget {
   bool same_length(ObjectAddress object, const Bytes& data) const;
   std::uint32_t line_of(ObjectAddress object) const;
   Result<void> check_values();
+  Result<void> check_each(bool copies);
   Result<void> check_value(ObjectAddress object, const Bytes& data, bool& outside) const;
   Result<void> check_pdos();
   tl::unexpected<Error> unfit(Errc code, ObjectAddress object, std::string_view what, std::string hint) const;
@@ -67,6 +69,7 @@ class RestoreTarget {
   session::Identity identity_;
   session::Values wanted_;
   session::Values present_;
+  std::map<ObjectAddress, ObjectAddress> copies_;  ///< Added to wanted_ for what is to be kept, and of what.
   std::vector<Error> left_;
   std::size_t unreachable_ = 0;  ///< Values without a Modbus register, where it is reached over Modbus.
 };

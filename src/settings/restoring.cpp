@@ -4,9 +4,12 @@
 
 #include "base/file_lock.hpp"
 #include "drive/drive_settings.hpp"
+#include "drive/standard_objects.hpp"
 #include "settings/change.hpp"
 #include "settings/comparison.hpp"
 #include "settings/restore_journal.hpp"
+#include "settings/restore_keeping.hpp"
+#include "show/planned_messages.hpp"
 
 namespace servoctl::settings {
 namespace {
@@ -58,6 +61,7 @@ class Restoring {
   }
 
   Result<Value> carry_through() {
+    if (const auto possible = check_keep(); !possible) return fail(possible.error());
     if (const auto known = take_up_journals(); !known) return fail(known.error());
     auto choice = options_.choice;
     choice.keep = options_.keep;
@@ -67,6 +71,9 @@ class Restoring {
     auto comparison = compare(desk_->profile, {fmt::format("node {}", node_), node_, target.present()},
                               {title_, node_, target.wanted()}, true, desk_->chinese);
     left_over_ = target.left();
+    if (options_.keep)
+      doubts_ = doubts_of_keeping(*desk_->profile, node_, title_, target.present(), target.wanted());
+    for (const auto& doubt : doubts_) desk_->notices.push_back(doubt);
     const bool idle = comparison.different == 0 && !options_.keep && left_.means.empty();
     if (idle) return take_away_journals(result(std::move(comparison.record), said("nothing differs"), {}));
     if (desk_->dry_run) {
@@ -78,6 +85,14 @@ class Restoring {
     if (const auto noted = note(target); !noted) return fail(noted.error());
     if (const auto back = put_means_back(*desk_->session, left_); !back) return fail(back.error());
     return carry_out(target, std::move(comparison.record));
+  }
+
+  /// A family that cannot store is told so before anything is written.
+  Result<void> check_keep() const {
+    if (!options_.keep || session::can_store(*desk_->profile)) return {};
+    return fail(drive_error(Errc::negative, node_, "this family cannot be told to keep values",
+                            "nothing was written; without --keep they are, and a power cycle shows whether "
+                            "they survive it"));
   }
 
   /// Only what was agreed to is done.
@@ -122,7 +137,7 @@ class Restoring {
     if (!*undone || (*undone)->node != node_) return {};
     left_ = **undone;
     // What went to the flash has to go there again.
-    options_.keep = options_.keep || left_.keep;
+    options_.keep = options_.keep || keeps(left_);
     options_.unlock = options_.unlock || left_.unlock;
     return {};
   }
@@ -136,9 +151,14 @@ class Restoring {
     options_.choice = {.with_address = found.with_address,
                        .force = found.force,
                        .skip_invalid = options_.choice.skip_invalid};
-    options_.keep = found.keep;
+    options_.keep = keeps(found);
     options_.unlock = found.unlock;
     return {};
+  }
+
+  /// To keep them is not asked again of a family that cannot: it would fail for ever.
+  bool keeps(const RestoreJournal& journal) const {
+    return journal.keep && session::can_store(*desk_->profile);
   }
 
   std::string question(std::size_t different) const {
@@ -149,11 +169,15 @@ class Restoring {
     return fmt::format("Write {} values of {} to node {}?", different, title_, node_);
   }
 
-  Value planned(const RestoreTarget& target) const {
-    std::vector<Change> changes;
-    for (const auto& step : session::plan_writes(desk_->profile, target.present(), target.wanted()))
-      changes.push_back({node_, drive::target_at(desk_->profile, step.object), {}, step.data});
-    return planned_frames(*desk_, changes);
+  Result<Value> planned(const RestoreTarget& target) const {
+    session::Rehearsal rehearsal;
+    for (const auto& [object, data] : left_.means)
+      rehearsal.add(session::planned_write({node_, object, data}));
+    const auto gone_through =
+        session::rehearse_restore(*desk_->session, desk_->profile, node_, target.present(), target.wanted(),
+                                  {.keep = options_.keep, .unlock = options_.unlock}, rehearsal);
+    if (!gone_through) return fail(gone_through.error());
+    return show::planned_messages(*desk_, rehearsal.messages());
   }
 
   /// What the drive holds now, beside the backup: the way back when everything else fails. One that is gone
@@ -194,8 +218,14 @@ class Restoring {
     auto out = result(std::move(record), failed_state(outcome), outcome);
     // Undone to the end: nothing is left to go on with. What is being taken back itself stays begun.
     if (outcome.rolled_back && left_.checksum.empty()) return take_away_journals(std::move(out));
+    // To go on would be refused in the same way, and so would be to undo it: `store` is what is left to do.
+    if (outcome.all_written && is_refused_store(*outcome.failure)) return take_away_journals(std::move(out));
     desk_->notices.push_back(fmt::format("node {}: --resume continues once the cause is removed", node_));
     return out;
+  }
+
+  static bool is_refused_store(const Error& error) {
+    return error.abort_code && error.object && error.object->index == objects::kStoreIndex;
   }
 
   void add_astray(const session::RestoreOutcome& outcome) {
@@ -223,8 +253,10 @@ class Restoring {
     return outcome.astray.empty() ? "failed; what was written stays written" : "failed; see the errors";
   }
 
-  static Value kept_value(const std::optional<session::RestoreOutcome>& outcome) {
+  /// Of all values; null where it is not known of one.
+  Value kept_value(const std::optional<session::RestoreOutcome>& outcome) const {
     if (!outcome || outcome->kept == session::Kept::unknown) return {};
+    if (outcome->kept == session::Kept::yes && !doubts_.empty()) return {};
     return outcome->kept == session::Kept::yes;
   }
 
@@ -242,8 +274,9 @@ class Restoring {
   fs::path before_;
   fs::path undoes_;
   RestoringOptions options_;
-  std::vector<Error> left_over_;  ///< Values outside of the limits.
-  RestoreJournal left_;           ///< Of what was cut off and is gone on with, or undone.
+  std::vector<Error> left_over_;     ///< Values outside of the limits.
+  std::vector<std::string> doubts_;  ///< Of keeping.
+  RestoreJournal left_;              ///< Of what was cut off and is gone on with, or undone.
   RestoreEnd end_ = RestoreEnd::idle;
 };
 

@@ -43,7 +43,7 @@ struct Lead {
   std::string_view word;
   bool goes = true;
 };
-constexpr Lead kLeads[] = {{"nodes "}, {"node "}, {"Nodes "}, {"Node "}, {"-n ", false}};
+constexpr Lead kLeads[] = {{"nodes "}, {"node "}, {"Nodes "}, {"Node "}, {"节点 "}, {"-n ", false}};
 
 const Lead* lead_at(std::string_view text, std::size_t at) {
   if (at > 0 && is_word(text[at - 1])) return nullptr;
@@ -54,7 +54,7 @@ const Lead* lead_at(std::string_view text, std::size_t at) {
 
 /// What stands between two numbers of such a list; 0 characters where the list ends.
 std::size_t joint_at(std::string_view text) {
-  for (const std::string_view joint : {", ", ",", " and ", " or "})
+  for (const std::string_view joint : {", ", ",", " and ", " or ", "、", "，", " 和 ", " 或 "})
     if (text.starts_with(joint) && !digits_at(text.substr(joint.size())).empty()) return joint.size();
   return 0;
 }

@@ -1,5 +1,7 @@
 #include "show/desk.hpp"
 
+#include "report/chinese_value.hpp"
+
 namespace servoctl::show {
 
 Result<void> Desk::confirm(std::string_view question) const {
@@ -19,7 +21,8 @@ void Desk::tell(std::string_view text) const {
 }
 
 void Desk::tell_value(const report::Value& value) const {
-  if (audience != nullptr) audience->tell(report::to_text(value, audience->width()));
+  if (audience != nullptr)
+    audience->tell(report::to_text(chinese ? report::chinese_value(value) : value, audience->width()));
 }
 
 std::unique_ptr<LiveView> Desk::open_view(const LiveView::Layout& layout) const {

@@ -7,6 +7,7 @@
 #include "base/folded.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
+#include "report/chinese_value.hpp"
 
 namespace servoctl::show {
 namespace {
@@ -167,7 +168,8 @@ Lines topic_page(const Explanation& explanation, bool chinese, std::size_t width
   if (explanation.rows.empty() && !topic.picture.empty()) add_picture(topic.picture, out);
   if (!explanation.details.is_null()) {
     out.emplace_back();
-    const auto details = report::to_text(explanation.details, width);
+    const auto details = report::to_text(
+        chinese ? report::chinese_value(explanation.details) : explanation.details, width);
     for (const auto line : split(std::string_view(details), '\n')) out.emplace_back(line);
     while (out.back().empty()) out.pop_back();
   }

@@ -3,9 +3,11 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <unordered_map>
 
 #include "base/time.hpp"
 #include "drive/profile.hpp"
+#include "drive/quantity.hpp"
 #include "sim/homing.hpp"
 #include "sim/object_values.hpp"
 #include "sim/track.hpp"
@@ -49,8 +51,14 @@ class Axis {
   void clear_error() { following_error_ = false; }
   AxisFaults& faults() { return faults_; }
   /// Counts per revolution that no object gives: where the family's rules say `learned`.
-  double& own_counts() { return own_counts_; }
-  Track& track() { return track_; }
+  double& own_counts() {
+    shown_.reset();
+    return own_counts_;
+  }
+  Track& track() {
+    shown_.reset();
+    return track_;
+  }
 
  private:
   enum class Kind : std::uint8_t {
@@ -91,6 +99,22 @@ class Axis {
   void watch_window();
   void travel(double seconds);
   void publish();
+  void publish(double here);
+  /// What publish() makes its numbers of, besides track and counts.
+  struct Shown {
+    double position;
+    double origin;
+    double turning;
+    double torque;
+    double behind;
+    double lag;
+    std::uint64_t values;
+    bool operator==(const Shown&) const = default;
+  };
+  Shown shown() const {
+    return {position_, origin_, turning(), torque_, behind_, faults_.lag, values_->changes()};
+  }
+  const drive::Meaning& meaning_of(ObjectAddress object) const;
   void write(ObjectAddress object, double value);
   double read(ObjectAddress object) const;
   /// Where the axis stands on its track.
@@ -135,6 +159,8 @@ class Axis {
   AxisFaults faults_;
   Track track_;
   double own_counts_ = 131072;
+  std::optional<Shown> shown_;  ///< When the objects were last written; empty where they have to be.
+  mutable std::unordered_map<ObjectAddress, drive::Meaning> meanings_;  ///< Those asked for so far.
 };
 
 }  // namespace servoctl::sim

@@ -79,9 +79,15 @@ std::uint16_t Axis::bits(bool enabled) const {
 
 double Axis::turning() const { return faults_.stalled ? 0 : faults_.reversed ? -velocity_ : velocity_; }
 
+/// Nearly every read finds an axis that stands: its objects hold all of it already.
 void Axis::publish() {
+  if (shown_ == shown()) return;
+  publish(place());
+  shown_ = shown();
+}
+
+void Axis::publish(double here) {
   write(objects::kPositionActual, position_);
-  const double here = place();
   write(encoder_, here * per_turn(drive::Measure::pulses_per_turn));
   const auto& motion = profile_->rules.motion;
   std::uint32_t inputs = 0;

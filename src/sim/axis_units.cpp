@@ -21,15 +21,21 @@ constexpr double kMostSteps = 9e15;
 
 }  // namespace
 
+const drive::Meaning& Axis::meaning_of(ObjectAddress object) const {
+  const auto known = meanings_.find(object);
+  if (known != meanings_.end()) return known->second;
+  return meanings_.emplace(object, drive::meaning(drive::target_at(profile_, object), 0)).first->second;
+}
+
 double Axis::read(ObjectAddress object) const {
-  const auto meaning = drive::meaning(drive::target_at(profile_, object), 0);
+  const auto& meaning = meaning_of(object);
   if (!meaning.type_known) return 0;
   const auto value = od::decode(meaning.type, values_->in_force(object));
   return value ? drive::scaled(meaning, *value) : 0;
 }
 
 void Axis::write(ObjectAddress object, double number) {
-  const auto meaning = drive::meaning(drive::target_at(profile_, object), 0);
+  const auto& meaning = meaning_of(object);
   if (!meaning.type_known) return;
   const auto raw = meaning.encoding == od::Encoding::plain
                        ? Result<od::Value>(od::Value(static_cast<std::int64_t>(
@@ -67,7 +73,7 @@ std::optional<ObjectAddress> Axis::find_speed_monitor() const {
 }
 
 double Axis::units_per_turn() const {
-  if (drive::meaning(drive::target_at(profile_, objects::kPositionActual), 0).unit == "rad") return 2 * kPi;
+  if (meaning_of(objects::kPositionActual).unit == "rad") return 2 * kPi;
   return per_turn(drive::Measure::increments_per_turn);
 }
 
@@ -94,12 +100,12 @@ double Axis::per_turn(drive::Measure measure) const {
 }
 
 double Axis::speed_factor(ObjectAddress object) const {
-  const auto unit = drive::meaning(drive::target_at(profile_, object), 0).unit;
+  const auto unit = meaning_of(object).unit;
   return unit == "rpm" ? units_per_turn() / 60 : 1;
 }
 
 double Axis::ramp(ObjectAddress object) const {
-  const auto unit = drive::meaning(drive::target_at(profile_, object), 0).unit;
+  const auto unit = meaning_of(object).unit;
   const double value = read(object);
   if (value <= 0) return kNoRamp;
   if (unit == "ms") return kRampSpeedRpm / 60 * units_per_turn() / (value / 1000);

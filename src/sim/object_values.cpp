@@ -27,6 +27,7 @@ void ObjectValues::load_communication_defaults(std::uint8_t node) {
 
 void ObjectValues::load_default(const od::Entry& entry, std::uint8_t node) {
   auto& bytes = values_[entry.address];
+  ++changes_;
   bytes.clear();
   if (entry.default_value)
     if (auto encoded = od::encode(entry.type, entry.default_value->for_node(node))) bytes = *encoded;
@@ -52,6 +53,7 @@ std::uint32_t ObjectValues::supported_modes() const {
 
 void ObjectValues::start() {
   at_start_.clear();
+  ++changes_;
   for (const auto& p : profile_->parameters)
     if (p.object && p.effect == od::Effect::restart) at_start_[*p.object] = get(*p.object);
 }
@@ -69,7 +71,9 @@ const Bytes& ObjectValues::get(ObjectAddress object) const {
 
 void ObjectValues::set_number(ObjectAddress object, std::uint64_t value) {
   const auto* entry = profile_->dictionary.find(object);
-  if (entry != nullptr) values_[object] = store_le(value, od::size_of(entry->type).value_or(4));
+  if (entry == nullptr) return;
+  values_[object] = store_le(value, od::size_of(entry->type).value_or(4));
+  ++changes_;
 }
 
 std::uint32_t ObjectValues::check_read(ObjectAddress object) const {

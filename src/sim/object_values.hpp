@@ -37,11 +37,16 @@ class ObjectValues {
   /// As get(); of a parameter that takes effect by a restart, what it was at start().
   const Bytes& in_force(ObjectAddress object) const;
   std::uint64_t number(ObjectAddress object) const { return load_le(get(object)); }
-  void set(ObjectAddress object, ByteSpan data) { values_[object].assign(data.begin(), data.end()); }
+  void set(ObjectAddress object, ByteSpan data) {
+    values_[object].assign(data.begin(), data.end());
+    ++changes_;
+  }
   /// Sets a number in the size the entry has.
   void set_number(ObjectAddress object, std::uint64_t value);
   /// The highest sub-index the object has; 0 for one that does not exist.
   std::uint8_t last_sub(std::uint16_t index) const;
+  /// Grows whenever a value is set.
+  std::uint64_t changes() const { return changes_; }
   bool has(ObjectAddress object) const { return profile_->dictionary.find(object) != nullptr; }
 
  private:
@@ -52,6 +57,7 @@ class ObjectValues {
   const drive::Profile* profile_;
   std::unordered_map<ObjectAddress, Bytes> values_;
   std::unordered_map<ObjectAddress, Bytes> at_start_;  ///< Parameters that take effect by a restart.
+  std::uint64_t changes_ = 0;
 };
 
 }  // namespace servoctl::sim

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include "base/text.hpp"
+#include "report/catalogue.hpp"
+#include "report/chinese_value.hpp"
 #include "trial/report_head.hpp"
-#include "trial/report_phrases.hpp"
-#include "trial/report_words.hpp"
 #include "trial/verdict.hpp"
 
 namespace servoctl::trial {
@@ -28,18 +28,17 @@ std::string joined(const std::vector<std::string>& texts, std::string_view separ
 /// In the language of the desk.
 std::string joined_remarks(const show::Desk& desk, std::vector<std::string> remarks) {
   if (desk.chinese)
-    for (auto& remark : remarks) remark = phrase_zh(remark);
+    for (auto& remark : remarks) remark = report::in_chinese(remark);
   return joined(remarks, desk.chinese ? "。" : ". ");
 }
 
 Value told(const show::Desk& desk, Value value) {
-  return desk.chinese ? in_chinese(std::move(value)) : value;
+  return desk.chinese ? report::chinese_value(std::move(value)) : value;
 }
 
 std::string test_name(const show::Desk& desk, const std::string& test) {
   if (!desk.chinese) return test;
-  const auto name = test_zh(test);
-  return name.empty() ? test : fmt::format("{} ({})", name, test);
+  return fmt::format("{} ({})", report::in_chinese(test + " test"), test);
 }
 
 /// Name and verdict are the heading.
@@ -63,7 +62,7 @@ std::string report_page(const show::Desk& desk, const Report& report) {
   const Value head(report.head);
   const auto time = std::get<std::string>(report::find(head, "time")->data());
   report::Page page{.chinese = desk.chinese, .title = cover.title};
-  if (desk.chinese) page.translate = heading_zh;
+  if (desk.chinese) page.translate = [](std::string_view heading) { return report::in_chinese(heading); };
   page.picture = cover.logo.uri();
   page.signatures = cover.signatures;
   constexpr std::size_t kFootName = 36;  // Columns: both and the time fit into one line.

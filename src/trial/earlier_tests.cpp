@@ -86,10 +86,13 @@ tl::unexpected<Error> no_tests(std::string_view file) {
 std::optional<TestResult> broken_off(const Value& document, const std::vector<TestResult>& before) {
   const auto* error = find(document, "error");
   if (error == nullptr) return std::nullopt;
-  const bool told = std::any_of(before.begin(), before.end(), [](const TestResult& t) { return !passed(t); });
-  if (told && text(find(*error, "code")) == name(Errc::negative)) return std::nullopt;
   const auto* node = find(*error, "node");
   const auto* number = node == nullptr ? nullptr : std::get_if<std::uint64_t>(&node->data());
+  // The last one may be what the error is about, such as a jog that Ctrl-C ended: it says so itself.
+  const bool told =
+      !before.empty() && !passed(before.back()) && number != nullptr && before.back().node == *number;
+  const bool any = std::any_of(before.begin(), before.end(), [](const TestResult& t) { return !passed(t); });
+  if (told || (any && text(find(*error, "code")) == name(Errc::negative))) return std::nullopt;
   TestResult out;
   out.test = text(find(document, "command")).substr(kTestCommand.size());
   if (number != nullptr && *number >= canopen::kFirstNode && *number <= canopen::kLastNode)

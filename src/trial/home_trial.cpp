@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/duration.hpp"
 #include "drive/standard_objects.hpp"
 #include "trial/motion_trial.hpp"
 #include "trial/verdict.hpp"
@@ -119,14 +120,29 @@ class Homings {
   std::vector<Found> found_;
 };
 
+std::string homing_text(motion::Motion& motion, const motion::MotionPlan& plan, const HomeTrial& test) {
+  auto out = fmt::format("{}, {} times, for {} at most each", plan.summary, test.repeat,
+                         servoctl::to_string(plan.longest));
+  const auto& units = motion.units();
+  if (const auto window = motion.limits().travel)
+    out += fmt::format(", {} at most", units.words(*window, units.unit(objects::kPositionActual)));
+  return out;
+}
+
 }  // namespace
 
-Result<void> check_home_test(const show::Desk& desk, const motion::MotionRequest& request,
-                             const HomeTrial& test) {
+Result<std::string> check_home_test(const show::Desk& desk, const motion::MotionRequest& request,
+                                    const HomeTrial& test) {
   motion::Home home;
   home.method = test.method;
-  return motion::check_motion(desk, request,
-                              [&](motion::Motion& motion) { return motion::plan_home(motion, home); });
+  std::string text;
+  const auto possible = motion::check_motion(desk, request, [&](motion::Motion& motion) {
+    auto plan = motion::plan_home(motion, home);
+    if (plan) text = homing_text(motion, *plan, test);
+    return plan;
+  });
+  if (!possible) return fail(possible.error());
+  return text;
 }
 
 Result<MotionTrial> test_home(show::Desk& desk, const motion::MotionRequest& request, const HomeTrial& test) {

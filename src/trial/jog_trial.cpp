@@ -211,8 +211,10 @@ Result<MotionTrial> test_jog(show::Desk& desk, const motion::MotionRequest& requ
   const auto plan = [&](motion::Motion& motion) {
     auto planned = motion::plan_jog(motion, jog);
     if (planned)
-      planned->summary = fmt::format("turn at {} {} for {}, then back", number_text(planned->value),
-                                     planned->unit, to_string(test.length));
+      planned->summary =
+          fmt::format("turn at {} {} for {}, then back{}{}", number_text(planned->value), planned->unit,
+                      to_string(test.length),
+                      test.then.empty() ? "" : "; behind that, after a second question, ", test.then);
     if (const auto back = planned ? motion.units().bytes(objects::kTargetVelocity, -planned->value)
                                   : std::optional<Bytes>()) {
       const auto rest = planned->moving.back();

@@ -24,6 +24,7 @@ struct JogTrial {
   Duration length = std::chrono::seconds(2);        ///< Of each direction; at least a second.
   double tolerance = 10;                            ///< Of the speed, in %.
   Duration longest_stop = std::chrono::seconds(1);  ///< From the command to standstill.
+  std::string then = {};  ///< What comes behind it, for the question; empty: nothing.
 };
 
 /// Whether it can be run as it is asked for, which only reads; so can check_home_test().
@@ -40,8 +41,10 @@ struct HomeTrial {
   double spread = 1;  ///< Of the position after homing, in its unit.
 };
 
-Result<void> check_home_test(const show::Desk& desk, const motion::MotionRequest& request,
-                             const HomeTrial& test);
+/// The answer is what would be done: method, speeds, how often, how long and how far; empty where that could
+/// not be asked.
+Result<std::string> check_home_test(const show::Desk& desk, const motion::MotionRequest& request,
+                                    const HomeTrial& test);
 
 /// Homes the axis several times over.
 Result<MotionTrial> test_home(show::Desk& desk, const motion::MotionRequest& request, const HomeTrial& test);

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Several drives are enabled, at a prompt that reads lines or in a batch file; then one drive is killed, falls into a
-fault, or is stopped by NMT, and servoctl ends: by `quick-stop`, `disable`, an error, the end of its input, a signal.
+fault, or is stopped by NMT, and servoctl ends: by `quick-stop`, `disable`, an error, the end of its input, a signal, or a kill after which another stops all there is.
 Afterwards no drive that answers is energised, and a dead one was told. usage: stop_all.py SERVOCTL COUNT [SEED]"""
 import json
 import os
@@ -16,7 +16,7 @@ seed = int(sys.argv[3]) if len(sys.argv) > 3 else 1
 rng = random.Random(seed)
 NODES = (1, 2, 3)
 FAMILIES = ("gsd600", "dm", "da200", "ts", "sv2")
-WAYS = ("disable", "quick-stop", "error", "end of input", "SIGTERM", "SIGHUP", "SIGINT")
+WAYS = ("disable", "quick-stop", "disable all", "quick-stop all", "SIGKILL", "error", "end of input", "SIGTERM", "SIGHUP", "SIGINT")
 TROUBLES = ("none", "killed", "stopped by NMT", "reset", "disabled by another")
 
 
@@ -67,7 +67,8 @@ def attack(number):
             if not until(lambda n=n: status(env, n) is not None, 20):
                 return f"{what}: the simulated drive {n} does not answer"
         lines = [f"nmt start -n {n} --yes" for n in NODES] + [f"enable -n {n} --yes" for n in NODES]
-        ending = {"disable": ["disable -n 1-3"], "quick-stop": ["quick-stop -n 1-3", "disable -n 1-3"], "error": ["read 0x5FFF -n 1"]}
+        ending = {"disable": ["disable -n 1-3"], "quick-stop": ["quick-stop -n 1-3", "disable -n 1-3"],
+                  "disable all": ["disable -n all"], "quick-stop all": ["quick-stop -n all", "disable -n all"], "error": ["read 0x5FFF -n 1"]}
         program = subprocess.Popen(words, env=env, stdin=subprocess.PIPE, stdout=log, stderr=log, text=True)
         last = ["wait 2s", *ending.get(way, ["wait 20s"] if way.startswith("SIG") else [])]
         program.stdin.write("\n".join(lines + (last if batch else [])) + "\n")
@@ -90,6 +91,11 @@ def attack(number):
             return f"{what}: servoctl does not end"
         log.seek(0)
         said = log.read()
+        if way == "SIGKILL":  # Somebody else, who has heard of no drive, stops what was left.
+            if not all((status(env, n) or {}).get("energised") for n in NODES if n != victim):
+                return None if family == "gsd600" else f"{what}: the drives have lost their power by themselves"
+            other = subprocess.run([servoctl, "disable", "-n", "all"], env=env, capture_output=True, text=True, timeout=60)
+            code, said = other.returncode, other.stdout + other.stderr
         # The end of a batch file without an error leaves what it enabled, as it was asked to.
         left_on_purpose = code == 0 and way == "end of input"
         for n in NODES:
@@ -101,7 +107,7 @@ def attack(number):
                 return f"{what}: node {n} does not answer, and the exit code is 0"
             if seen is not None and seen["energised"]:
                 return f"{what}: node {n} is {seen['state']}, exit {code}: {said[-600:]}"
-        if trouble == "killed" and not left_on_purpose and (code == 0 or f"node {victim}" not in said.lower()):
+        if trouble == "killed" and not left_on_purpose and way != "SIGKILL" and (code == 0 or f"node {victim}" not in said.lower()):
             return f"{what}: the dead node was not told, exit {code}: {said[-600:]}"
         return None
     finally:

@@ -117,6 +117,11 @@ TEST(CabinetDiff, NamesWhatDiffersBetweenTwoFilesHoweverItIsWritten) {
   EXPECT_EQ(saved.compare(saved.fleet.cabinet.file, other),
             (std::vector<std::string>{"feeder Pn0214 Speed loop gain 1", "lift heartbeat"}));
   EXPECT_FALSE(compare_cabinets(saved.fleet.desk, saved.fleet.folder() / "none.toml", other, load));
+  const auto empty = saved.fleet.folder() / "empty";
+  fs::create_directory(empty);
+  const auto none = compare_cabinets(saved.fleet.desk, empty, other, load);
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().message, empty.string() + " contains no backup");
 }
 
 TEST(CabinetDiff, HoldsAFileAgainstABackup) {

@@ -47,6 +47,18 @@ TEST(CabinetCheck, FindsNothingInWhatADriveCanHave) {
   for (const auto* family : {"dm", "da200", "ts", "sv2"}) EXPECT_EQ(found(axis(family, "")), "") << family;
 }
 
+TEST(CabinetCheck, FindsNamesThatDifferInTheCaseOfLettersAlone) {
+  const std::string rest = "family = \"gsd600\"\nbus = \"main\"\n";
+  const auto alike =
+      found("[bus.main]\nurl = \"can0\"\n[bus.MAIN]\nurl = \"can1\"\n[group.Z]\n[axis.lift]\nnode = 1\n" +
+            rest + "group = [\"Z\"]\n[axis.Lift]\nnode = 2\n" + rest + "[axis.z]\nnode = 3\n" + rest);
+  EXPECT_NE(alike.find("c.toml:3:1: bus MAIN differs from main in the case of letters alone\n"),
+            std::string::npos)
+      << alike;
+  EXPECT_NE(alike.find("axis Lift differs from lift in the case"), std::string::npos) << alike;
+  EXPECT_NE(alike.find("group Z differs from z in the case"), std::string::npos) << alike;
+}
+
 TEST(CabinetCheck, FindsNothingInTheExampleOfTheDocs) {
   const auto text = read_file(std::filesystem::path(source_dir()) / "docs/cabinet.md", 1U << 20U).value();
   const auto begin = text.find("```toml\n") + 8;

@@ -98,6 +98,12 @@ class Fleet {
     }
   }
 
+  /// From now on the buses are opened by this URL, as far as anybody can tell.
+  void call_buses(std::string url) {
+    url_ = std::move(url);
+    heal();
+  }
+
   std::vector<Station> stations() {
     std::vector<Station> out;
     for (const auto& axis : cabinet.axes)
@@ -216,7 +222,7 @@ class Fleet {
       return std::any_of(lines_.begin(), lines_.end(),
                          [](const Line& each) { return each.bus != nullptr && each.bus->is_cancelled(); });
     };
-    line.session = std::make_unique<session::Session>(std::move(bus), "sim:", std::move(options));
+    line.session = std::make_unique<session::Session>(std::move(bus), url_, std::move(options));
   }
   Line& line_of(const Axis& axis) {
     auto line = lines_.begin();
@@ -228,6 +234,7 @@ class Fleet {
   }
 
   static inline int next_ = 0;
+  std::string url_ = "sim:";
   fs::path folder_;
   std::list<Line> lines_;
   std::vector<std::unique_ptr<sim::SimDrive>> drives_;

@@ -1,7 +1,9 @@
 // From a bus to a cabinet file, and what its axes are doing.
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
 #include <unistd.h>
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -65,6 +67,28 @@ TEST_F(CabinetInit, WritesAFileByWhichNothingIsToBeDoneOnAnyFamily) {
   for (const auto* name : {"node1", "node5", "slave1", "slave2"}) EXPECT_TRUE(says(name)) << name << all();
 }
 
+/// As many as a cabinet has, on two wires.
+TEST_F(CabinetInit, FortyAxesOfFiveFamiliesOnTwoBusesPlanEmpty) {
+  constexpr std::array kFamilies{"gsd600", "dm", "da200", "ts"};
+  std::string drives;
+  std::string families;
+  for (std::size_t node = 1; node <= 32; ++node) {
+    const auto* family = kFamilies[node % kFamilies.size()];
+    drives += fmt::format("{}{}@{}", node == 1 ? "" : ",", family, node);
+    families += fmt::format("{}{}={}", node == 1 ? "" : ",", node, family);
+  }
+  EXPECT_EQ(run(fmt::format("cabinet init FILE --family {} -b sim:{}", families, drives)), 0) << all();
+  std::string ring;
+  for (int slave = 1; slave <= 8; ++slave) ring += fmt::format("{}sv2@{}", slave == 1 ? "" : ",", slave);
+  EXPECT_EQ(run("cabinet init FILE --name ring --family 1-8=sv2 -b coe:sim:" + ring), 0) << all();
+  EXPECT_EQ(run("cabinet check"), 0) << all();
+  EXPECT_EQ(run("cabinet plan --json"), 0) << all();
+  std::size_t axes = 0;
+  for (auto at = all().find("\"axis\":"); at != std::string::npos; at = all().find("\"axis\":", at + 1))
+    ++axes;
+  EXPECT_GE(axes, 40U) << all();
+}
+
 TEST_F(CabinetInit, TakesWhatIsNotAsFromTheFactory) {
   const std::string bus = " -b sim:gsd600@1,gsd600@2 ";
   EXPECT_EQ(run("param set Pn0202=500 -n 1 -d gsd600 --yes" + bus), 0) << all();
@@ -85,8 +109,12 @@ TEST_F(CabinetInit, MarksWhatItGuesses) {
 
 TEST_F(CabinetInit, RefusesWhatItCannotBeToldAndWritesNothing) {
   EXPECT_EQ(run("cabinet init FILE --family 1 -b sim:da200@1"), 2) << all();
+  EXPECT_TRUE(says("--family: '1' names no family")) << all();
+  EXPECT_EQ(run("cabinet init FILE -n 9 -b sim:da200@1 --timeout 50ms --retries 0"), 4) << all();
+  EXPECT_TRUE(says("no node answers")) << all();
   EXPECT_EQ(run("cabinet init FILE --family x=da200 -b sim:da200@1"), 2) << all();
   EXPECT_EQ(run("cabinet init FILE --name all -b sim:da200@1"), 2) << all();
+  EXPECT_TRUE(says("'all' cannot be the name of a bus")) << all();
   EXPECT_EQ(run("cabinet init FILE --family 1=nofam -b sim:da200@1"), 2) << all();
   EXPECT_EQ(run("cabinet init FILE --dry-run -b sim:da200@1"), 0) << all();
   EXPECT_FALSE(fs::exists(file()));
@@ -119,6 +147,29 @@ family = "ts"
   EXPECT_EQ(run("cabinet show feeder"), 0) << all();
   EXPECT_FALSE(says("away")) << all();
   EXPECT_EQ(run("cabinet show nobody"), 2) << all();
+}
+
+/// What has to be seen to before an apply: the manuals' "effective at standstill", and what is behind a
+/// password.
+TEST_F(CabinetInit, APlanTellsWhatItNeeds) {
+  std::ofstream(file()) << R"([bus.main]
+url = "sim:da200@1,ts@2"
+[axis.a]
+node = 1
+family = "da200"
+[axis.a.parameters]
+"P0.26" = 2
+[axis.b]
+node = 2
+family = "ts"
+[axis.b.parameters]
+Fn_00 = 5
+)";
+  EXPECT_EQ(run("cabinet plan --json"), 1) << all();
+  EXPECT_TRUE(says(R"({"need":"standstill","parameters":["P0.26"]})")) << all();
+  EXPECT_TRUE(says(R"({"need":"password","parameters":["Fn_00"]})")) << all();
+  EXPECT_EQ(run("cabinet plan"), 1) << all();
+  EXPECT_TRUE(says("needs standstill (P0.26)") && says("needs the password: --unlock (Fn_00)")) << all();
 }
 
 TEST_F(CabinetInit, ShowWatchesWithALineForEachChange) {

@@ -1,7 +1,9 @@
 // What Tab offers, with what it says beside it.
 #include "cli/terminal/completer.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -45,9 +47,9 @@ TEST_F(Completing, SaysBesideAWordWhatItIs) {
   EXPECT_EQ(hint("param get Pn021", "Pn0214"), "Speed loop gain 1");
   shell.defaults().chinese = true;
   EXPECT_EQ(hint("param get Pn021", "Pn0214"), "速度环增益 1");
-  EXPECT_NE(hint("param ", "search"), "");
-  EXPECT_NE(hint("read --ty", "--type"), "");
-  EXPECT_NE(hint("un", "undo"), "");
+  EXPECT_EQ(hint("param ", "search"), "Find panel parameters by words, in English or Chinese");
+  EXPECT_TRUE(hint("read --ty", "--type").starts_with("data type")) << hint("read --ty", "--type");
+  EXPECT_EQ(hint("un", "undo"), "Put back what the last `param set` or `write` replaced");
   EXPECT_TRUE(offers_word("un", "undo"));
   EXPECT_TRUE(offers_word("help un", "undo"));
   EXPECT_EQ(hint("help un", "undo"), hint("un", "undo"));
@@ -78,8 +80,46 @@ TEST_F(Completing, OffersNodesThatWereHeardAndGoesOnInAList) {
   EXPECT_TRUE(offers_word("use ", "1"));
   EXPECT_FALSE(offers_word("use ", "5"));
   ASSERT_EQ(shell.run({"nmt", "reset", "-n", "1,5", "--wait", "--yes"}), 0) << console.err_text;
-  EXPECT_NE(hint("use ", "5"), "");
+  EXPECT_TRUE(offers_word("use ", "5"));
+  EXPECT_EQ(hint("use ", "5"), "pre-operational");
   EXPECT_TRUE(offers_word("status -n 1,", "1,5"));
+}
+
+TEST_F(Completing, MakesNoAxisOfAnotherWhoseNameDiffersInTheCaseOfLetters) {
+  const auto file = fs::temp_directory_path() / ("alike-" + std::to_string(::getpid()) + ".toml");
+  std::ofstream(file) << "[bus.main]\nurl = \"sim:gsd600@1,gsd600@2\"\n[axis.Lift]\nnode = 1\nfamily = "
+                         "\"gsd600\"\n[axis.lift]\nnode = 2\nfamily = \"gsd600\"\n";
+  shell.defaults().cabinet = file.string();
+  for (const auto* name : {"Lif", "lif"}) {
+    const auto offer = complete(std::string("status ") + name, shell);
+    ASSERT_EQ(offer.candidates.size(), 1U) << name;
+    EXPECT_EQ(offer.candidates.front().word, std::string(name) + "t");
+  }
+  fs::remove(file);
+}
+
+TEST_F(Completing, OffersNothingInAComment) {
+  EXPECT_TRUE(offers_word("read statusw", "statusword"));
+  EXPECT_TRUE(complete("# read statusw", shell).candidates.empty());
+  EXPECT_TRUE(complete("read 0x6041 # read statusw", shell).candidates.empty());
+}
+
+TEST_F(Completing, OpensNoDeviceAndNoPipe) {
+  const auto pipe = fs::temp_directory_path() / ("pipe-" + std::to_string(::getpid()));
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  // Open at both ends, it would be read, and what is in it would be gone.
+  const int fd = ::open(pipe.c_str(), O_RDWR | O_NONBLOCK);
+  ASSERT_EQ(::write(fd, "mine", 4), 4);
+  for (const auto* before : {"--cabinet ", "-d "})
+    static_cast<void>(complete(before + pipe.string() + " param get x", shell));
+  char kept[8] = {};
+  EXPECT_EQ(::read(fd, kept, sizeof kept), 4);
+  ::close(fd);
+  fs::remove(pipe);
+}
+
+TEST_F(Completing, TakesAnEmptyWordForNoOption) {
+  EXPECT_EQ(hint("param get '' zh Pn021", "Pn0214"), "Speed loop gain 1") << "'' is not --lang";
 }
 
 TEST_F(Completing, PutsABackslashBeforeWhatWouldEndAWordAndReadsQuotes) {

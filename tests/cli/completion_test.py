@@ -4,6 +4,7 @@ usage: completion_test.py SERVOCTL SOURCE_DIR"""
 import os
 import re
 import shutil
+import subprocess
 import sys
 import tempfile
 import time
@@ -64,6 +65,10 @@ LINES = [
     ("status -n lift,fee~", "status|-n|lift,feeder"),
     ("jog fee~60rp~", "jog|feeder|60rpm"),
     ("param get lift pn0214~", "param|get|lift|Pn0214"),
+    # a sign of the history of bash
+    ("-d bang/~ objects", "-d|bang/a!echo x.eds|objects"),
+    ("-d 'bang/~ objects", "-d|bang/a!echo x.eds|objects"),
+    ('-d "bang/~ objects', "-d|bang/a!echo x.eds|objects"),
     # a pipe into which nobody writes
     ("-d pipe param get x~", "-d|pipe|param|get|x"),
     ("--cabinet other/c.toml status -n cra~", "--cabinet|other/c.toml|status|-n|crane"),
@@ -87,14 +92,15 @@ LISTS = [
 
 
 def prepare():
-    for folder in ("bin", "home", "state", "here/evil", "here/other"):
+    for folder in ("bin", "home", "state", "here/evil", "here/other", "here/bang"):
         os.makedirs(f"{work}/{folder}")
     with open(f"{work}/bin/servoctl", "w") as out:
         out.write(f'#!/bin/sh\n[ "$1" = __complete ] && exec {servoctl} "$@"\n'
                   "printf RAN; for word; do printf '<%s>' \"$word\"; done; echo '<end>'\n")
     os.chmod(f"{work}/bin/servoctl", 0o755)
     for name, text in (("memory.bin", ""), ("my file.json", "{}"), ("my sheet.eds", ""), ("cabinet.toml", CABINET),
-                       ("other/c.toml", CABINET.replace("feeder", "crane")), ("evil/$(touch owned)'\".eds", "")):
+                       ("other/c.toml", CABINET.replace("feeder", "crane")), ("evil/$(touch owned)'\".eds", ""),
+                       ("bang/a!echo x.eds", ""), ("output.txt", "")):
         with open(f"{here}/{name}", "w") as out:
             out.write(text)
     os.mkfifo(f"{here}/pipe")
@@ -178,6 +184,7 @@ def try_shell(shell):
         shell.run(typed, words)
     for typed, pattern in LISTS:
         shell.lists(typed, pattern)
+    shell.run("scan > out~; cat output.txt", "scan")
     shell.set("SERVOCTL_DRIVE", "gsd600")
     shell.run("param get pn0214~", "param|get|Pn0214")
     shell.set("SERVOCTL_DRIVE", "")
@@ -188,7 +195,28 @@ def try_shell(shell):
     shell.end()
 
 
+def open_nothing():
+    """A pipe that is named is not opened: nothing is waited for, and what is in it stays there."""
+    end = os.open(f"{here}/pipe", os.O_RDWR | os.O_NONBLOCK)
+    os.write(end, b"mine")
+    for line in ("--cabinet pipe status -n l", "-d pipe param get x", "--cabinet /dev/tty status -n l"):
+        times = []
+        for _ in range(3):  # The machine may have other work; a pipe that is waited for takes the alarm's two seconds.
+            begin = time.monotonic()
+            subprocess.run([servoctl, "__complete", "bash", "9", "80", " :=", "servoctl " + line], stdout=subprocess.DEVNULL)
+            times.append(time.monotonic() - begin)
+        if min(times) > 0.5:
+            failures.append(f"{line}: Tab took {min(times):.1f} s")
+    try:
+        if os.read(end, 9) != b"mine":
+            failures.append("a Tab took something out of a pipe")
+    except BlockingIOError:
+        failures.append("a Tab emptied a pipe")
+    os.close(end)
+
+
 prepare()
+open_nothing()
 for start in shells():
     try_shell(start())
 if os.path.exists(f"{here}/owned") or os.listdir(f"{work}/state"):

@@ -38,14 +38,14 @@ TEST_F(BackupTest, GivesTheLinesThatLeadFromOneToAnother) {
   EXPECT_EQ(console.out_text,
             "drive gsd600\n"
             "use 1\n"
+            "param set Pn0202=321  # Position loop gain 1\n"
+            "param set Pn0214=450  # Speed loop gain 1\n"
             "write 0x1800:1 0xC0000181  # COB-ID used by TPDO\n"
             "write 0x1A00:0 0  # Number of mapped objects\n"
             "write 0x1A00:1 0x60410010  # Mapped object 1\n"
             "write 0x1A00:2 0x60640020  # Mapped object 2\n"
             "write 0x1A00:0 2  # Number of mapped objects\n"
-            "write 0x1800:1 0x40000181  # COB-ID used by TPDO\n"
-            "param set Pn0202=321  # Position loop gain 1\n"
-            "param set Pn0214=450  # Speed loop gain 1\n");
+            "write 0x1800:1 0x40000181  # COB-ID used by TPDO\n");
   spill("change.servoctl", console.out_text);
   ASSERT_EQ(run("run %change.servoctl"), 0) << console.err_text;
   EXPECT_EQ(run("diff node:1 node:2"), 0) << console.out_text;

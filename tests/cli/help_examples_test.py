@@ -128,7 +128,7 @@ def on_simulated_drives(line, folder):
         line += f" --listen {folder}/socket"
     if line.startswith("test comm"):  # How long an answer takes is a matter of this machine.
         line = re.sub(r" --longest \S+", "", line) + " --longest 10s"
-    line = re.sub(r"--for (\d+m|[3-9]s|\d\ds)\b", "--for 1s", line)
+    line = re.sub(r"--for (\d+min|[3-9]s|\d\ds)\b", "--for 1s", line)
     return line, bus
 
 

@@ -207,6 +207,15 @@ TEST_F(LineEditing, APasteBringsNoControlCharacters) {
   EXPECT_EQ(editor.text(), "a[31mb c");
 }
 
+TEST_F(LineEditing, TabLeavesLettersAsTheyWereTypedWhereCandidatesDifferInTheirCase) {
+  candidates = {{"LiftA", ""}, {"liftB", ""}};
+  type("use li\t");
+  EXPECT_EQ(editor.text(), "use lift");
+  candidates = {{"Pn0214", ""}, {"Pn0217", ""}};
+  type("\x15get pn\t");
+  EXPECT_EQ(editor.text(), "get Pn021");
+}
+
 TEST_F(LineEditing, TabGoesAsFarAsAllAgreeAndShowsThem) {
   candidates = {{"速度环增益1", "Pn0214"}, {"速度环增益2", "Pn0217"}};
   type("get 速\t");

@@ -11,6 +11,7 @@ import signal
 import struct
 import subprocess
 import sys
+import tempfile
 import termios
 import time
 
@@ -30,6 +31,7 @@ class Screen:
         self.lines = [""] * rows
         self.row = self.column = self.pictures = 0
         self.unknown = []
+        self.kept = []  # What stood there before the alternate screen.
 
     def resize(self, columns, rows):
         self.columns, self.rows = columns, rows
@@ -69,6 +71,9 @@ class Screen:
                 self.pictures += 1
                 self.lines[self.row] = self.lines[self.row][:self.column]
                 self.lines[self.row + 1:] = [""] * (self.rows - self.row - 1)
+            elif part[1] == "?1049" and part[2] in "hl":
+                self.lines, self.kept = ([""] * self.rows, self.lines) if part[2] == "h" else (self.kept, [])
+                self.lines = (self.lines + [""] * self.rows)[:self.rows]
             else:
                 self.unknown.append(part[0])
 
@@ -180,6 +185,39 @@ def watched_pdos():
     run("nmt", "preop")
 
 
+def cabinet_show(size, other):
+    """One row an axis, which says where it is; a change is seen, and keys sort, pause and end it."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = os.path.join(folder, "cabinet.toml")
+        with open(file, "w", encoding="utf-8") as out:
+            out.write(f'[bus.main]\nurl = "{env["SERVOCTL_BUS"]}"\n[axis.feeder]\nnode = 1\nfamily = "gsd600"\n'
+                      '[axis.away]\nnode = 9\nfamily = "gsd600"\n')
+        view = View(size, "cabinet", "show", "--watch", "--cabinet", file, "--timeout", "100ms", "--retries", "0")
+        view.wait_for("feeder")
+        view.wait_for("switch on disabled")
+        view.wait_for("no answer")
+        begin, before = time.monotonic(), view.screen.pictures
+        view.read(2)
+        rate = (view.screen.pictures - before) / (time.monotonic() - begin)
+        check(f"at most 10 pictures of a cabinet a second: {rate:.1f}", rate <= 10.5)
+        check("one row an axis", sum("feeder" in line for line in view.screen.lines) == 1)
+        check("no line of a cabinet is too long", all(len(line) < size[0] for line in view.screen.lines))
+        check("it has a screen of its own", not view.shows(PROMPT))
+        run("enable", "--yes")
+        view.wait_for("operation enabled")
+        run("disable")
+        view.wait_for("switch on disabled")
+        view.press(b" ")
+        view.wait_for("PAUSED")
+        view.resize(*other)
+        view.press(b" ")
+        view.read(0.5)
+        check("a cabinet fits a screen of another size", all(len(line) < other[0] for line in view.screen.lines))
+        view.press(b"q")
+        check("an axis that does not answer is an error in the end", view.ended() == 4)
+        check("what stood there before is there again", view.shows(PROMPT))
+
+
 drive = subprocess.Popen([servoctl, "sim", "gsd600@1"], env=env, stdout=subprocess.DEVNULL)
 try:
     deadline = time.monotonic() + 10
@@ -189,6 +227,8 @@ try:
     watch((200, 50), (80, 24))
     monitor_table()
     watched_pdos()
+    cabinet_show((80, 24), (200, 50))
+    cabinet_show((200, 50), (80, 24))
     piped = run("watch", "statusword", "--every", "20ms", "--for", "200ms")
     check("in a pipe there are lines", len(re.findall(r"^ +\d\.\d{3}  Statusword ", piped.stdout, re.M)) >= 5)
     check("and nothing but text", "\x1b" not in piped.stdout + piped.stderr)

@@ -66,6 +66,15 @@ def last_place(state):
         t.see(r"servoctl[^>]*> ")
         t.type("\x04")
         expect(f"exit code after {bus}", 0, t.exit_code())
+    # All nodes are none to begin with, and not those from before.
+    t = Terminal(servoctl, "-b", cell, "-n", "2", "-d", "gsd600", state=state)
+    t.see(r"node 2 gsd600[^>]*> ")
+    t.type("use all\n")
+    t.see(r"node all[^>]*> ")
+    t.type("exit\n")
+    expect("exit code behind `use all`", 0, t.exit_code())
+    with open(file, encoding="utf-8") as written:
+        expect("the nodes kept of `use all`", None, json.load(written)["nodes"])
     with open(file, "w", encoding="utf-8") as out:
         out.write("{")
     t = Terminal(servoctl, state=state)
@@ -112,6 +121,23 @@ def place_in_a_cabinet(state):
         t.see(r"servoctl> ")
         t.type("exit\n")
         t.exit_code()
+        # An interface that is gone is none of the cabinet's buses of that name.
+        file = os.path.join(state, "servoctl", "prompt.json")
+        with open(file, encoding="utf-8") as out:
+            kept = out.read()
+        with open("cabinet.toml", "a", encoding="utf-8") as out:
+            out.write(f'[bus.can77]\nurl = "{other}"\n')
+        for place, why in (({"bus": "can77", "nodes": "1", "drive": "gsd600", "cabinet": None}, r"[^\n]*can77[^\n]*"),
+                           ({"bus": cell, "nodes": "lift", "drive": "gsd600", "cabinet": None}, "the cabinet file is another one")):
+            with open(file, "w", encoding="utf-8") as out:
+                json.dump({"servoctl_prompt": 1, **place, "time": "2026-01-01T00:00:00Z"}, out)
+            t = Terminal(servoctl, state=state)
+            t.see(r"not as last time \([^)]*\): " + why)
+            t.see(r"servoctl> ")
+            t.type("\x04")
+            t.exit_code()
+        with open(file, "w", encoding="utf-8") as out:
+            out.write(kept)
         os.chdir(at)
         t = Terminal(servoctl, state=state)
         t.see(r"not as last time [^\n]*: no cabinet file is in use here")

@@ -91,7 +91,7 @@ with tempfile.TemporaryDirectory() as state:
     t.type("\x1b[200~param explain Pn0214\nnonsense\n\x1b[201~")
     t.see(r"1 more pasted line waits")
     t.type("\r")
-    t.see(r"object")
+    t.see(r"对象")
     t.see(r"> nonsense")
     t.type("\x03")
     t.see(r"\^C\s+servoctl gsd600> ")

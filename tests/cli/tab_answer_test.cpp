@@ -69,6 +69,9 @@ TEST_F(TabAnswers, AreQuotedAsTheWordWasBegun) {
   EXPECT_EQ(bash_text("a $(b) 'c' \"d\" `e` \\", 0), "a\\ \\$\\(b\\)\\ \\'c\\'\\ \\\"d\\\"\\ \\`e\\`\\ \\\\");
   EXPECT_EQ(bash_text("$(b) 'c' \"d\" `e` \\", '"'), "\\$(b) 'c' \\\"d\\\" \\`e\\` \\\\");
   EXPECT_EQ(bash_text("$(b) 'c'", '\''), "$(b) '\\''c'\\''");
+  EXPECT_EQ(bash_text("echo x!y", '"'), "echo x\"\\!\"y") << "history is looked up within double quotes";
+  EXPECT_EQ(bash_text("echo x!y", 0), "echo\\ x\\!y");
+  EXPECT_EQ(bash_text("echo x!y", '\''), "echo x!y");
 }
 
 TEST_F(TabAnswers, SayWhatAWordIsWhereBashOnlyLists) {
@@ -118,9 +121,8 @@ TEST_F(TabAnswers, KnowEveryCommandOptionAndChoice) {
       auto before = words;
       if (option) before.push_back(name);
       for (const auto choice : parameter.choices)
-        EXPECT_NE(
-            ((option || all.empty() ? fish("", before) : all) + "\n").find("\n" + std::string(choice) + "\n"),
-            std::string::npos)
+        EXPECT_NE(((option ? fish("", before) : all) + "\n").find("\n" + std::string(choice) + "\n"),
+                  std::string::npos)
             << command->path << " " << name << " " << choice;
     }
   }
@@ -194,8 +196,28 @@ TEST_F(TabAnswers, OfferNoNameThatLooksLikeAnOption) {
   const auto before = fs::current_path();
   fs::current_path(folder());
   EXPECT_EQ(bash("-d --y").find("--yes.eds"), 6U);
-  EXPECT_EQ(bash("-d ").find("--yes.eds"), std::string::npos);
+  write("plain.eds", "");
+  const auto offered = bash("-d ");
+  EXPECT_NE((offered + "\n").find("\nplain.eds\n"), std::string::npos) << offered;
+  EXPECT_EQ(offered.find("--yes.eds"), std::string::npos);
   fs::current_path(before);
+}
+
+TEST(BegunLine, IsReadAsTheShellReadsIt) {
+  const auto last = [](std::string_view line, LineSyntax syntax) {
+    return begun_line(line, {}, syntax).last;
+  };
+  EXPECT_EQ(last("a \"b\\c", LineSyntax::servoctl), "bc");
+  EXPECT_EQ(last("a \"b\\c\\\"d", LineSyntax::bash), "b\\c\"d");
+  EXPECT_EQ(last("'it\\'s", LineSyntax::fish), "it's");
+  EXPECT_EQ(last("\"a`\\`", LineSyntax::fish), "a`\\`");
+  EXPECT_EQ(last("a\\ b", LineSyntax::bash), "a b");
+  EXPECT_EQ(last("#a", LineSyntax::zsh), "#a");
+  EXPECT_EQ(last("a#b", LineSyntax::bash), "a#b");
+  EXPECT_EQ(last("a '#b", LineSyntax::bash), "#b");
+  EXPECT_TRUE(begun_line("a # b", {}, LineSyntax::bash).comment);
+  EXPECT_FALSE(begun_line("a '# b", {}, LineSyntax::bash).comment);
+  EXPECT_EQ(begun_line("a\r\nb").words, std::vector<std::string>{"a"});
 }
 
 TEST(BegunLine, TellsWhereTheWordOfAShellBegins) {

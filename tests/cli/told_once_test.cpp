@@ -80,6 +80,21 @@ TEST_F(Told, OfATestThatEndedWithAnErrorThatItDidNotPass) {
   EXPECT_EQ(write("interrupted", "", 1), 2U);
 }
 
+TEST_F(Told, OfATestThatCtrlCEndedOnce) {
+  fs::create_directories(dir_);
+  const auto tests = dir_ / "tests.json";
+  const auto write = [&](const std::string& node) {
+    std::ofstream(tests)
+        << R"({"servoctl":1,"command":"test jog","ok":false,"error":{"code":"interrupted","exit":130,)"
+        << R"("message":"node 1: stopped","node":)" + node + R"(},"result":[{"test":"jog","node":1,)"
+        << R"("criteria":[{"id":"ended","name":"ended","verdict":"failed"}]}]})";
+    return tests_in(report_of(" --tests " + tests.string(), 1));
+  };
+  // The test of the communication is the report's own.
+  EXPECT_EQ(write("1"), 2U) << "the test says itself that it failed";
+  EXPECT_EQ(write("null"), 3U) << "of what broke off nothing tells that it is that test";
+}
+
 TEST_F(Told, OfAValueWhetherItIsKeptOnEveryFamily) {
   const std::map<std::string, std::string> without_order{{"gsd600", "no"},        {"dm", "no"},
                                                          {"da200", "not stated"}, {"ts", "not stated"},

@@ -75,6 +75,29 @@ TEST_F(UndoTest, RefusesADriveThatWasSwappedMeanwhile) {
   EXPECT_TRUE(told("is another drive than the one that was written to")) << console.err_text;
 }
 
+TEST_F(UndoTest, RefusesASetPointUnderAnyName) {
+  struct Row {
+    const char* bus;
+    const char* family;
+    const char* write;
+    const char* same;
+  };
+  const Row rows[] = {{"sim:da200@1", "da200", "write P4.13 100", "param set P4.13 0"},
+                      {"sim:da200@1", "da200", "write P4.14 10", "write P4.14 0"},
+                      {"sim:da200@1", "da200", "write P6.01 1000", "write 0x2601 0"},
+                      {"sim:da200@1", "da200", "write 0x60FF 100", "write 0x60FF 0"},
+                      {"sim:ts@1", "ts", "param set Fn_33=100", "param set Fn_33=0"}};
+  for (const auto& row : rows) {
+    SCOPED_TRACE(row.write);
+    ASSERT_EQ(run(std::string("bus ") + row.bus), 0) << console.err_text;
+    ASSERT_EQ(run(std::string("drive ") + row.family), 0) << console.err_text;
+    ASSERT_EQ(run(row.write), 0) << console.err_text;
+    ASSERT_EQ(run(row.same), 0) << console.err_text;
+    EXPECT_EQ(run("undo --yes"), 8) << console.out_text;
+    EXPECT_TRUE(told("it drives the motor, and is no setting")) << console.err_text;
+  }
+}
+
 TEST_F(UndoTest, TakesNothingButYes) {
   ASSERT_EQ(run("param set Pn0214=400"), 0) << console.err_text;
   for (const auto* line : {"undo -n 2", "undo --dry-run", "undo --yes --yes"}) {

@@ -180,6 +180,18 @@ TEST_F(MotionTests, AllMovesNothingAfterTheCommunicationHasFailed) {
   EXPECT_TRUE(questions.empty());
 }
 
+/// A limit switch that has just been seen not to work is not driven into.
+TEST_F(MotionTests, AllMovesNothingAfterAnInputHasFailed) {
+  build("sv2@1", "sv2");
+  const auto result =
+      run("test all",
+          {{"speed", "60rpm"}, {"--limit", "3000rpm"}, {"--expect", "negative-limit"}, {"--for", "1s"}});
+  EXPECT_EQ(criterion(result, "lost_answers"), "passed 0");
+  EXPECT_EQ(criterion(result, "completed"), "none");
+  ASSERT_FALSE(context.notices.empty());
+  EXPECT_EQ(context.notices.back(), "node 1: nothing was moved, because `test io` failed");
+}
+
 /// Its homing speed from the factory is 900 rpm.
 TEST_F(MotionTests, AllMovesNothingWhereTheHomingWouldBeRefusedLater) {
   build("sv2@1", "sv2");

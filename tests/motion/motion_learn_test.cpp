@@ -244,5 +244,37 @@ TEST(Learn, LeavesAMotionAloneThatIsToldItsCounts) {
   EXPECT_TRUE(done.outcome) << done.outcome.error().message;
 }
 
+TEST(Learn, StopsAMotorThatItsMonitorShowsTooFastWhereTheCountsWereToldWrong) {
+  for (const auto* kind : {"jog", "move", "torque"}) {
+    LearnBench bench(10000);
+    bench.options.turn = 131072;
+    bench.options.speed_limit = "60rpm";
+    const auto done = kind == std::string("jog")    ? bench.jog(jog_for("60rpm", 2s))
+                      : kind == std::string("move") ? bench.move({"5rev", true, "60rpm"})
+                                                    : bench.torque({"20%", 2s});
+    ASSERT_FALSE(done.outcome) << kind;
+    const auto& error = done.outcome.error();
+    EXPECT_EQ(error.code, Errc::negative) << kind << ": " << error.message;
+    EXPECT_NE(error.message.find("rpm by Pn1002, but "), std::string::npos) << error.message;
+    EXPECT_NE(error.hint.find("counts per revolution are probably wrong: `units learn`"), std::string::npos);
+    EXPECT_TRUE(done.end.verified);
+    EXPECT_FALSE(bench.energised());
+    double furthest = 0;
+    for (const auto& sample : done.samples)
+      furthest = std::max(furthest, std::abs(sample[Signal::position].value_or(0)) * 131072 / 10000);
+    EXPECT_LT(furthest, 720) << kind << ": not two turns of the motor until it was stopped";
+  }
+}
+
+TEST(Learn, GoesOnWithToldCountsWhereTheDriveDoesNotHaveTheMonitor) {
+  LearnBench bench(131072);
+  bench.options.turn = 131072;
+  bench.drive().misbehaviour().unreadable.insert(0x2005);
+  const auto done = bench.jog(jog_for("60rpm", 1s));
+  EXPECT_TRUE(done.outcome) << done.outcome.error().message;
+  ASSERT_FALSE(done.unchecked.empty());
+  EXPECT_NE(done.unchecked.front().find("not compared with Pn1002"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace servoctl::motion

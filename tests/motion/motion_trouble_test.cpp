@@ -28,6 +28,19 @@ TEST_F(MotionTrouble, AMotorThatDoesNotTurnIsGivenUp) {
   EXPECT_EQ(own.changed(), std::vector<std::string>{});
 }
 
+TEST_F(MotionTrouble, AMoveAwayFromItsTargetIsStoppedAtOnce) {
+  MotionBench own("ts", 10000);  // Its window for the following error is 0: no fault by itself.
+  own.drive().axis_faults().reversed = true;
+  const auto done = own.move(move_to("5rev", "250rpm"));
+  ASSERT_FALSE(done.outcome);
+  EXPECT_NE(done.outcome.error().message.find("goes the wrong way"), std::string::npos)
+      << done.outcome.error().message;
+  ASSERT_FALSE(done.samples.empty());
+  EXPECT_LT(done.samples.back().time - done.samples.front().time, 1s);
+  EXPECT_FALSE(own.energised());
+  EXPECT_EQ(own.changed(), std::vector<std::string>{});
+}
+
 TEST_F(MotionTrouble, AStallOnTheWayToATargetIsAFollowingError) {
   bench.drive().axis_faults().stalled = true;
   const auto done = bench.move(move_to("5rev", "250rpm"));

@@ -143,6 +143,21 @@ PreflightItem::Weight weight(std::string_view family, WatchdogPlan::Kind kind) {
   return items->back().weight;
 }
 
+/// CiA 301 promises another NMT state; what the motor does then is said by 6007h alone.
+TEST(WatchdogLine, IsACautionWhereNoObjectTellsTheReaction) {
+  WatchdogPlan plan;
+  plan.kind = Kind::heartbeat;
+  plan.time = kWatchdogTime;
+  EXPECT_FALSE(plan.is_sure());
+  EXPECT_NE(to_string(plan).find("NOT KNOWN is what the motor then does"), std::string::npos)
+      << to_string(plan);
+  plan.reaction = "fault";
+  EXPECT_TRUE(plan.is_sure());
+  EXPECT_EQ(to_string(plan).find("NOT KNOWN"), std::string::npos) << to_string(plan);
+  plan.assumed = true;
+  EXPECT_FALSE(plan.is_sure());
+}
+
 TEST(WatchdogLine, IsACautionWhereTheManualDoesNotTellTheReaction) {
   EXPECT_EQ(weight("cia402", Kind::heartbeat), PreflightItem::Weight::good);
   EXPECT_EQ(weight("gsd600", Kind::heartbeat), PreflightItem::Weight::caution);

@@ -34,6 +34,28 @@ TEST_P(WayOutOfFamily, TheStopWordGoesToAllBeforeAnyAnswerIsWaitedFor) {
   }
 }
 
+/// What `-n all` goes to: numbers of which nobody knows whether there is a drive.
+TEST_P(WayOutOfFamily, WhatMayBeAbsentIsWokenAtOnceAndDelaysNone) {
+  Several all(family(), 3);
+  ASSERT_TRUE(all.session->can()->send(canopen::nmt_frame(canopen::NmtCommand::stop, 2)));
+  std::vector<PowerDownPlan> plans;
+  for (const auto node : {1, 2, 3, 4, 5}) {
+    plans.emplace_back();
+    plans.back().node = static_cast<std::uint8_t>(node);
+    plans.back().aim = PowerAim::disable;
+    plans.back().may_be_absent = true;
+  }
+  const auto begun = all.session->now();
+  const auto done = take_down(*all.session, plans);
+  for (const auto i : {0U, 1U, 2U}) EXPECT_TRUE(done[i].is_without_power() && !done[i].silent) << i;
+  for (const auto i : {3U, 4U}) EXPECT_TRUE(done[i].silent) << i;
+  const auto woken = std::count_if(all.bus->frames.begin(), all.bus->frames.end(), [](const auto& frame) {
+    return frame == "000#8004" || frame == "000#8005";
+  });
+  EXPECT_EQ(woken, 2);
+  EXPECT_LE(all.session->now() - begun, 2 * all.session->options().timeout + std::chrono::milliseconds(700));
+}
+
 TEST_P(WayOutOfFamily, EightDrivesTakeAsLongAsOneAndADeadOneDelaysNone) {
   for (const auto aim : kAims) {
     Several one(family(), 1);

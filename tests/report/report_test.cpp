@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -45,23 +47,50 @@ TEST(Text, BreaksTheCellsOfTheWidestColumnToFitTheTerminal) {
   t.columns = {{"id"}, {"result"}, {"note"}};
   t.rows = {{1, "written, read back", std::string(60, 'x')}, {2, "", "位置环增益位置环增益位置环增益"}};
   EXPECT_EQ(to_text(t, 40),
-            "id  result              note\n"
-            " 1  written, read back  xxxxxxxxxxxxxxxx\n"
-            "                        xxxxxxxxxxxxxxxx\n"
-            "                        xxxxxxxxxxxxxxxx\n"
-            "                        xxxxxxxxxxxx\n"
-            " 2                      位置环增益位置环\n"
-            "                        增益位置环增益\n");
+            "id  result             note\n"
+            " 1  written, read      xxxxxxxxxxxxxxxxx\n"
+            "    back               xxxxxxxxxxxxxxxxx\n"
+            "                       xxxxxxxxxxxxxxxxx\n"
+            "                       xxxxxxxxx\n"
+            " 2                     位置环增益位置环\n"
+            "                       增益位置环增益\n");
   EXPECT_EQ(to_text(t, 34),
-            "id  result            note\n"
-            " 1  written, read     xxxxxxxxxxxx\n"
-            "    back              xxxxxxxxxxxx\n"
-            "                      xxxxxxxxxxxx\n"
-            "                      xxxxxxxxxxx…\n"
-            " 2                    位置环增益位\n"
-            "                      置环增益位置\n"
-            "                      环增益\n");
+            "id  result          note\n"
+            " 1  written, read   xxxxxxxxxxxxxx\n"
+            "    back            xxxxxxxxxxxxxx\n"
+            "                    xxxxxxxxxxxxxx\n"
+            "                    xxxxxxxxxxxxx…\n"
+            " 2                  位置环增益位置\n"
+            "                    环增益位置环增\n"
+            "                    益\n");
   EXPECT_EQ(to_text(t).find("…"), std::string::npos);
+}
+
+TEST(Text, WideColumnsShareWhatIsTooMuch) {
+  Table t;
+  t.columns = {{"a"}, {"b"}, {"c"}, {"d"}};
+  t.rows = {{1, "123456789", std::string(60, 'x'), std::string(59, 'y')}};
+  const auto text = to_text(t, 81);
+  EXPECT_NE(text.find("\n1  123456789  " + std::string(33, 'x') + "  " + std::string(32, 'y') + "\n"),
+            std::string::npos)
+      << text;
+  t.rows = {{1, "123456789", std::string(15, 'x'), std::string(90, 'y')}};
+  EXPECT_NE(to_text(t, 60).find(std::string(15, 'x') + "  " + std::string(29, 'y') + "\n"),
+            std::string::npos);
+}
+
+TEST(Text, BreaksACellOfAnyLengthAtOnce) {
+  Table t;
+  t.columns = {{"name"}};
+  const auto begun = std::chrono::steady_clock::now();
+  for (const std::string unit : {"x", "x ", "\xCC\x81"}) {
+    std::string cell = std::string(30, 'w');
+    for (int i = 0; i < 200000; ++i) cell += unit;
+    t.rows = {{cell}};
+    const auto text = to_text(t, 20);
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), unit[0] == 'x' ? 5 : 3) << unit;
+  }
+  EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(5));
 }
 
 TEST(Text, LeavesOutColumnsThatAreEmptyThroughout) {

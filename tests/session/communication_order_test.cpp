@@ -105,10 +105,10 @@ TEST(ForAnyDrive, AllPdosAreInvalidBeforeTheFirstChanges) {
                                  "0x1600:0=01", "0x1400:2=FF", "0x1800:2=01", "0x1400:1=01020000"}));
 }
 
-TEST(CommunicationOrder, OtherWritesKeepTheirPlaces) {
+TEST(CommunicationOrder, ParametersComeBeforeAndHeartbeatsBehind) {
   const Values present{{{0x1006, 0}, u32(0)}, {{0x1017, 0}, {0, 0}}, {{0x2000, 0}, {0}}};
   const Values wanted{{{0x1006, 0}, u32(1000)}, {{0x1017, 0}, {1, 0}}, {{0x2000, 0}, {1}}};
-  EXPECT_EQ(told(present, wanted), (Steps{"0x1006:0=E8030000", "0x1017:0=0100", "0x2000:0=01"}));
+  EXPECT_EQ(told(present, wanted), (Steps{"0x2000:0=01", "0x1006:0=E8030000", "0x1017:0=0100"}));
 }
 
 }  // namespace

@@ -26,6 +26,17 @@ TEST(BusUrl, TellsTheBitrateOfASerialAdapter) {
   EXPECT_EQ(bitrate_of("local:x"), std::nullopt);
 }
 
+/// What a drive is to store follows from it: a bus of which nothing is known runs at none.
+TEST(BusUrl, RunsAtABitrateThatIsKnownOrAtAnyWhereThereIsNone) {
+  EXPECT_TRUE(runs_at("slcan:/dev/ttyACM0@500k", 500'000));
+  EXPECT_FALSE(runs_at("slcan:/dev/ttyACM0@500k", 250'000));
+  EXPECT_TRUE(runs_at("sim:gsd600@1", 250'000));
+  EXPECT_TRUE(runs_at("local:cell", 250'000));
+  for (const auto* url :
+       {"socketcand://192.0.2.1/can0", "gateway://192.0.2.1:6000", "nosuchcan7", "replay:a.log"})
+    EXPECT_FALSE(runs_at(url, 500'000)) << url;
+}
+
 TEST(BusUrl, OnlySocketcandHasNoRemoteFrames) {
   EXPECT_FALSE(carries_remote_frames("socketcand://cabinet/can0"));
   for (const char* url : {"can0", "socketcan:can0", "slcan:/dev/ttyACM0@1M", "local:x"})

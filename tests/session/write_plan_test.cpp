@@ -77,12 +77,28 @@ TEST(PlanOfWrites, SwitchesAllPdosOffBeforeItSwitchesOneOn) {
   EXPECT_EQ(told(plan_writes(&profile, present, wanted)), steps);
 }
 
-TEST(PlanOfWrites, ChangesPdosBetweenWhatStandsBelowAndAboveThem) {
-  const auto present = with(two_pdos(), {{{0x1017, 0}, {0, 0}}, {{0x2000, 1}, {0, 0}}});
-  const auto wanted =
-      with(present, {{{0x1017, 0}, {100, 0}}, {{0x1801, 1}, {0x81, 0x02, 0, 0x80}}, {{0x2000, 1}, {1, 0}}});
-  EXPECT_EQ(told(plan_writes(nullptr, present, wanted)),
-            (Steps{"0x1017:0=6400", "0x1801:1=81020080", "0x2000:1=0100"}));
+TEST(PlanOfWrites, WritesAddressParametersCommunicationPdosHeartbeatInThisOrder) {
+  drive::Profile profile;
+  profile.rules.nmt.node_id = "0x2005";
+  profile.rules.nmt.bitrate = "0x2007";
+  const Values present = with(two_pdos(), {{{0x1016, 1}, {0, 0, 0, 0}},
+                                           {{0x1017, 0}, {0, 0}},
+                                           {{0x1014, 0}, {0x81, 0, 0, 0x80}},
+                                           {{0x2000, 1}, {0, 0}},
+                                           {{0x2005, 0}, {3}},
+                                           {{0x2007, 0}, {4}},
+                                           {{0x607F, 0}, {0}}});
+  const Values wanted = with(present, {{{0x1016, 1}, {100, 0, 5, 0}},
+                                       {{0x1017, 0}, {100, 0}},
+                                       {{0x1014, 0}, {0x82, 0, 0, 0x80}},
+                                       {{0x1801, 1}, {0x81, 0x02, 0, 0x80}},
+                                       {{0x2000, 1}, {1, 0}},
+                                       {{0x2005, 0}, {4}},
+                                       {{0x2007, 0}, {5}},
+                                       {{0x607F, 0}, {9}}});
+  EXPECT_EQ(told(plan_writes(&profile, present, wanted)),
+            (Steps{"0x2005:0=04", "0x2007:0=05", "0x2000:1=0100", "0x607F:0=09", "0x1014:0=82000080",
+                   "0x1801:1=81020080", "0x1016:1=64000500", "0x1017:0=6400"}));
 }
 
 TEST(PlanOfWrites, OpensAnAssignmentByItsCountToo) {

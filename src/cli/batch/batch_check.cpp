@@ -5,6 +5,7 @@
 
 #include "cli/parse.hpp"
 #include "cli/terminal/prompt_words.hpp"
+#include "command/written_words.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -41,15 +42,18 @@ class Check {
     if (!settings) return fail(settings.error());
     auto parts = shell_->parts_of_line(*parsed, *settings);
     if (!parts) return fail(parts.error());
-    if (parts->empty()) return check_part(*parsed, *settings);
+    if (parts->empty()) return check_part(*parsed, {*settings, {}});
     for (const auto& part : *parts)
-      if (const auto right = check_part(*parsed, part.settings); !right) return right;
+      if (const auto right = check_part(*parsed, part); !right) return right;
     return {};
   }
 
-  Result<void> check_part(const ParsedLine& line, const Settings& settings) {
+  Result<void> check_part(const ParsedLine& line, const LinePart& part) {
     command::Context context;
-    if (const auto ready = prepare(line, settings, context); !ready) return ready;
+    if (const auto ready = prepare(line, part.settings, context); !ready) return ready;
+    for (const auto* axis : part.axes)
+      if (axis->load) context.loads.emplace(axis->node, *axis->load);
+    if (const auto right = command::check_written(*line.command, line.arguments); !right) return right;
     if (line.command->check == nullptr) return {};
     return line.command->check(context, line.arguments);
   }

@@ -1,11 +1,15 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace servoctl::cli {
+
+/// Who takes the line apart: what a backslash does within quotes.
+enum class LineSyntax : std::uint8_t { servoctl, bash, zsh, fish };
 
 /// A line of which the last word is not ready.
 struct BegunLine {
@@ -16,10 +20,12 @@ struct BegunLine {
   /// Bytes of `last` before the piece that a shell completes: what is behind the quote that is open, else
   /// behind the last sign that breaks words there.
   std::size_t kept = 0;
+  bool comment = false;  ///< The end stands in a comment: there is no word to complete.
 };
 
-/// As split_words(), for a line in which a quote may still be open. `breaks`: signs that break a word for who
-/// asks, `:=` of $COMP_WORDBREAKS, but not for the program.
-BegunLine begun_line(std::string_view line, std::string_view breaks = {});
+/// As split_words(), or as that shell does, for a line in which a quote may still be open. `breaks`: signs
+/// that break a word for who asks, `:=` of $COMP_WORDBREAKS, but not for the program.
+BegunLine begun_line(std::string_view line, std::string_view breaks = {},
+                     LineSyntax syntax = LineSyntax::servoctl);
 
 }  // namespace servoctl::cli

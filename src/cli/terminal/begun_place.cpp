@@ -15,7 +15,7 @@ std::optional<std::string> value_of(const std::vector<std::string>& words, std::
   std::optional<std::string> out;
   for (std::size_t i = 0; i < words.size() && words[i] != "--"; ++i) {
     const std::string_view word = words[i];
-    if ((word == name || word == short_name) && i + 1 < words.size())
+    if ((word == name || (!short_name.empty() && word == short_name)) && i + 1 < words.size())
       out = words[++i];
     else if (word.starts_with(name) && word.substr(name.size()).starts_with("="))
       out = std::string(word.substr(name.size() + 1));

@@ -44,6 +44,26 @@ std::string common_beginning(std::span<const Candidate> candidates) {
   return out;
 }
 
+void prefer_exact(std::vector<Candidate>& candidates, std::string_view typed) {
+  const auto is_exact = [typed](const Candidate& one) { return one.word.starts_with(typed); };
+  const std::vector<Candidate> all = candidates;
+  std::erase_if(candidates, [&](const Candidate& one) {
+    return !is_exact(one) && std::any_of(all.begin(), all.end(), [&](const Candidate& other) {
+      return is_exact(other) && equals_nocase(other.word, one.word);
+    });
+  });
+}
+
+std::string begun_further(std::span<const Candidate> candidates, std::string_view typed) {
+  auto common = common_beginning(candidates);
+  if (common.size() <= typed.size()) return {};
+  const auto begun = std::string_view(common).substr(0, typed.size());
+  const bool alike = std::all_of(candidates.begin(), candidates.end(),
+                                 [&](const Candidate& one) { return one.word.starts_with(begun); });
+  if (alike || !equals_nocase(begun, typed)) return common;
+  return std::string(typed) + common.substr(typed.size());
+}
+
 std::vector<std::string> candidate_rows(std::span<const Candidate> candidates, std::size_t columns,
                                         std::size_t rows) {
   if (candidates.empty() || rows == 0 || columns < 4) return {};

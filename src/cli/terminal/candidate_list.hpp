@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace servoctl::cli {
@@ -14,8 +15,16 @@ struct Candidate {
   bool operator==(const Candidate&) const = default;
 };
 
+/// Takes away what begins as `typed` but for the case of its letters, where another is called the same and
+/// begins exactly so: `lift` beside `Lift`.
+void prefer_exact(std::vector<Candidate>& candidates, std::string_view typed);
+
 /// How far all begin alike, in the letters of the first; ASCII case ignored.
 std::string common_beginning(std::span<const Candidate> candidates);
+
+/// What stands for `typed` where any of several may be meant: as far as all begin alike. What was typed stays
+/// as it is where they differ in the case of just these letters. Empty where nothing is to be changed.
+std::string begun_further(std::span<const Candidate> candidates, std::string_view typed);
 
 /// The words in at most so many rows: with their hints, one below the other, where all fit; else in columns.
 /// What is beyond that is counted in the last row.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/regular_files.hpp"
 #include "cli/terminal/begun_line.hpp"
 #include "command/help_text.hpp"
 #include "command/prompt_words.hpp"
@@ -133,18 +134,22 @@ void add_all(Candidates& out, const std::vector<std::string>& words, const std::
 }  // namespace
 
 Offer complete(std::string_view line, Shell& shell) {
+  const RegularFilesOnly regular;
   const auto begun = begun_line(line);
+  if (begun.comment) return {};
   const auto words = shell.name_axes(begun.words, match_command(begun.words));
   const auto place = begun_place(words, shell);
   Candidates found(begun.last, shell, place);
   if (!add_prompt_words(found, words)) add_all(found, words, begun.last, place.settings.nodes_typed);
   Offer out{.typed = begun.typed, .candidates = found.take(), .note = found.note()};
+  prefer_exact(out.candidates, begun.last);
   for (auto& one : out.candidates)
     if (one.word.find_first_of(kNotPlain) != std::string::npos) one.word = as_word(one.word);
   return out;
 }
 
 Candidates complete_in_shell(const std::vector<std::string>& words, const std::string& begun, Shell& shell) {
+  const RegularFilesOnly regular;
   const auto named = shell.name_axes(words, match_command(words));
   auto place = begun_place(named, shell);
   place.in_shell = true;

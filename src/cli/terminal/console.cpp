@@ -5,7 +5,9 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,12 +17,36 @@
 #include "base/signal_wait.hpp"
 #include "cli/terminal/signals.hpp"
 #include "cli/terminal/terminal_keys.hpp"
+#include "report/catalogue.hpp"
 
 namespace servoctl::cli {
 namespace {
 
 /// For who reads while a drive is energised and nothing is to be done about it.
 constexpr Duration kPatience = std::chrono::seconds(2);
+
+/// How lines for people begin, with what Chinese readers see there.
+constexpr std::pair<std::string_view, std::string_view> kLeads[] = {
+    {"error: ", "错误："}, {"  hint: ", "  建议："}, {"notice: ", "提示："}, {"warning: ", "警告："}};
+
+/// The lines that begin so in Chinese; others are what somebody laid out, or asked, in Chinese already.
+std::string remarks_in_chinese(std::string_view text) {
+  std::string out;
+  while (!text.empty()) {
+    const auto end = text.find('\n');
+    const auto line = text.substr(0, end);
+    const auto* lead = std::find_if(std::begin(kLeads), std::end(kLeads),
+                                    [&](const auto& one) { return line.starts_with(one.first); });
+    if (lead == std::end(kLeads))
+      out += line;
+    else
+      (out += lead->second) += report::in_chinese(line.substr(lead->first.size()));
+    if (end == std::string_view::npos) break;
+    out += '\n';
+    text.remove_prefix(end + 1);
+  }
+  return out;
+}
 
 }  // namespace
 
@@ -33,11 +59,15 @@ void Console::out(std::string_view text) {
 }
 
 void Console::err(std::string_view text) {
-  const auto shown = printable_lines(text);
+  const auto shown = printable_lines(chinese_ ? remarks_in_chinese(text) : std::string(text));
   write_err(shown);
   if (log_ == nullptr) return;
   log_->answered(shown);
   check_log();
+}
+
+std::string Console::in_language(std::string_view text) const {
+  return chinese_ ? report::in_chinese(text) : std::string(text);
 }
 
 void Console::log_typed(std::string_view line) {
@@ -147,6 +177,7 @@ std::unique_ptr<show::LiveView> StandardConsole::open_view(const show::LiveView:
                                             .size = [this] { return screen_size(); },
                                             .closed = [this] { view_ = nullptr; }},
                                      open_keys());
+  view->set_chinese(chinese());
   view_ = view.get();
   return view;
 }

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -36,6 +37,12 @@ class Console {
   }
   void set_quiet(bool quiet) { quiet_ = quiet; }
   bool is_quiet() const { return quiet_; }
+  /// Whether who reads wants Chinese: what err() is given as `error: …`, `  hint: …`, `notice: …` or
+  /// `warning: …`, what a table on the terminal says and how far something has come is put into it.
+  void set_chinese(bool chinese) { chinese_ = chinese; }
+  bool chinese() const { return chinese_; }
+  /// The text in the language of who reads.
+  std::string in_language(std::string_view text) const;
   /// Text of the line that is being typed, with what moves the cursor; only where somebody looks.
   virtual void draw(std::string_view text) { (void)text; }
   /// Shows this line in place of the one shown before; an empty one wipes it. Only where somebody looks.
@@ -85,6 +92,7 @@ class Console {
   std::function<Duration()> service_;
   std::unique_ptr<LineLog> log_;
   bool quiet_ = false;
+  bool chinese_ = false;
 };
 
 /// Standard streams of the process.

@@ -181,15 +181,16 @@ void LineEditor::complete() {
     if (!offer.note.empty()) below_ = {clip(printable(offer.note), usable_size(host_.size()).columns - 1)};
     return;
   }
-  const auto common = common_beginning(offer.candidates);
   const auto typed = std::string_view(before).substr(before.size() - std::min(offer.typed, before.size()));
   if (offer.candidates.size() == 1) {
     // What goes on behind it: a URL, a folder, a list.
-    const bool opens = common.find_last_of(":/=") == common.size() - 1;
-    line_.replace_before(typed.size(), common + (opens ? "" : " "));
+    const auto& only = offer.candidates.front().word;
+    const bool opens = only.find_last_of(":/=") == only.size() - 1;
+    line_.replace_before(typed.size(), only + (opens ? "" : " "));
     return;
   }
-  if (common.size() > typed.size()) line_.replace_before(typed.size(), common);
+  if (const auto further = begun_further(offer.candidates, typed); !further.empty())
+    line_.replace_before(typed.size(), further);
   below_ = candidate_rows(offer.candidates, usable_size(host_.size()).columns, rows_for_list());
 }
 

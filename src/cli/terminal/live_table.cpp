@@ -9,6 +9,7 @@
 
 #include "base/printable.hpp"
 #include "base/text.hpp"
+#include "report/catalogue.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -83,12 +84,26 @@ void LiveTable::update() {
   shown_ = rows_;
 }
 
+/// In the language of who reads.
+std::string LiveTable::shown(std::string_view text) {
+  constexpr std::size_t kMostKnown = 4096;
+  if (!chinese_) return std::string(text);
+  if (const auto found = known_.find(text); found != known_.end()) return found->second;
+  if (known_.size() >= kMostKnown) known_.clear();
+  return known_.emplace(std::string(text), report::in_chinese(text)).first->second;
+}
+
+std::string LiveTable::cell(const Row& row, std::size_t column) {
+  const auto& title = layout_.columns[column].title;
+  return printable(title == "node" || title == "name" ? row.cells[column] : shown(row.cells[column]));
+}
+
 void LiveTable::measure() {
   widest_.resize(layout_.columns.size());
   for (std::size_t i = 0; i < widest_.size(); ++i) {
-    widest_[i] =
-        std::max(widest_[i], display_width(layout_.columns[i].title) + 1);  // And the mark of the order.
-    for (const auto& row : shown_) widest_[i] = std::max(widest_[i], display_width(printable(row.cells[i])));
+    widest_[i] = std::max(widest_[i],
+                          display_width(shown(layout_.columns[i].title)) + 1);  // And the mark of the order.
+    for (const auto& row : shown_) widest_[i] = std::max(widest_[i], display_width(cell(row, i)));
   }
 }
 
@@ -142,22 +157,23 @@ std::vector<std::string> LiveTable::lines(std::size_t width, std::size_t height)
   measure();
   const auto widths = fitted(width);
   std::vector<std::string> head;
-  for (const auto& column : layout_.columns) head.push_back(column.title);
+  for (const auto& column : layout_.columns) head.push_back(shown(column.title));
   if (sorted_by_) head[*sorted_by_] += '*';
   const std::size_t others = remark_.empty() ? 2 : 3;  // Heading, remark, keys.
   const auto room = height > others ? height - others : 0;
   const auto rows = in_order();
-  const auto shown = std::min(room, rows.size());
-  first_ = std::min(first_, rows.size() - shown);
+  const auto count = std::min(room, rows.size());
+  first_ = std::min(first_, rows.size() - count);
   std::vector<std::string> out = {line(head, widths)};
-  for (std::size_t i = first_; i < first_ + shown; ++i) {
+  for (std::size_t i = first_; i < first_ + count; ++i) {
     std::vector<std::string> cells;
-    for (const auto& cell : rows[i]->cells) cells.push_back(printable(cell));
+    for (std::size_t column = 0; column < rows[i]->cells.size(); ++column)
+      cells.push_back(cell(*rows[i], column));
     cells.push_back(sparkline(rows[i]->plotted, widths.back()));
     out.push_back(line(cells, widths));
   }
-  if (!remark_.empty()) out.push_back(printable(remark_));
-  out.push_back(footer(first_, shown));
+  if (!remark_.empty()) out.push_back(printable(shown(remark_)));
+  out.push_back(shown(footer(first_, count)));
   for (auto& each : out) each = clip(each, width);
   if (out.size() > height) out.resize(height);
   return out;

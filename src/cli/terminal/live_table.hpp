@@ -27,6 +27,9 @@ class LiveTable {
   void set(std::string_view row, std::vector<std::string> cells, std::optional<double> number);
   void remark(std::string text) { remark_ = std::move(text); }
 
+  /// Headings, remarks and cells in Chinese, but for those under `node` and `name`.
+  void set_chinese(bool chinese) { chinese_ = chinese; }
+
   /// Paused, or no longer.
   void pause() { paused_ = !paused_; }
   /// By the first column, then by each of the others, then as the rows came.
@@ -51,6 +54,8 @@ class LiveTable {
   /// Widths of the columns, and at last that of the plots (0: none), which fit into `width`.
   std::vector<std::size_t> fitted(std::size_t width) const;
   std::string line(const std::vector<std::string>& cells, const std::vector<std::size_t>& widths) const;
+  std::string shown(std::string_view text);
+  std::string cell(const Row& row, std::size_t column);
   std::string footer(std::size_t first, std::size_t shown) const;
 
   show::LiveView::Layout layout_;
@@ -62,6 +67,8 @@ class LiveTable {
   std::string remark_;
   std::size_t first_ = 0;  ///< Row at the top.
   bool paused_ = false;
+  bool chinese_ = false;
+  std::map<std::string, std::string, std::less<>> known_;  ///< In Chinese: the same is drawn again and again.
 };
 
 }  // namespace servoctl::cli

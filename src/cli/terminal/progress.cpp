@@ -40,12 +40,13 @@ bool Progress::is_due(TimePoint now) {
 void Progress::update(std::size_t done, std::optional<std::size_t> total, TimePoint now) {
   if (!is_due(now)) return;
   const std::chrono::duration<double> elapsed = now - *begin_;
-  console_->show_progress(line_of(done, total, static_cast<double>(done) / elapsed.count()));
+  console_->show_progress(
+      console_->in_language(line_of(done, total, static_cast<double>(done) / elapsed.count())));
 }
 
 void Progress::update_list(std::size_t done, std::size_t total, TimePoint now) {
   if (total > 0 && is_due(now))
-    console_->show_progress(fmt::format("{} of {} objects", bar(done, total), total));
+    console_->show_progress(console_->in_language(fmt::format("{} of {} objects", bar(done, total), total)));
 }
 
 void Progress::end() {

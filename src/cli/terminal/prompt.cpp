@@ -234,7 +234,7 @@ void Prompt::show_notices() {
   const auto notices = shell_->take_notices(loaded ? *loaded : nullptr, settings.chinese);
   if (notices.empty()) return;
   if (edits_) console_->draw(editor_.wipe());
-  for (const auto& notice : notices) say("* " + printable(notice) + "\n");
+  for (const auto& notice : notices) say("* " + printable(console_->in_language(notice)) + "\n");
   draw();
 }
 

@@ -30,8 +30,10 @@ int g_terminal = -1;
 termios g_mode{};
 std::string_view g_last_words;
 
-/// tcsetattr() and write() may be called by a handler.
+/// tcsetattr(), tcgetpgrp() and write() may be called by a handler. From the background it would stop the
+/// process (SIGTTOU), and the terminal is another's.
 void give_terminal_back() {
+  if (g_has_mode != 0 && ::tcgetpgrp(g_terminal) != ::getpgrp()) return;
   if (g_has_mode != 0) (void)::tcsetattr(g_terminal, TCSANOW, &g_mode);
   if (!g_last_words.empty()) (void)!::write(STDOUT_FILENO, g_last_words.data(), g_last_words.size());
 }

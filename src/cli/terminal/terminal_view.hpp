@@ -35,6 +35,8 @@ class TerminalView final : public show::LiveView {
   void refresh(TimePoint now) override;
   bool is_over() const override { return over_; }
 
+  /// As LiveTable::set_chinese().
+  void set_chinese(bool chinese) { table_.set_chinese(chinese); }
   /// Makes room for other text, which stands above the table from then on.
   void step_aside();
 

@@ -1,0 +1,3 @@
+// The parser of toml++, compiled here and nowhere else.
+#define TOML_IMPLEMENTATION
+#include "drive/toml_reader.hpp"

@@ -1,0 +1,118 @@
+#include "report/catalogue.hpp"
+
+#include <algorithm>
+#include <map>
+#include <unordered_set>
+
+#include "base/number.hpp"
+#include "base/text.hpp"
+#include "report/text_parts.hpp"
+
+namespace servoctl::report {
+namespace {
+
+/// What has fewer says too little to be known by: `{} of {}`.
+constexpr std::size_t kLeastLetters = 3;
+
+/// Letters of a piece of a sentence that is known by itself.
+constexpr std::size_t kLeastOfPiece = 8;
+
+/// Of an entry: what stands at these arguments are names of commands, files or axes.
+constexpr std::string_view kNames = "names:";
+
+bool is_word_char(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+}
+
+std::unordered_set<std::string> words_of(std::string_view text) {
+  std::unordered_set<std::string> out;
+  for (std::size_t begin = 0; begin < text.size();) {
+    std::size_t end = begin;
+    while (end < text.size() && is_word_char(text[end])) ++end;
+    if (end > begin) out.emplace(text.substr(begin, end - begin));
+    begin = std::max(end, begin + 1);
+  }
+  return out;
+}
+
+/// Without brackets around all of it.
+std::string_view unbracketed(std::string_view text, std::string_view open, std::string_view close) {
+  if (!text.starts_with(open) || !text.ends_with(close) || text.size() < open.size() + close.size())
+    return text;
+  const auto inner = text.substr(open.size(), text.size() - open.size() - close.size());
+  return inner.find(open) == std::string_view::npos ? inner : text;
+}
+
+/// As bare(), of a text in Chinese.
+std::string_view bare_chinese(std::string_view text) {
+  for (bool again = true; again;) {
+    again = false;
+    for (const std::string_view mark : {" ", "\t", "\n", "，", "；", "：", "。", "、", ",", ";", ":", "."}) {
+      if (text.starts_with(mark)) text.remove_prefix(mark.size()), again = true;
+      if (text.ends_with(mark)) text.remove_suffix(mark.size()), again = true;
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+Catalogue::Catalogue(const std::vector<PoEntry>& entries) {
+  std::unordered_map<std::string, std::size_t> known;
+  for (const auto& entry : entries) {
+    if (entry.text.empty()) continue;
+    const auto id = unbracketed(bare(entry.id).text, "(", ")");
+    const auto text = unbracketed(unbracketed(bare_chinese(entry.text), "（", "）"), "(", ")");
+    Phrase phrase(id);
+    if (phrase.places().empty()) {
+      whole_.emplace(phrase.pieces().front(), Phrase(text).with({}));
+      const bool before = entry.id.starts_with(' ');
+      const bool behind = entry.id.ends_with(' ');
+      if (phrase.letters() < kLeastOfPiece || before == behind) continue;
+      // ` has no link`, `no unit answered on `: a name stands beside it.
+      const auto place = [&](std::string_view words, std::string_view blank) {
+        return before ? "{}" + std::string(blank) + std::string(words)
+                      : std::string(words) + std::string(blank) + "{}";
+      };
+      phrase = Phrase(place(id, " "));
+      patterns_.push_back({phrase, Phrase(place(text, " "))});
+      for (const auto& word : words_of(id)) ++known[word];
+      continue;
+    }
+    for (const auto& remark : entry.remarks)
+      if (remark.starts_with(kNames))
+        for (const auto name : split(std::string_view(remark).substr(kNames.size()), ','))
+          if (const auto argument = parse_digits(trim(name), 10))
+            phrase.keep(static_cast<std::size_t>(*argument));
+    if (phrase.letters() < kLeastLetters || phrase.words().empty()) continue;
+    for (const auto& word : words_of(id)) ++known[word];
+    patterns_.push_back({std::move(phrase), Phrase(text)});
+  }
+  for (std::size_t i = 0; i < patterns_.size(); ++i) {
+    const auto words = patterns_[i].id.words();
+    const auto rarest = std::min_element(words.begin(), words.end(), [&](auto a, auto b) {
+      return known[std::string(a)] < known[std::string(b)];
+    });
+    by_word_[std::string(*rarest)].push_back(i);
+  }
+}
+
+std::string_view Catalogue::whole(std::string_view text) const {
+  const auto found = whole_.find(std::string(text));
+  return found == whole_.end() ? std::string_view() : std::string_view(found->second);
+}
+
+std::vector<const Catalogue::Pattern*> Catalogue::candidates(std::string_view text) const {
+  std::vector<const Pattern*> out;
+  for (const auto& word : words_of(text))
+    if (const auto found = by_word_.find(word); found != by_word_.end())
+      for (const auto i : found->second) out.push_back(&patterns_[i]);
+  // Of two with as many letters that with more marks, then the earlier one.
+  std::sort(out.begin(), out.end(), [](const Pattern* a, const Pattern* b) {
+    if (a->id.letters() != b->id.letters()) return a->id.letters() > b->id.letters();
+    return a->id.size() != b->id.size() ? a->id.size() > b->id.size() : a < b;
+  });
+  return out;
+}
+
+}  // namespace servoctl::report

@@ -1,0 +1,109 @@
+#include "report/catalogue.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <random>
+
+#include "report/chinese_value.hpp"
+
+namespace servoctl::report {
+namespace {
+
+Catalogue small_catalogue() {
+  return Catalogue({{"node {} did not answer within {} ms", "节点 {} 在 {} ms 内无应答"},
+                    {"node {}: {}", "节点 {}：{}"},
+                    {"{} of node {} is also sent with 0x{:X}", "节点 {1} 的 {0} 也以 0x{2} 发送"},
+                    {"the drive is in {}", "驱动器处于{}"},
+                    {"the drive is in fault", "驱动器故障"},
+                    {"fault", "故障"},
+                    {"quick stop active", "快速停机"},
+                    {"'{}' is not a command", "'{}' 不是命令"},
+                    {"{} time{} tried", "尝试了 {} 次{}"},
+                    {" (assumed)", "（推定）"},
+                    {", at most every {} ms", "，最短间隔 {} ms"},
+                    {"write 500ms or 2s", "写成 500ms 或 2s"},
+                    {"{}: {}", "{}：{}"},
+                    {"{:.1f} mm", "{} 毫米"}});
+}
+
+TEST(Catalogue, PutsNumbersAndTextsIntoThePlacesOfTheTranslation) {
+  const auto c = small_catalogue();
+  EXPECT_EQ(c.translated("node 3 did not answer within 500 ms"), "节点 3 在 500 ms 内无应答");
+  EXPECT_EQ(c.translated("TPDO2 of node 3 is also sent with 0x281"), "节点 3 的 TPDO2 也以 0x281 发送");
+}
+
+TEST(Catalogue, TranslatesWhatStandsAtAPlaceInTurn) {
+  const auto c = small_catalogue();
+  EXPECT_EQ(c.translated("node 1: the drive is in quick stop active"), "节点 1：驱动器处于快速停机");
+  EXPECT_EQ(c.translated("node 1: the drive is in limbo"), "节点 1：驱动器处于limbo");
+}
+
+TEST(Catalogue, TakesTheWholeTextAndThenThePatternWithTheMostLetters) {
+  const auto c = small_catalogue();
+  EXPECT_EQ(c.translated("the drive is in fault"), "驱动器故障");
+  EXPECT_EQ(c.translated("node 2 did not answer within 5 ms: fault"), "节点 2 在 5 ms 内无应答：故障");
+}
+
+TEST(Catalogue, LeavesQuotesBackticksAndNamesAsTheyAre) {
+  const auto c = small_catalogue();
+  EXPECT_EQ(c.translated("'fault' is not a command"), "'fault' 不是命令");
+  EXPECT_EQ(c.translated("`fault; fault`"), "`fault; fault`");
+  for (const auto* text : {"", ": ", "a.csv: my file", "--yes", "type of motor", "...", "0x10"})
+    EXPECT_EQ(c.translated(text), text);
+}
+
+TEST(Catalogue, TakesATextApartWhereItsPartsAreKnown) {
+  const auto c = small_catalogue();
+  EXPECT_EQ(c.translated("fault; write 500ms or 2s."), "故障；写成 500ms 或 2s。");
+  EXPECT_EQ(c.translated("fault (assumed), at most every 20 ms"), "故障（推定），最短间隔 20 ms");
+  EXPECT_EQ(c.translated("fault\n  quick stop active  fault\n"), "故障\n  快速停机  故障\n");
+}
+
+TEST(Catalogue, DropsTheSOfAnEnglishPlural) {
+  const auto c = small_catalogue();
+  EXPECT_EQ(c.translated("3 times tried"), "尝试了 3 次");
+  EXPECT_EQ(c.translated("1 time tried"), "尝试了 1 次");
+}
+
+TEST(Catalogue, TakesOnlyANumberWhereANumberStands) {
+  const auto c = small_catalogue();
+  EXPECT_EQ(c.translated("TPDO2 of node 3 is also sent with 0xyz"), "TPDO2 of node 3 is also sent with 0xyz");
+}
+
+/// What is tried grows with the square of a text at worst. The limit is far above what that takes under the
+/// sanitizers on a busy machine, and far below what anything that grows faster would take.
+TEST(Catalogue, EndsSoonWhateverItIsGiven) {
+  const auto& c = chinese();
+  const std::string pieces[] = {"node ", "the ", "fault", ": ", "; ", ", ",   "'",  "`", "(", ")",   " of ",
+                                "12",    " - ",  "{}",    "\n", ". ", "中文", "  ", "a", "s", "is ", "drive"};
+  std::mt19937 random(7);
+  const auto begin = std::chrono::steady_clock::now();
+  for (int round = 0; round < 100; ++round) {
+    std::string text;
+    for (std::size_t i = random() % 60; i > 0; --i) text += pieces[random() % std::size(pieces)];
+    (void)c.translated(text);
+  }
+  std::string longest;
+  while (longest.size() < 25'000) longest += pieces[random() % std::size(pieces)];
+  std::erase(longest, '\n');
+  (void)c.translated(longest);
+  (void)c.translated(std::string(25'000, ':'));
+  (void)c.translated(std::string(25'000, '('));
+  (void)c.translated(std::string(25'000, '\''));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
+}
+
+TEST(ChineseValue, TranslatesHeadingsAndCellsButNoOwnWords) {
+  Table table;
+  table.columns = {{"node"}, {"state"}, {"device_name"}};
+  table.rows.push_back({1, "fault", "fault"});
+  const auto text = to_text(chinese_value(Value(std::move(table))));
+  EXPECT_NE(text.find("节点"), std::string::npos) << text;
+  EXPECT_NE(text.find("故障"), std::string::npos) << text;
+  EXPECT_NE(text.find("fault"), std::string::npos) << text;
+  EXPECT_EQ(to_text(chinese_value(Value(Record{{"energised", true}}))).find("yes"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace servoctl::report
