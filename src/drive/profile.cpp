@@ -265,8 +265,10 @@ Profile profile_of_sheet(od::EdsFile sheet, std::string name, std::span<const fs
   return profile;
 }
 
+fs::path rules_file(const Family& family) { return with_extension(family.stem, ".toml"); }
+
 Result<Rules> load_rules(const Family& family) {
-  const auto path = with_extension(family.stem, ".toml");
+  const auto path = rules_file(family);
   const auto text = read_file(path);
   if (!text) return fail(text.error());
   return parse_rules(*text, path.string());

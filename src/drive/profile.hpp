@@ -81,6 +81,8 @@ Result<Profile> load_profile(const Family& family, std::span<const std::filesyst
 /// drives.
 Profile profile_of_sheet(od::EdsFile sheet, std::string name, std::span<const std::filesystem::path> folders);
 
+/// The `.toml` of a family.
+std::filesystem::path rules_file(const Family& family);
 /// Only the rules of a family, for recognising drives.
 Result<Rules> load_rules(const Family& family);
 

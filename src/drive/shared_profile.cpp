@@ -14,15 +14,40 @@ namespace servoctl::drive {
 namespace fs = std::filesystem;
 namespace {
 
-struct KnownProfiles {
+template <typename Read>
+Result<std::shared_ptr<const Read>> share(Result<Read> read) {
+  return std::move(read).map([](Read value) { return std::make_shared<const Read>(std::move(value)); });
+}
+
+/// What was read, by the state of the files that it stands in.
+template <typename Read>
+struct Known {
   std::mutex mutex;
-  std::map<std::string, std::shared_ptr<const Profile>> by_files;
+  std::map<std::string, std::shared_ptr<const Read>> by_files;
 };
 
 /// Never destroyed: to take the tables apart at the end of the process would cost each command its time.
-KnownProfiles& known_profiles() {
-  static auto& known = *new KnownProfiles;
-  return known;
+template <typename Read>
+Known<Read>& known() {
+  static auto& all = *new Known<Read>;
+  return all;
+}
+
+/// As it was read before, or what `load` gives now, which is kept where it could be read.
+template <typename Read, typename Load>
+Result<std::shared_ptr<const Read>> known_or(std::string key, const Load& load) {
+  auto& all = known<Read>();
+  const std::lock_guard lock(all.mutex);
+  if (const auto before = all.by_files.find(key); before != all.by_files.end()) return before->second;
+  auto loaded = share(load());
+  if (loaded) all.by_files.emplace(std::move(key), *loaded);
+  return loaded;
+}
+
+std::string state_of(const fs::path& file) {
+  std::error_code gone;
+  const auto time = fs::last_write_time(file, gone).time_since_epoch().count();
+  return fmt::format("\n{} {} {}", file.filename().string(), time, fs::file_size(file, gone));
 }
 
 /// What tells the files of a family from what they were before they were changed.
@@ -32,11 +57,7 @@ std::string state_of(const Family& family) {
   std::error_code error;
   for (fs::directory_iterator it(family.stem.parent_path(), error), end; !error && it != end;
        it.increment(error)) {
-    const auto name = it->path().filename().string();
-    if (!name.starts_with(begin)) continue;
-    std::error_code gone;
-    const auto time = it->last_write_time(gone).time_since_epoch().count();
-    out += fmt::format("\n{} {} {}", name, time, it->file_size(gone));
+    if (it->path().filename().string().starts_with(begin)) out += state_of(it->path());
   }
   return out;
 }
@@ -48,15 +69,13 @@ Result<std::shared_ptr<const Profile>> shared_profile(std::string_view family,
   const auto families = find_families(folders);
   const auto found = std::find_if(families.begin(), families.end(),
                                   [&](const Family& each) { return equals_nocase(each.name, family); });
-  const auto share = [](Profile profile) { return std::make_shared<const Profile>(std::move(profile)); };
-  if (found == families.end()) return load_profile(family, folders).map(share);
-  auto& known = known_profiles();
-  const std::lock_guard lock(known.mutex);
-  auto key = state_of(*found);
-  if (const auto before = known.by_files.find(key); before != known.by_files.end()) return before->second;
-  auto loaded = load_profile(*found, folders).map(share);
-  if (loaded) known.by_files.emplace(std::move(key), *loaded);
-  return loaded;
+  if (found == families.end()) return share(load_profile(family, folders));
+  return known_or<Profile>(state_of(*found), [&] { return load_profile(*found, folders); });
+}
+
+Result<std::shared_ptr<const Rules>> shared_rules(const Family& family) {
+  const auto file = rules_file(family);
+  return known_or<Rules>(file.parent_path().string() + state_of(file), [&] { return load_rules(family); });
 }
 
 }  // namespace servoctl::drive

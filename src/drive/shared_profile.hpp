@@ -16,4 +16,8 @@ namespace servoctl::drive {
 Result<std::shared_ptr<const Profile>> shared_profile(std::string_view family,
                                                       std::span<const std::filesystem::path> folders);
 
+/// As load_rules(), read once by the process as long as the file stays as it is. Whoever looks for the family
+/// of a drive asks for those of all families, at each line of a prompt.
+Result<std::shared_ptr<const Rules>> shared_rules(const Family& family);
+
 }  // namespace servoctl::drive

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/text.hpp"
+#include "drive/shared_profile.hpp"
 #include "drive/standard_objects.hpp"
 
 namespace servoctl::session {
@@ -96,11 +97,13 @@ void judge_by_others(const Identity& identity, const drive::Profile& profile,
   for (const auto& family : families) {
     if (equals_nocase(family.name, profile.family) || equals_nocase(family.name, profile.rules.parent))
       continue;
-    const auto rules = drive::load_rules(family);
-    if (!rules || !is_telling(*rules) || !may_be(identity, *rules)) continue;
+    const auto shared = drive::shared_rules(family);
+    if (!shared) continue;
+    const auto& rules = **shared;
+    if (!is_telling(rules) || !may_be(identity, rules)) continue;
     verdict.kind = FamilyVerdict::Kind::contradicted;
-    verdict.object = rules->identity.front().object;
-    verdict.why = fmt::format("its identity is that of {} ({})", family.name, held(identity, *rules));
+    verdict.object = rules.identity.front().object;
+    verdict.why = fmt::format("its identity is that of {} ({})", family.name, held(identity, rules));
     return;
   }
 }

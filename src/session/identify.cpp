@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "drive/shared_profile.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/answer.hpp"
 #include "session/can_network.hpp"
@@ -112,12 +113,14 @@ void look_for_families(Session& session, std::span<Identity> identities,
                        std::span<const drive::Family> families) {
   std::vector<SdoRequest> requests;
   std::vector<Identity*> whose;
+  if (session.modbus() != nullptr) families = {};
   for (const auto& family : families) {
-    const auto rules = drive::load_rules(family);
-    if (!rules || session.modbus() != nullptr) continue;
+    const auto shared = drive::shared_rules(family);
+    if (!shared) continue;
+    const auto& rules = **shared;
     for (auto& identity : identities)
-      if (fits(identity, *rules))
-        for (const auto object : rules->identity_looks) {
+      if (fits(identity, rules))
+        for (const auto object : rules.identity_looks) {
           requests.push_back({identity.node, object, {}});
           whose.push_back(&identity);
         }

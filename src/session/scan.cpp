@@ -5,6 +5,7 @@
 #include <array>
 
 #include "canopen/node_list.hpp"
+#include "drive/shared_profile.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/answer.hpp"
 #include "session/can_network.hpp"
@@ -116,12 +117,13 @@ Result<std::vector<std::uint8_t>> nodes_present(Session& session) {
 
 std::vector<Guess> guess_families(const Identity& identity, std::span<const drive::Family> families) {
   std::vector<Guess> out;
+  if (identity.by_registers) return out;  // Registers are numbers: every device has some.
   for (const auto& family : families) {
-    const auto rules = drive::load_rules(family);
-    if (!rules) continue;
-    if (identity.by_registers) continue;  // Registers are numbers: every device has some.
-    const bool generic = fits_as_generic(identity, *rules);
-    if (generic || may_be(identity, *rules)) out.push_back({family.name, rules->identity_certain, generic});
+    const auto shared = drive::shared_rules(family);
+    if (!shared) continue;
+    const auto& rules = **shared;
+    const bool generic = fits_as_generic(identity, rules);
+    if (generic || may_be(identity, rules)) out.push_back({family.name, rules.identity_certain, generic});
   }
   const auto rank = [](const Guess& guess) { return guess.certain ? 0 : guess.generic ? 2 : 1; };
   std::stable_sort(out.begin(), out.end(), [&](const Guess& a, const Guess& b) { return rank(a) < rank(b); });
@@ -131,9 +133,10 @@ std::vector<Guess> guess_families(const Identity& identity, std::span<const driv
 std::vector<Guess> guess_by_sii(const Identity& identity, std::span<const drive::Family> families) {
   std::vector<Guess> out;
   for (const auto& family : families) {
-    const auto rules = drive::load_rules(family);
-    if (rules && rules->coe.exists() && agrees_in_numbers(identity, *rules))
-      out.push_back({family.name, false, false});
+    const auto shared = drive::shared_rules(family);
+    if (!shared) continue;
+    const auto& rules = **shared;
+    if (rules.coe.exists() && agrees_in_numbers(identity, rules)) out.push_back({family.name, false, false});
   }
   return out;
 }
