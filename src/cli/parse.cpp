@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <limits>
+#include <map>
 #include "cli/cli11.hpp"
 
 #include "base/text.hpp"
@@ -47,8 +48,8 @@ std::size_t first_plain_word(const std::vector<std::string>& words) {
   return std::min(i, words.size());
 }
 
-/// One fresh CLI::App a line: no value can leak from one line of the prompt to the next. Every value stays
-/// text, because CLI11 reads "010" as 8 and refuses "6040h".
+/// Every value stays text, because CLI11 reads "010" as 8 and refuses "6040h". What one line gave is
+/// forgotten before the next is read.
 class LineParser {
  public:
   explicit LineParser(const Command& command)
@@ -102,6 +103,8 @@ class LineParser {
   }
 
   Result<void> take_words(std::vector<std::string> words) {
+    app_.clear();
+    for (auto& entry : bound_) entry.values.clear();
     std::reverse(words.begin(), words.end());  // CLI11 takes them from the back.
     try {
       app_.parse(std::move(words));
@@ -116,11 +119,10 @@ class LineParser {
   }
 
   /// How many words the arguments still take after these words.
-  std::size_t room_behind(const std::vector<std::string>& words) const {
-    LineParser before(*command_);
-    if (!before.take_words(words)) return 0;
+  std::size_t room_behind(const std::vector<std::string>& words) {
+    if (!take_words(words)) return 0;
     std::size_t room = 0;
-    for (const auto& entry : before.bound_) {
+    for (const auto& entry : bound_) {
       if (entry.parameter->name.starts_with("-")) continue;
       if (entry.parameter->many) return std::numeric_limits<std::size_t>::max();
       room += entry.values.empty() ? 1U : 0U;
@@ -203,6 +205,12 @@ class LineParser {
   std::vector<Bound> bound_;
 };
 
+/// Made once for each command: to bind its options takes CLI11 longer than to read a line of a batch.
+LineParser& parser_of(const Command& command) {
+  thread_local std::map<const Command*, LineParser> parsers;
+  return parsers.try_emplace(&command, command).first->second;
+}
+
 tl::unexpected<Error> unknown_command(const std::vector<std::string>& words, std::size_t first) {
   std::vector<std::string> paths;
   std::vector<std::string> in_group;
@@ -251,7 +259,7 @@ Result<ParsedLine> parse_line(const std::vector<std::string>& words) {
   auto rest = words;
   const auto begin = rest.begin() + static_cast<std::ptrdiff_t>(match.first);
   rest.erase(begin, begin + static_cast<std::ptrdiff_t>(match.used));
-  auto arguments = LineParser(*match.command).parse(std::move(rest));
+  auto arguments = parser_of(*match.command).parse(std::move(rest));
   if (!arguments) return fail(arguments.error());
   return ParsedLine{match.command, std::move(*arguments)};
 }

@@ -1,4 +1,4 @@
-// Words, command lines, settings and completion.
+// Words, settings and completion.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,7 +6,6 @@
 
 #include "base/text.hpp"
 #include "cli/line_runner.hpp"
-#include "cli/parse.hpp"
 #include "cli/terminal/completer.hpp"
 #include "cli/words.hpp"
 #include "recording_console.hpp"
@@ -28,74 +27,6 @@ TEST(Words, AreSplitAsAShellDoes) {
   EXPECT_EQ(split_words("# nothing").value(), Words{});
   EXPECT_FALSE(split_words("a 'b"));
   EXPECT_FALSE(split_words("a \"b"));
-}
-
-TEST(ParseLine, TakesGlobalOptionsOnBothSidesOfTheCommand) {
-  for (const auto& words : {Words{"-n", "3", "--bus", "can0", "param", "get", "Pn0202"},
-                            Words{"param", "get", "Pn0202", "--bus=can0", "-n3"},
-                            Words{"--bus", "can0", "param", "get", "-n", "3", "Pn0202"}}) {
-    const auto line = parse_line(words);
-    ASSERT_TRUE(line) << line.error().message;
-    EXPECT_EQ(line->command->path, "param get");
-    EXPECT_EQ(line->arguments.text("--bus"), "can0");
-    EXPECT_EQ(line->arguments.text("--node"), "3");
-    EXPECT_EQ(line->arguments.text("id"), "Pn0202");
-  }
-}
-
-TEST(ParseLine, LeavesValuesAsTheyAreWritten) {
-  const auto line = parse_line({"write", "6040h", "-010"});
-  ASSERT_TRUE(line) << line.error().message;
-  EXPECT_EQ(line->arguments.text("object"), "6040h");
-  EXPECT_EQ(line->arguments.text("value"), "-010");
-}
-
-TEST(ParseLine, TakesEveryWordBehindTwoDashesAsAValue) {
-  for (const auto* text :
-       {"", "-", "--", "-h", "--help", "--from=/etc/passwd", "--yes", "-n", "{}", "[a,b]", "%%", "a b"}) {
-    const auto line = parse_line({"write", "0x2000", "--type", "string", "--", text});
-    ASSERT_TRUE(line) << text << ": " << line.error().message;
-    EXPECT_EQ(line->arguments.text("object"), "0x2000");
-    EXPECT_EQ(line->arguments.text("--type"), "string");
-    ASSERT_TRUE(line->arguments.has("value")) << text;
-    EXPECT_EQ(line->arguments.text("value"), text);
-    EXPECT_FALSE(line->arguments.has("--yes"));
-    EXPECT_FALSE(line->arguments.has("--from"));
-  }
-  const auto many = parse_line({"read", "a", "--", "[b,c]", "--", "--yes"});
-  ASSERT_TRUE(many) << many.error().message;
-  const auto all = many->arguments.all("object");
-  EXPECT_EQ(Words(all.begin(), all.end()), (Words{"a", "[b,c]", "--", "--yes"}));
-  EXPECT_EQ(parse_line({"write", "a", "b", "--", "c"}).error().message, "write: unexpected argument 'c'");
-  EXPECT_EQ(parse_line({"write", "a", "{}"})->arguments.text("value"), "{}");
-}
-
-TEST(ParseLine, TakesOptionsBehindTwoDashesWhenEveryArgumentHasItsValue) {
-  const auto line = parse_line({"jog", "--", "-30rpm", "--for", "2s", "-n", "1"});
-  ASSERT_TRUE(line) << line.error().message;
-  EXPECT_EQ(line->arguments.text("speed"), "-30rpm");
-  EXPECT_EQ(line->arguments.text("--for"), "2s");
-  EXPECT_EQ(line->arguments.text("--node"), "1");
-  const auto write = parse_line({"write", "0x2000", "-n", "1", "--", "--yes", "--keep"});
-  ASSERT_TRUE(write) << write.error().message;
-  EXPECT_EQ(write->arguments.text("value"), "--yes");
-  EXPECT_TRUE(write->arguments.has("--keep"));
-  EXPECT_FALSE(write->arguments.has("--yes"));
-  EXPECT_EQ(parse_line({"jog", "--", "-30rpm", "--bogus"}).error().message,
-            "jog: there is no option '--bogus'");
-}
-
-TEST(ParseLine, GivesManyWordsToTheParameterThatTakesThem) {
-  const auto line = parse_line({"read", "a", "b", "--type", "u8", "c"});
-  ASSERT_TRUE(line) << line.error().message;
-  const auto all = line->arguments.all("object");
-  EXPECT_EQ(Words(all.begin(), all.end()), (Words{"a", "b", "c"}));
-  EXPECT_EQ(line->arguments.text("--type"), "u8");
-}
-
-TEST(ParseLine, LeaksNoValueIntoTheNextLine) {
-  ASSERT_TRUE(parse_line({"read", "a", "--type", "u8"}));
-  EXPECT_FALSE(parse_line({"read", "a"})->arguments.has("--type"));
 }
 
 TEST(Nodes, AreListsAndRanges) {

@@ -1,0 +1,145 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <span>
+#include <thread>
+
+#include "base/text.hpp"
+#include "cli/parse.hpp"
+#include "command/registry.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+using Words = std::vector<std::string>;
+
+TEST(ParseLine, TakesGlobalOptionsOnBothSidesOfTheCommand) {
+  for (const auto& words : {Words{"-n", "3", "--bus", "can0", "param", "get", "Pn0202"},
+                            Words{"param", "get", "Pn0202", "--bus=can0", "-n3"},
+                            Words{"--bus", "can0", "param", "get", "-n", "3", "Pn0202"}}) {
+    const auto line = parse_line(words);
+    ASSERT_TRUE(line) << line.error().message;
+    EXPECT_EQ(line->command->path, "param get");
+    EXPECT_EQ(line->arguments.text("--bus"), "can0");
+    EXPECT_EQ(line->arguments.text("--node"), "3");
+    EXPECT_EQ(line->arguments.text("id"), "Pn0202");
+  }
+}
+
+TEST(ParseLine, LeavesValuesAsTheyAreWritten) {
+  const auto line = parse_line({"write", "6040h", "-010"});
+  ASSERT_TRUE(line) << line.error().message;
+  EXPECT_EQ(line->arguments.text("object"), "6040h");
+  EXPECT_EQ(line->arguments.text("value"), "-010");
+}
+
+TEST(ParseLine, TakesEveryWordBehindTwoDashesAsAValue) {
+  for (const auto* text :
+       {"", "-", "--", "-h", "--help", "--from=/etc/passwd", "--yes", "-n", "{}", "[a,b]", "%%", "a b"}) {
+    const auto line = parse_line({"write", "0x2000", "--type", "string", "--", text});
+    ASSERT_TRUE(line) << text << ": " << line.error().message;
+    EXPECT_EQ(line->arguments.text("object"), "0x2000");
+    EXPECT_EQ(line->arguments.text("--type"), "string");
+    ASSERT_TRUE(line->arguments.has("value")) << text;
+    EXPECT_EQ(line->arguments.text("value"), text);
+    EXPECT_FALSE(line->arguments.has("--yes"));
+    EXPECT_FALSE(line->arguments.has("--from"));
+  }
+  const auto many = parse_line({"read", "a", "--", "[b,c]", "--", "--yes"});
+  ASSERT_TRUE(many) << many.error().message;
+  const auto all = many->arguments.all("object");
+  EXPECT_EQ(Words(all.begin(), all.end()), (Words{"a", "[b,c]", "--", "--yes"}));
+  EXPECT_EQ(parse_line({"write", "a", "b", "--", "c"}).error().message, "write: unexpected argument 'c'");
+  EXPECT_EQ(parse_line({"write", "a", "{}"})->arguments.text("value"), "{}");
+}
+
+TEST(ParseLine, TakesOptionsBehindTwoDashesWhenEveryArgumentHasItsValue) {
+  const auto line = parse_line({"jog", "--", "-30rpm", "--for", "2s", "-n", "1"});
+  ASSERT_TRUE(line) << line.error().message;
+  EXPECT_EQ(line->arguments.text("speed"), "-30rpm");
+  EXPECT_EQ(line->arguments.text("--for"), "2s");
+  EXPECT_EQ(line->arguments.text("--node"), "1");
+  const auto write = parse_line({"write", "0x2000", "-n", "1", "--", "--yes", "--keep"});
+  ASSERT_TRUE(write) << write.error().message;
+  EXPECT_EQ(write->arguments.text("value"), "--yes");
+  EXPECT_TRUE(write->arguments.has("--keep"));
+  EXPECT_FALSE(write->arguments.has("--yes"));
+  EXPECT_EQ(parse_line({"jog", "--", "-30rpm", "--bogus"}).error().message,
+            "jog: there is no option '--bogus'");
+}
+
+TEST(ParseLine, GivesManyWordsToTheParameterThatTakesThem) {
+  const auto line = parse_line({"read", "a", "b", "--type", "u8", "c"});
+  ASSERT_TRUE(line) << line.error().message;
+  const auto all = line->arguments.all("object");
+  EXPECT_EQ(Words(all.begin(), all.end()), (Words{"a", "b", "c"}));
+  EXPECT_EQ(line->arguments.text("--type"), "u8");
+}
+
+TEST(ParseLine, LeaksNoValueIntoTheNextLine) {
+  ASSERT_TRUE(parse_line({"read", "a", "--type", "u8"}));
+  EXPECT_FALSE(parse_line({"read", "a"})->arguments.has("--type"));
+}
+
+/// What a line gives, in words.
+std::string outcome_of(const Words& words) {
+  const auto line = parse_line(words);
+  if (!line) return line.error().message;
+  std::string out(line->command->path);
+  const auto add = [&](std::span<const command::Parameter> parameters) {
+    for (const auto& parameter : parameters)
+      for (const auto& value : line->arguments.all(parameter.name))
+        out += "\n" + std::string(parameter.name) + " " + value;
+  };
+  add(line->command->parameters);
+  add(command::global_options());
+  return out;
+}
+
+/// Lines of a command: bare, with all it takes, and wrong in every way.
+std::vector<Words> lines_of(const command::Command& command) {
+  const auto path = split(command.path, ' ');
+  Words bare(path.begin(), path.end());
+  auto whole = bare;
+  const auto add = [](Words& line, const command::Parameter& parameter) {
+    if (parameter.name.starts_with("-")) line.emplace_back(parameter.name);
+    if (parameter.kind != command::Kind::flag)
+      line.emplace_back(parameter.choices.empty() ? "1" : parameter.choices.front());
+  };
+  for (const auto& parameter : command.parameters) {
+    if (parameter.required) add(bare, parameter);
+    add(whole, parameter);
+  }
+  for (const auto& parameter : command::global_options()) add(whole, parameter);
+  std::vector<Words> out = {bare, whole, {path.begin(), path.end()}};
+  for (const auto& more : std::vector<Words>{{"--bogus"},
+                                             {"x", "y", "z"},
+                                             {"--", "-1", "-2"},
+                                             {"--json", "-n"},
+                                             {"--json=no"},
+                                             {"-n", "2", "-n", "3"}}) {
+    out.push_back(bare);
+    out.back().insert(out.back().end(), more.begin(), more.end());
+  }
+  return out;
+}
+
+TEST(ParseLine, ReadsEveryLineAsIfItWereTheFirst) {
+  std::size_t pairs = 0;
+  for (const auto* command : command::registry()) {
+    const auto lines = lines_of(*command);
+    Words first(lines.size());
+    for (std::size_t i = 0; i < lines.size(); ++i)  // A thread that has read none.
+      std::thread([&] { first[i] = outcome_of(lines[i]); }).join();
+    for (const auto& before : lines)
+      for (std::size_t i = 0; i < lines.size(); ++i, ++pairs) {
+        (void)parse_line(before);
+        ASSERT_EQ(outcome_of(lines[i]), first[i]) << fmt::format("{}", fmt::join(before, " ")) << ", then "
+                                                  << fmt::format("{}", fmt::join(lines[i], " "));
+      }
+  }
+  EXPECT_GT(pairs, 5000U);
+}
+
+}  // namespace
+}  // namespace servoctl::cli
