@@ -25,7 +25,7 @@ Value pdos_text(const cabinet::Axis& axis) {
   const auto& pdos = axis.pdos;
   if (!pdos.preset.empty()) return pdos.preset;
   if (!pdos.file.empty()) return pdos.file.filename().string();
-  return pdos.recipes.empty() ? Value() : Value(fmt::format("{} PDOs", pdos.recipes.size()));
+  return pdos.recipes.empty() ? Value() : Value(fmt::format("{} PDO{}", pdos.recipes.size(), pdos.recipes.size() == 1 ? "" : "s"));
 }
 
 report::Table axes_checked(const cabinet::Cabinet& cabinet) {

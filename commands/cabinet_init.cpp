@@ -105,6 +105,9 @@ class Init {
     std::vector<FoundAxis> out;
     for (const auto& identity : *identities) out.push_back(axis_of(identity, all));
     for (auto& axis : out) read(axis);
+    for (const auto& [node, family] : families_)
+      if (std::none_of(out.begin(), out.end(), [n = node](const auto& axis) { return axis.node == n; }))
+        context_->notices.push_back(fmt::format("--family {}={}: no drive answered there", node, family));
     return out;
   }
 

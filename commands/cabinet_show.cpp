@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "base/number.hpp"
 #include "base/text.hpp"
@@ -78,8 +79,12 @@ class Differences {
     for (const auto& look : looks)
       if (!look.error) stations.push_back(open_station(*context_, *cabinet_, *look.axis));
     const cabinet::PlanChoice choice{.unlisted = false, .families = families_};
-    for (const auto& look : cabinet::look_at_all(*context_, *cabinet_, stations, choice))
-      if (look.plan) found_[look.axis] = look.plan->different;
+    for (const auto& look : cabinet::look_at_all(*context_, *cabinet_, stations, choice)) {
+      if (look.plan)
+        found_[look.axis] = look.plan->different;
+      else
+        tell(*look.axis, look.plan.error());
+    }
   }
 
   /// Empty: not known.
@@ -89,8 +94,15 @@ class Differences {
   }
 
  private:
+  /// Why an axis is not held against the file: it may be another drive.
+  void tell(const cabinet::Axis& axis, const Error& error) {
+    auto text = fmt::format("axis {}: {}", axis.name, error.message);
+    if (told_.insert(text).second) context_->notices.push_back(std::move(text));
+  }
+
   Context* context_;
   const cabinet::Cabinet* cabinet_;
+  std::set<std::string> told_;
   std::vector<drive::Family> families_;
   std::optional<TimePoint> read_at_;
   std::map<const cabinet::Axis*, std::size_t> found_;

@@ -249,6 +249,7 @@ constexpr Command nmt_command(std::string_view path, std::string_view summary, s
           .family = FamilyCheck::never,
           .run = run_nmt_command<nmt>,
           .to_all = true,
+          .way_out = nmt == NmtCommand::stop || nmt == NmtCommand::enter_pre_operational,
           .elsewhere = kNmtElsewhere};
 }
 

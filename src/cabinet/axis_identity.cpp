@@ -43,16 +43,21 @@ Result<session::Identity> hold_axis_identity(show::Desk& desk, const Axis& axis,
   return identity;
 }
 
+std::string serial_text(std::uint32_t serial) {
+  return serial == 0 ? std::string("none") : fmt::format("{0} (0x{0:08X})", serial);
+}
+
 Result<void> hold_serial(const Axis& axis, const session::Identity& identity) {
   if (!axis.serial || identity.serial == axis.serial) return {};
-  if (!identity.serial)
-    return other_drive(axis, objects::kSerialNumber,
-                       fmt::format("the drive tells no serial number, and the file says {}", *axis.serial),
-                       "remove `serial` where the family has none");
-  return other_drive(
-      axis, objects::kSerialNumber,
-      fmt::format("the drive has the serial number {}, and the file says {}", *identity.serial, *axis.serial),
-      "was the drive replaced, or swapped with another? `info` shows what it is");
+  if (identity.serial.value_or(0) == 0)
+    return other_drive(
+        axis, objects::kSerialNumber,
+        fmt::format("the drive tells no serial number, and the file says {}", serial_text(*axis.serial)),
+        "remove `serial` where its drives tell none; was the drive replaced? `info` shows what it is");
+  return other_drive(axis, objects::kSerialNumber,
+                     fmt::format("the drive has the serial number {}, and the file says {}",
+                                 serial_text(*identity.serial), serial_text(*axis.serial)),
+                     "was the drive replaced, or swapped with another? `info` shows what it is");
 }
 
 }  // namespace servoctl::cabinet

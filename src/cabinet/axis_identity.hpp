@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
+#include <string>
 
 #include "cabinet/cabinet.hpp"
 #include "session/identity.hpp"
@@ -15,6 +17,9 @@ namespace servoctl::cabinet {
 /// Errc::timeout when none answers. What proves nothing is told in `desk.notices`.
 Result<session::Identity> hold_axis_identity(show::Desk& desk, const Axis& axis,
                                              std::span<const drive::Family> families);
+
+/// As the file writes it, and as `info` does: `305419896 (0x12345678)`; `none` for 0.
+std::string serial_text(std::uint32_t serial);
 
 /// Errc::refused where the file says another serial number (1018h:04) than the drive.
 Result<void> hold_serial(const Axis& axis, const session::Identity& identity);

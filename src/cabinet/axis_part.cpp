@@ -95,13 +95,13 @@ bool read_limits(const toml::node& node, Limits& out, std::string_view file, std
 }
 
 /// The name of a preset, a file, or a list of tables.
-bool read_pdos(const toml::node& node, Pdos& out) {
+bool read_pdos(const toml::node& node, Pdos& out, std::string_view file, std::optional<Error>& inner) {
   out.at = place_of(node);
-  if (node.is_array())
-    return drive::get_list(
-               node, out.recipes,
-               [](const toml::node& each, drive::PdoRecipe& recipe) { return drive::get(each, recipe); }) &&
-           !out.recipes.empty();
+  if (const auto* list = node.as_array()) {
+    const auto read = drive::read_recipes(*list, file, out.recipes);
+    if (!read) inner = read.error();
+    return read && !out.recipes.empty();
+  }
   std::string text;
   if (!get(node, text) || text.empty()) return false;
   if (text.find('.') == std::string::npos)
@@ -186,7 +186,7 @@ Result<AxisPart> read_part(const toml::table& table, std::string_view file, Part
        }},
       {"limits", [&](const auto& n) { return read_limits(n, out.limits, file, inner); }},
       {"heartbeat", [&](const auto& n) { return read_heartbeat(n, out); }},
-      {"pdos", [&](const auto& n) { return read_pdos(n, out.pdos); }},
+      {"pdos", [&](const auto& n) { return read_pdos(n, out.pdos, file, inner); }},
       {"parameters", [&](const auto& n) {
          const auto done = read_parameters(n, file, out.parameters);
          if (!done) inner = done.error();

@@ -25,6 +25,7 @@ tl::unexpected<Error> at_place(const Cabinet& cabinet, const Axis& axis, Place p
   const auto placed = cabinet_error(cabinet, axis, place, error.message);
   error.message = placed.message;
   error.line = placed.line;
+  if (error.code == Errc::usage) error.code = Errc::file;  // It is the file that says it.
   return fail(std::move(error));
 }
 
@@ -155,10 +156,10 @@ class Wanted {
 
   Result<void> add_heartbeat() {
     const auto& profile = *desk_->profile;
-    if (profile.dictionary.find(objects::kProducerHeartbeat) == nullptr && !profile.is_generic())
+    if (profile.dictionary.find(objects::kProducerHeartbeat) == nullptr)
       return at_place(
           *cabinet_, *axis_, axis_->heartbeat_at,
-          make_error(Errc::file, fmt::format("a {} produces no heartbeat (1017h)", profile.family),
+          make_error(Errc::file, fmt::format("{} has no heartbeat (1017h)", profile.family),
                      "leave `heartbeat` out"));
     const auto milliseconds = std::chrono::duration_cast<std::chrono::milliseconds>(*axis_->heartbeat);
     return add_parameter({to_string(objects::kProducerHeartbeat), fmt::format("{}", milliseconds.count()),
@@ -180,8 +181,8 @@ class Wanted {
           make_error(Errc::file, fmt::format("{} {}", settings::name_of(target), why), std::move(hint)));
     };
     if (settings::is_address(desk_->profile, object))
-      return refuse("is the address of the drive",
-                    "`node` says where it is; `cabinet swap` gives a drive its address");
+      return refuse("is node-ID or bitrate of the drive",
+                    "`node` and `bitrate` say them; they are not written as parameters");
     const auto first = std::find_if(out_.entries.begin(), out_.entries.end(),
                                     [&](const auto& entry) { return entry.object == object; });
     if (first != out_.entries.end()) {

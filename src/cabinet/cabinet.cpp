@@ -48,6 +48,7 @@ Result<std::vector<const Axis*>> Cabinet::select(std::string_view list) const {
   std::set<const Axis*> chosen;
   for (const auto part : split(list, ',')) {
     const auto word = trim(part);
+    if (word.empty()) continue;
     const bool all = equals_nocase(word, "all");
     if (!all && !knows(word)) {
       const auto all_names = names();
@@ -62,7 +63,7 @@ Result<std::vector<const Axis*>> Cabinet::select(std::string_view list) const {
   for (const auto& one : axes)
     if (chosen.count(&one) != 0) out.push_back(&one);
   if (out.empty())
-    return fail(Errc::usage, fmt::format("{} names no axis", file.filename().string()), "-n feeder, -n all");
+    return fail(Errc::usage, fmt::format("'{}' names no axis", list), "its axes: " + one_of(names()));
   return out;
 }
 

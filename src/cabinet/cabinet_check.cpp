@@ -116,16 +116,31 @@ class AxisCheck {
 
   void check_recipes(const std::vector<drive::PdoRecipe>& recipes) {
     for (const auto& recipe : recipes) {
-      if (!recipe.map) continue;
-      for (const auto& word : *recipe.map)
+      const Place at{recipe.line == 0 || !axis_->pdos.file.empty() ? axis_->pdos.at.line : recipe.line,
+                     axis_->pdos.at.column};
+      if (const auto known = check_pdo_name(recipe.pdo); !known) {
+        add(at, known.error());
+        continue;
+      }
+      for (const auto& word : recipe.map.value_or(std::vector<std::string>()))
         if (const auto entry = pdo::parse_mapped(*profile_, word); !entry) {
           auto error = entry.error();
           error.message = fmt::format("{}: {}", recipe.pdo, error.message);
-          add({recipe.line == 0 || !axis_->pdos.file.empty() ? axis_->pdos.at.line : recipe.line,
-               axis_->pdos.at.column},
-              error);
+          add(at, error);
         }
     }
+  }
+
+  Result<void> check_pdo_name(const std::string& name) const {
+    const auto pdo = canopen::parse_pdo_name(name);
+    if (!pdo)
+      return fail(Errc::file, fmt::format("'{}' is not a PDO", name), "RPDO1, TPDO2: as the drive sees them");
+    const ObjectAddress mapping{pdo->mapping_index(), 0};
+    if (profile_->is_generic() || drive::target_at(profile_, mapping).entry != nullptr) return {};
+    return fail(Errc::file,
+                fmt::format("{} has no {}", profile_->family, canopen::name(pdo->direction, pdo->number)),
+                fmt::format("`objects '0x{:02X}*' -d {}` lists what it has", mapping.index >> 8U,
+                            profile_->family));
   }
 
   void check_limits() {
@@ -148,6 +163,7 @@ class AxisCheck {
         });
     if (fits) return check_range(name, text, *number);
     auto known = std::string(fmt::format("{}", fmt::join(units, ", ")));
+    if (!axis_->load && name != "torque") known += "; `per_turn` makes other units known";
     if (axis_->load && name != "torque") known += ", " + axis_->load->unit + (name == "speed" ? "/s" : "");
     add(axis_->limits.at, make_error(Errc::file, fmt::format("limits: {} = \"{}\" is no limit", name, text),
                                      fmt::format("a number above 0 in {}", known)));
@@ -234,7 +250,8 @@ CabinetFindings check_cabinet(const Cabinet& cabinet, const LoadProfile& load) {
   for (const auto& axis : cabinet.axes) {
     const auto profile = load(axis.family);
     if (!profile) {
-      auto hint = fmt::format("correct `family`; {}", profile.error().hint);
+      const auto& tells = profile.error().hint;
+      auto hint = "correct `family`" + (tells.empty() ? "" : "; " + tells);
       auto error = cabinet_error(cabinet, axis, axis.at, profile.error().message, std::move(hint));
       if (told.is_new(axis, error.message)) out.errors.push_back(std::move(error));
       continue;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "cabinet/axis_identity.hpp"
 #include "cabinet/axis_values.hpp"
 #include "cabinet/cabinet_side.hpp"
 #include "drive/naming.hpp"
@@ -123,7 +124,8 @@ class CabinetDifference {
     }
     if (a.identity.serial && b.identity.serial && a.identity.serial != b.identity.serial)
       desk_->notices.push_back(fmt::format("axis {}: another drive: serial number {} in {}, {} in {}", name,
-                                           *a.identity.serial, a_->title, *b.identity.serial, b_->title));
+                                           serial_text(*a.identity.serial), a_->title,
+                                           serial_text(*b.identity.serial), b_->title));
     const auto profile = (*load_)(a.family);
     if (!profile) return fail(profile.error());
     compare_sides(name, **profile, settings::side_of(a, a_->title), settings::side_of(b, b_->title));

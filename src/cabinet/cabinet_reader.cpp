@@ -32,14 +32,15 @@ constexpr std::string_view kBitrateForm =
 
 /// Tables by name, `[axis.NAME]`, in the order of the file: toml++ sorts them by name.
 Result<std::vector<std::pair<std::string, const toml::table*>>> named_tables(const TableReader& root,
+                                                                             std::string_view kind,
                                                                              const toml::node& node) {
   std::vector<std::pair<std::string, const toml::table*>> out;
   const auto* all = node.as_table();
-  if (all == nullptr) return fail(root.fail_at(node, "this is a table of tables: [axis.NAME]").value());
+  if (all == nullptr) return root.fail_at(node, fmt::format("'{0}' is a table of tables: [{0}.NAME]", kind));
   for (const auto& [key, one] : *all) {
     const auto* table = one.as_table();
     if (table == nullptr)
-      return root.fail_at(one, fmt::format("'{}' is no table: write [….{}]", key.str(), key.str()));
+      return root.fail_at(one, fmt::format("'{0}' is no table: write [{1}.{0}]", key.str(), kind));
     out.emplace_back(std::string(key.str()), table);
   }
   std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) {
@@ -74,7 +75,7 @@ class CabinetReader {
     const auto* node = table.get("bus");
     if (node == nullptr)
       return fail(Errc::file, fmt::format("{} has no bus", name_), "write [bus.main] with url = \"can0\"");
-    const auto all = named_tables(root, *node);
+    const auto all = named_tables(root, "bus", *node);
     if (!all) return fail(all.error());
     for (const auto& [name, one] : *all) {
       Bus bus;
@@ -96,7 +97,8 @@ class CabinetReader {
             "name the line with -b and the drive with -d and -n; `backup` and `restore` work there");
       for (const auto& other : out_.buses)
         if (other.url == bus.url)
-          return reader.fail_at(*one, fmt::format("bus {} is {} as bus {} is", name, bus.url, other.name));
+          return fail_at(*one, fmt::format("bus {} is {}, and so is bus {}", name, bus.url, other.name),
+                         "one interface is one bus: put its axes on one of them");
       out_.buses.push_back(std::move(bus));
     }
     return {};
@@ -112,7 +114,7 @@ class CabinetReader {
     for (const auto& [key, place] : {std::pair("family", &families_), std::pair("group", &groups_)}) {
       const auto* node = table.get(key);
       if (node == nullptr) continue;
-      const auto all = named_tables(root, *node);
+      const auto all = named_tables(root, key, *node);
       if (!all) return fail(all.error());
       for (const auto& [name, one] : *all) {
         auto part =
@@ -129,7 +131,7 @@ class CabinetReader {
   Result<void> axes(const TableReader& root, const toml::table& table) {
     const auto* node = table.get("axis");
     const auto all = node == nullptr ? Result<std::vector<std::pair<std::string, const toml::table*>>>()
-                                     : named_tables(root, *node);
+                                     : named_tables(root, "axis", *node);
     if (!all) return fail(all.error());
     for (const auto& [name, one] : *all) {
       auto part = read_part(*one, name_, PartOf::axis);
@@ -182,7 +184,8 @@ class CabinetReader {
     out.family = file_or_family(part.family);
     if (part.bus.empty() && out_.buses.size() == 1) part.bus = out_.buses.front().name;
     if (part.bus.empty())
-      return fail_at(table, fmt::format("axis {}: 'bus' is missing: there are {}", name, out_.buses.size()));
+      return fail_at(table, fmt::format("axis {}: 'bus' is missing: there are {}", name, out_.buses.size()),
+                     fmt::format("bus = \"{}\", or that of another", out_.buses.front().name));
     if (out_.bus(part.bus) == nullptr) {
       std::vector<std::string> known;
       for (const auto& bus : out_.buses) known.push_back(bus.name);
@@ -235,7 +238,8 @@ class CabinetReader {
                      fmt::format("'{}' cannot be the name of {} {}", name, what == "axis" ? "an" : "a", what),
                      "a letter first; no space, comma, dot or quote; not `all`");
     if (!names_.insert(name).second)
-      return fail_at(table, fmt::format("'{}' is the name of two things", name));
+      return fail_at(table, fmt::format("'{}' is the name of two things", name),
+                     "axes and groups share their names: -n takes both");
     return {};
   }
 
@@ -273,7 +277,9 @@ Result<Cabinet> parse_cabinet(std::string_view toml, const std::filesystem::path
   if (parsed) return CabinetReader(file).read(parsed.table());
   const auto at = parsed.error().source().begin;
   auto error = file_error(name, at.line, at.column, parsed.error().description());
-  error.hint = "one key = value a line, and what is no number in quotes: family = \"gsd600\"";
+  error.hint = parsed.error().description().find("redefine") != std::string_view::npos
+                   ? "each key, and each name in brackets, stands once"
+                   : "one key = value a line, and what is no number in quotes: family = \"gsd600\"";
   return fail(std::move(error));
 }
 

@@ -91,10 +91,10 @@ std::vector<Displaced> find_displaced(const show::Desk& desk, std::span<const St
     if (there.node == 0 || there.node == station.axis->node) continue;
     auto at = desk_at(desk, station);
     if (!hold_axis_identity(at, there, choice.families)) continue;
-    looks[i].plan = fail(
-        drive_error(Errc::negative, station.axis->node,
-                    fmt::format("its drive (serial number {}) is at node-ID {}", *there.serial, there.node),
-                    "`cabinet apply` asks and gives it its node-ID first; what else differs is shown then"));
+    looks[i].plan = fail(drive_error(
+        Errc::negative, station.axis->node,
+        fmt::format("its drive (serial number {}) is at node-ID {}", serial_text(*there.serial), there.node),
+        "`cabinet apply` asks and gives it its node-ID first; what else differs is shown then"));
     out.push_back({i, there.node, *there.serial});
   }
   return out;
@@ -108,8 +108,8 @@ Result<void> place_displaced(const show::Desk& desk, const Cabinet& cabinet,
   std::string which;
   for (const auto& one : displaced)
     append(which,
-           fmt::format("{} (serial number {}) from node-ID {} to {}", looks[one.look].axis->name, one.serial,
-                       one.at, looks[one.look].axis->node),
+           fmt::format("{} (serial number {}) from node-ID {} to {}", looks[one.look].axis->name,
+                       serial_text(one.serial), one.at, looks[one.look].axis->node),
            ", ");
   if (const auto agreed = desk.confirm(fmt::format("Re-address {}?", which)); !agreed) return agreed;
   for (const auto& one : displaced) {

@@ -19,9 +19,8 @@ using report::Show;
 using report::Value;
 using settings::AddressEnd;
 
-std::string number_text(const std::optional<std::uint32_t>& serial) {
-  if (!serial) return "not known";
-  return *serial == 0 ? std::string("none") : fmt::format("{} (0x{:08X})", *serial, *serial);
+std::string known_serial(const std::optional<std::uint32_t>& serial) {
+  return serial ? serial_text(*serial) : "not known";
 }
 
 /// One new drive on its way into the cabinet.
@@ -89,9 +88,8 @@ class Swapping {
     if (const auto own = refuse_listed(); !own) return own;
     const bool same = axis_.serial && identity_.serial == axis_.serial;
     desk_.tell(fmt::format("{}: a {} at node {}, serial number {}; the file says {}{}\n", axis_.name,
-                           axis_.family, at_, number_text(identity_.serial),
-                           axis_.serial ? number_text(axis_.serial) : "none",
-                           same ? ": the drive that was there" : ""));
+                           axis_.family, at_, known_serial(identity_.serial),
+                           serial_text(axis_.serial.value_or(0)), same ? ": the drive that was there" : ""));
     return {};
   }
 
@@ -133,17 +131,18 @@ class Swapping {
       return {};
     }
     if (const auto agreed = desk_.confirm(fmt::format(
-            "Put the drive at node {} into the place of {}, node {}?", at_, axis_.name, axis_.node));
+            "Put the drive at node {} into the place of {} (node-ID {})?", at_, axis_.name, axis_.node));
         !agreed)
       return agreed;
     const auto outcome = settings::change_address(desk_, *change, options_->address);
     moved_ = settings::text_of(outcome.end);
     if (outcome.error) return fail(*outcome.error);
     if (outcome.end != AddressEnd::moved)
-      return fail(drive_error(
-          Errc::negative, at_, fmt::format("it is node {} when it was switched off and on", axis_.node),
-          "switch it off and on, then repeat the line: it goes on from there; --wait 5min "
-          "waits for it"));
+      return fail(
+          drive_error(Errc::negative, at_,
+                      fmt::format("its node-ID {} holds when it was switched off and on", axis_.node),
+                      "switch it off and on, then repeat the line: it goes on from there; --wait 5min "
+                      "waits for it"));
     return {};
   }
 

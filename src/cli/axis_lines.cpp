@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "base/number.hpp"
 #include "base/text.hpp"
 #include "session/open_bus.hpp"
 
@@ -27,6 +28,18 @@ show::AxisNames names_on(const Cabinet& cabinet, std::string_view bus) {
   return show::AxisNames(std::move(out));
 }
 
+/// With other counts than those of its drive a motor turns at another speed than was asked for.
+Result<void> check_counts(const Cabinet& cabinet, const Axis& axis, const command::Arguments& arguments,
+                          std::string_view key, std::optional<std::uint64_t> in_file) {
+  const auto option = "--" + std::string(key);
+  const auto typed = parse_integer(arguments.text(option));
+  if (!in_file || !typed || (typed->magnitude == *in_file && !typed->negative)) return {};
+  return fail(Errc::usage,
+              fmt::format("{} has {} = {} by {}, not {}", axis.name, key, *in_file,
+                          cabinet.file.filename().string(), arguments.text(option)),
+              fmt::format("leave {} out, or change the file", option));
+}
+
 /// What is typed beside the name of an axis must not say otherwise than the file.
 Result<void> check_typed(const Cabinet& cabinet, const Axis& axis, const command::Arguments& arguments) {
   const auto file = cabinet.file.filename().string();
@@ -42,7 +55,8 @@ Result<void> check_typed(const Cabinet& cabinet, const Axis& axis, const command
   if (!typed_drive.empty() && typed_drive != axis.family)
     return fail(Errc::usage, fmt::format("{} is {} by {}, not {}", axis.name, axis.family, file, typed_drive),
                 "leave --drive out, or change the file");
-  return {};
+  if (const auto turn = check_counts(cabinet, axis, arguments, "turn", axis.turn); !turn) return turn;
+  return check_counts(cabinet, axis, arguments, "encoder", axis.encoder);
 }
 
 /// Axes of one bus and family go together; those that come first in the file go first.

@@ -58,8 +58,7 @@ bool is_side_by_side(const command::Command& command, const command::Arguments& 
 /// can.
 Result<void> check_wires(const command::Command& command, const std::vector<LinePart>& parts) {
   const bool frames = includes(command.needs, Needs::can);
-  if (command.family == command::FamilyCheck::never || (!frames && !includes(command.needs, Needs::nmt)))
-    return {};
+  if (command.way_out || (!frames && !includes(command.needs, Needs::nmt))) return {};
   std::string left_out;
   std::string rest;
   for (const auto& part : parts) {

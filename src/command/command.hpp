@@ -103,6 +103,7 @@ struct Command {
   /// `-n all` stays node 0 on CAN: it goes to every node-ID, because a drive that answers nothing may have
   /// power.
   bool to_silent = false;
+  bool way_out = false;       ///< Goes as far as it can, where some of its axes cannot take it.
   bool opens_bus = false;     ///< Its words decide which end of the bus it needs: it opens it itself.
   bool of_front_end = false;  ///< It runs other command lines: the front end does it, `run` is null.
   bool goes_on = false;       ///< It shows what comes until it is ended: one bus and family at a time.

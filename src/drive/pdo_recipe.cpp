@@ -34,6 +34,21 @@ bool get(const toml::node& node, PdoPreset& out) {
          !out.name.empty();
 }
 
+Result<void> read_recipes(const toml::array& list, std::string_view file, std::vector<PdoRecipe>& out) {
+  for (const auto& each : list) {
+    const auto at = each.source().begin;
+    const auto* table = each.as_table();
+    if (table == nullptr)
+      return fail(
+          file_error(file, at.line, at.column, fmt::format("a PDO cannot be {}", value_in_words(each))));
+    const TableReader reader(*table, file);
+    out.emplace_back().line = at.line;
+    if (const auto read = read_recipe(reader, out.back()); !read) return read;
+    if (out.back().pdo.empty()) return reader.fail_at(each, "'pdo' is missing");
+  }
+  return {};
+}
+
 Result<PdoFile> parse_pdo_file(std::string_view toml, std::string_view file) {
   if (const auto flat = check_toml_depth(toml, file); !flat) return fail(flat.error());
   const auto parsed = toml::parse(toml, file);
@@ -48,15 +63,9 @@ Result<PdoFile> parse_pdo_file(std::string_view toml, std::string_view file) {
   const auto pdos = [&](const toml::node& node) {
     const auto* array = node.as_array();
     if (array == nullptr) return false;
-    for (const auto& each : *array) {
-      const auto* table = each.as_table();
-      out.pdos.emplace_back().line = each.source().begin.line;
-      if (table == nullptr) return false;
-      const auto read = read_recipe(TableReader(*table, file), out.pdos.back());
-      if (!read && !inner) inner = read.error();
-      if (!inner && out.pdos.back().pdo.empty()) inner = root.fail_at(each, "'pdo' is missing").value();
-    }
-    return true;
+    const auto read = read_recipes(*array, file, out.pdos);
+    if (!read) inner = read.error();
+    return read.has_value();
   };
   const auto done = root.read({{"format", [&](const auto& n) { return get_int(n, format) && format == 1; }},
                                {"family", into(out.family)},

@@ -145,12 +145,15 @@ class TableReader {
   std::string_view file() const { return file_; }
 
  private:
+  static constexpr std::size_t kMostOffered = 16;
+
   tl::unexpected<Error> unknown(const toml::key& key, const Handlers& handlers) const {
     const auto at = key.source().begin;
     auto error = file_error(file_, at.line, at.column, fmt::format("unknown key '{}'", key.str()));
     std::vector<std::string> known;
     for (const auto& handler : handlers) known.emplace_back(handler.first);
     error.hint = did_you_mean(key.str(), known);
+    if (error.hint.empty() && known.size() <= kMostOffered) error.hint = "write one of " + one_of(known);
     return fail(std::move(error));
   }
 

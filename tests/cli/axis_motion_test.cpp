@@ -52,7 +52,8 @@ TEST_F(AxisMotion, AWayLongerThanTheWindowIsRefusedBeforeAnythingMoves) {
 TEST_F(AxisMotion, ALineThatChangesADriveHoldsItsSerialNumberAgainstTheFile) {
   write("[bus.main]\nurl = \"sim:da200@1\"\n[axis.lift]\nnode = 1\nfamily = \"da200\"\nserial = 17\n");
   EXPECT_EQ(run("param set lift P0.05 1"), 8) << all();
-  EXPECT_TRUE(says("the drive has the serial number 16, and the file says 17")) << all();
+  EXPECT_TRUE(says("the drive has the serial number 16 (0x00000010), and the file says 17 (0x00000011)"))
+      << all();
   EXPECT_EQ(run("jog lift 10rpm --for 1s --yes"), 8) << all();
   EXPECT_EQ(run("read statusword -n lift"), 0) << all();
   EXPECT_EQ(run("disable -n lift"), 0) << "a way out is never refused: " << all();

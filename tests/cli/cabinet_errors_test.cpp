@@ -1,0 +1,103 @@
+// What `servoctl cabinet` refuses: tests/cli/cabinet/errors.txt has the files and the lines, said.txt what is
+// said of them. `./dev golden` writes it anew; read the diff.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include "base/file.hpp"
+#include "base/text.hpp"
+#include "golden_cases.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ErrorCase {
+  std::string name;
+  std::vector<std::string> lines;
+  std::map<std::string, std::string> files;
+};
+
+fs::path errors_folder() { return golden_source() / "tests/cli/cabinet"; }
+
+std::vector<ErrorCase> error_cases() {
+  std::vector<ErrorCase> out;
+  std::ifstream file(errors_folder() / "errors.txt");
+  std::string line;
+  std::string into;
+  while (std::getline(file, line)) {
+    if (line.starts_with("== ")) {
+      out.push_back({line.substr(3), {}, {}});
+      into = "cabinet.toml";
+    } else if (!out.empty() && line.starts_with("$ ")) {
+      out.back().lines.push_back(line.substr(2));
+    } else if (!out.empty() && line.starts_with("@ ")) {
+      into = line.substr(2);
+    } else if (!out.empty() && !line.empty()) {
+      out.back().files[into] += line + "\n";
+    }
+  }
+  return out;
+}
+
+/// In a folder of its own, with the state of nobody.
+std::string played(const ErrorCase& c, const fs::path& folder) {
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  fs::current_path(folder);
+  for (const auto& [name, text] : c.files) {
+    fs::create_directories((folder / name).parent_path());
+    std::ofstream(folder / name) << text;
+  }
+  RecordingConsole console;
+  Shell::Options options;
+  options.drive_folders = {golden_source() / "eds"};
+  options.clock = sim::SimBus::Clock::virtual_time;
+  if (c.files.empty()) options.defaults.bus = "sim:gsd600@1,da200@2";
+  Shell shell(console, std::move(options));
+  LineRunner runner(shell);
+  std::string out = fmt::format("== {}\n", c.name);
+  bool refused = false;
+  for (const auto& line : c.lines.empty() ? std::vector<std::string>{"cabinet check"} : c.lines) {
+    console.out_text.clear();
+    console.err_text.clear();
+    const int code = runner.run(line);
+    refused = refused || code != 0 || !console.err_text.empty();
+    out += fmt::format("$ {}\n{}", line, console.out_text);
+    if (!console.err_text.empty()) out += "[stderr]\n" + console.err_text;
+    out += fmt::format("[exit {}]\n", code);
+  }
+  EXPECT_TRUE(refused) << c.name << ": everything went well";
+  return out + "\n";
+}
+
+TEST(CabinetErrors, SayWhatTheySaidBefore) {
+  const auto cases = error_cases();
+  ASSERT_GT(cases.size(), 50U);
+  ::setenv("SOURCE_DATE_EPOCH", "1795000000", 1);
+  const auto before = fs::current_path();
+  const auto folder = fs::temp_directory_path() / fmt::format("servoctl-cabinet-errors-{}", ::getpid());
+  std::string said;
+  for (const auto& c : cases) said += played(c, folder);
+  fs::current_path(before);
+  fs::remove_all(folder);
+  for (std::size_t at = 0; (at = said.find(folder.string() + "/")) != std::string::npos;)
+    said.erase(at, folder.string().size() + 1);
+  const auto golden = errors_folder() / "said.txt";
+  if (std::getenv("SERVOCTL_REWRITE_GOLDEN") != nullptr) {
+    std::ofstream(golden) << said;
+    return;
+  }
+  const auto expected = read_file(golden);
+  ASSERT_TRUE(expected);
+  EXPECT_EQ(*expected, said) << "`./dev golden` writes " << golden << " anew";
+}
+
+}  // namespace
+}  // namespace servoctl::cli
