@@ -131,7 +131,7 @@ Result<Value> back_up_cabinet(show::Desk& desk, const Cabinet& cabinet, std::spa
     desk.errors.erase(desk.errors.begin());
     return fail(std::move(first));
   }
-  const auto parent = fs::absolute(cabinet.file).parent_path();
+  const auto parent = cabinet.file.parent_path();
   FolderInTheMaking making(parent / fmt::format(".backup-{}.partial", ::getpid()));
   if (const auto made = making.make(); !made) return fail(made.error());
   const auto written = write_all(parent / fmt::format(".backup-{}.partial", ::getpid()), cabinet, axes);

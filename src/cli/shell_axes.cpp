@@ -257,8 +257,9 @@ std::vector<Outcome> Shell::perform_side_by_side(const ParsedLine& line, std::ve
     if (!one.result && !known) buses.push_back({nullptr, nullptr, session, {}});
   }
   cabinet::at_all(buses, [&](std::size_t i) {
+    // The result of a part of another bus is its own thread's.
     for (auto& one : runs)
-      if (!one.result && one.run.context.session == buses[i].session) one.carry_out();
+      if (one.run.context.session == buses[i].session && !one.result) one.carry_out();
   });
   progress_.end();
   std::vector<Outcome> out;

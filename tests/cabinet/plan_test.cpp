@@ -217,7 +217,7 @@ TEST(CabinetPlan, TellsWhatTheFileSaysWrongWithItsLine) {
   EXPECT_NE(refusal().find("not a setting"), std::string::npos) << refusal();
   fleet.cabinet.axes[3].heartbeat = 100ms;
   fleet.cabinet.axes[3].heartbeat_at = {33, 4};
-  EXPECT_NE(fleet.look()[3].plan.error().message.find("cabinet.toml:33:4: axis axis4: a sv2 produces no"),
+  EXPECT_NE(fleet.look()[3].plan.error().message.find("cabinet.toml:33:4: axis axis4: sv2 has no heartbeat"),
             std::string::npos);
   parameters = good;
   EXPECT_EQ(refusal(), "taken");

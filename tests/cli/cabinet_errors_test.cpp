@@ -59,6 +59,8 @@ std::string played(const ErrorCase& c, const fs::path& folder) {
   Shell::Options options;
   options.drive_folders = {golden_source() / "eds"};
   options.clock = sim::SimBus::Clock::virtual_time;
+  // Named from here, so that no path of this folder makes a table wider.
+  options.defaults.cabinet = c.files.count("cabinet.toml") != 0 ? "cabinet.toml" : "";
   if (c.files.empty()) options.defaults.bus = "sim:gsd600@1,da200@2";
   Shell shell(console, std::move(options));
   LineRunner runner(shell);
@@ -87,8 +89,7 @@ TEST(CabinetErrors, SayWhatTheySaidBefore) {
   for (const auto& c : cases) said += played(c, folder);
   fs::current_path(before);
   fs::remove_all(folder);
-  for (std::size_t at = 0; (at = said.find(folder.string() + "/")) != std::string::npos;)
-    said.erase(at, folder.string().size() + 1);
+  EXPECT_EQ(said.find(folder.string()), std::string::npos) << "a path of this machine";
   const auto golden = errors_folder() / "said.txt";
   if (std::getenv("SERVOCTL_REWRITE_GOLDEN") != nullptr) {
     std::ofstream(golden) << said;
