@@ -31,6 +31,8 @@ constexpr unsigned kError = 4;
 
 /// The queue of a local socket holds ten datagrams where the system is not told otherwise.
 constexpr std::size_t kInboxFrames = 100'000;
+/// Longer than a member waits for others while it holds the bus.
+constexpr Duration kLockLimit = std::chrono::seconds(1);
 constexpr Duration kPause = std::chrono::microseconds(50);
 
 Datagram datagram_of(const Frame& frame) {
@@ -76,12 +78,12 @@ std::string process_ids(const std::vector<std::string>& members) {
 }  // namespace
 
 LocalBus::LocalBus(std::string name, LocalDirectory directory, Descriptor socket, std::string member,
-                   Duration send_limit)
+                   Duration patience)
     : name_(std::move(name)),
       directory_(std::move(directory)),
       socket_(std::move(socket)),
       member_(std::move(member)),
-      send_limit_(send_limit),
+      patience_(patience),
       owner_(::getpid()) {}
 
 LocalBus::~LocalBus() {
@@ -90,11 +92,10 @@ LocalBus::~LocalBus() {
 
 Result<void> LocalBus::send(const Frame& frame) {
   const auto datagram = datagram_of(frame);
-  const auto limit = now() + send_limit_;
-  if (!lock_until(limit)) return busy(name_, directory_);
-  auto result = deliver_all(datagram, limit);
+  if (!lock_until(now() + kLockLimit)) return busy(name_, directory_);
+  deliver_all(datagram);
   directory_.unlock();
-  return result;
+  return {};
 }
 
 /// Two members that send to each other would wait for each other if they did not read in the meantime.
@@ -107,19 +108,28 @@ bool LocalBus::lock_until(TimePoint limit) {
   return true;
 }
 
-Result<void> LocalBus::deliver_all(std::span<const std::uint8_t> datagram, TimePoint limit) {
+void LocalBus::deliver_all(std::span<const std::uint8_t> datagram) {
   auto waiting = directory_.members();
   std::erase(waiting, member_);
-  for (;;) {
-    std::erase_if(waiting, [&](const auto& member) { return deliver(datagram, member); });
-    if (waiting.empty()) return {};
-    if (now() >= limit) break;
+  std::erase_if(waiting, [&](const auto& member) {
+    const bool done = deliver(datagram, member);
+    return done ? (lagging_.erase(member), true) : lagging_.count(member) != 0;
+  });
+  const auto limit = now() + patience_;
+  while (!waiting.empty() && now() < limit) {
     drain();
     nap(kPause);
+    std::erase_if(waiting, [&](const auto& member) { return deliver(datagram, member); });
   }
-  const auto ids = process_ids(waiting);
-  return fail(Errc::bus, fmt::format("local:{} is blocked by process {}, which does not read", name_, ids),
-              fmt::format("resume it (`kill -CONT {0}`) or end it (`kill {0}`)", ids));
+  if (!waiting.empty()) give_up(waiting);
+}
+
+void LocalBus::give_up(const std::vector<std::string>& members) {
+  lagging_.insert(members.begin(), members.end());
+  notices_.push_back(
+      fmt::format("process {0} does not read local:{1} and loses frames; resume it (`kill -CONT {0}`) or end "
+                  "it (`kill {0}`)",
+                  process_ids(members), name_));
 }
 
 /// False while the member cannot take the frame.
@@ -165,7 +175,7 @@ Result<std::optional<Frame>> LocalBus::receive(TimePoint deadline) {
   }
 }
 
-Result<std::unique_ptr<Bus>> open_local(std::string_view name, Duration send_limit) {
+Result<std::unique_ptr<Bus>> open_local(std::string_view name, Duration patience) {
   if (const auto named = check_local_name(name); !named) return fail(named.error());
   auto directory = LocalDirectory::open(name);
   if (!directory) return fail(directory.error());
@@ -174,7 +184,7 @@ Result<std::unique_ptr<Bus>> open_local(std::string_view name, Duration send_lim
   // Room for a queue of one member that does not read, so that the others still get theirs.
   constexpr int kSendBytes = 1 << 20;
   ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDBUF, &kSendBytes, sizeof kSendBytes);
-  const auto limit = steady_now() + send_limit;
+  const auto limit = steady_now() + kLockLimit;
   while (!directory->try_lock()) {
     if (steady_now() >= limit) return busy(name, *directory);
     nap(kPause);
@@ -183,7 +193,7 @@ Result<std::unique_ptr<Bus>> open_local(std::string_view name, Duration send_lim
   directory->unlock();
   if (!member) return fail(member.error());
   return std::make_unique<LocalBus>(std::string(name), std::move(*directory), std::move(socket),
-                                    std::move(*member), send_limit);
+                                    std::move(*member), patience);
 }
 
 }  // namespace servoctl::can

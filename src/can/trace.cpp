@@ -64,8 +64,8 @@ std::optional<LogFrame> parse_log_line(std::string_view line) {
 
 TraceBus::TraceBus(std::unique_ptr<Bus> inner, TraceFile file, std::string interface_name,
                    Duration clock_offset)
-    : inner_(std::move(inner)),
-      file_(std::move(file)),
+    : file_(std::move(file)),
+      inner_(std::move(inner)),
       interface_name_(std::move(interface_name)),
       clock_offset_(clock_offset) {}
 

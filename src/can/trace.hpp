@@ -67,8 +67,8 @@ class TraceBus final : public Bus {
  private:
   void record(const Frame& frame, TimePoint time);
 
+  TraceFile file_;  ///< Waits for its reader at the end, when the bus is left: nobody waits for us there.
   std::unique_ptr<Bus> inner_;
-  TraceFile file_;
   std::string interface_name_;
   Duration clock_offset_;  ///< From the bus's clock to the times in the file.
 };

@@ -26,7 +26,7 @@ Result<std::unique_ptr<Port>> pcap_to(std::unique_ptr<Port> inner, const std::fi
 class PcapPort final : public Port {
  public:
   PcapPort(std::unique_ptr<Port> inner, can::TraceFile file, PcapForm form, Duration clock_offset)
-      : inner_(std::move(inner)), file_(std::move(file)), form_(form), clock_offset_(clock_offset) {}
+      : file_(std::move(file)), inner_(std::move(inner)), form_(form), clock_offset_(clock_offset) {}
 
   TimePoint now() const override { return inner_->now(); }
   Result<void> send(ByteSpan frame) override;
@@ -42,8 +42,8 @@ class PcapPort final : public Port {
  private:
   void record(Direction direction, ByteSpan frame, TimePoint time);
 
+  can::TraceFile file_;  ///< Waits for its reader at the end, when the port is closed.
   std::unique_ptr<Port> inner_;
-  can::TraceFile file_;
   PcapForm form_;
   Duration clock_offset_;  ///< From the port's clock to the times in the file.
 };

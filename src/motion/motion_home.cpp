@@ -134,7 +134,7 @@ Result<void> check_method(Motion& motion, MotionPlan& plan) {
     return fail(motion.error(Errc::refused, fmt::format("this family has no homing method {}", number),
                              "`objects 0x6098` lists them"));
   plan.value = static_cast<double>(number);
-  plan.summary = fmt::format("home by method {}{}", number, label != nullptr ? " " + label->label : "");
+  plan.summary = fmt::format("{}{}", number, label != nullptr ? " " + label->label : "");
   return {};
 }
 
@@ -193,8 +193,8 @@ Result<MotionPlan> plan_home(Motion& motion, const Home& home) {
   plan.speed = std::max(fast->value, slow.value);
   plan.unit = fast->unit;
   plan.longest = home.longest.value_or(longest_homing(motion, fast->value, slow.value));
-  plan.summary +=
-      fmt::format(" at {} and {} {}", number_text(fast->value), number_text(slow.value), fast->unit);
+  plan.summary = fmt::format("home by method {} at {} and {} {}", plan.summary, number_text(fast->value),
+                             number_text(slow.value), fast->unit);
   for (const auto word : motion.rules().start_homing)
     plan.moving.emplace_back(objects::kControlword, store_le(word, 2));
   motion.set_standstill(plan.speed);

@@ -144,10 +144,10 @@ Result<double> way_of(const Motion& motion, double turns) {
                            "add --turn (6064h increments per revolution), or use --for TIME"));
 }
 
-std::string until_text(const Jog& jog) {
-  if (jog.length) return "for " + servoctl::to_string(*jog.length);
-  if (jog.turns) return fmt::format("for {} turns", number_text(*jog.turns));
-  return "while an arrow key is held";
+std::string jog_text(const std::string& speed, const Jog& jog) {
+  if (jog.length) return fmt::format("turn at {} for {}", speed, servoctl::to_string(*jog.length));
+  if (jog.turns) return fmt::format("turn at {} for {} turns", speed, number_text(*jog.turns));
+  return fmt::format("turn at {} while an arrow key is held", speed);
 }
 
 }  // namespace
@@ -175,7 +175,7 @@ Result<MotionPlan> plan_jog(Motion& motion, const Jog& jog) {
     if (!way) return fail(way.error());
     plan.way = *way;
   }
-  plan.summary = fmt::format("turn at {} {}", motion.units().words(speed.value, speed.unit), until_text(jog));
+  plan.summary = jog_text(motion.units().words(speed.value, speed.unit), jog);
   plan.moving = {{objects::kTargetVelocity, plan.command},
                  {objects::kTargetVelocity, Bytes(plan.command.size(), 0)}};
   motion.set_standstill(speed.value);

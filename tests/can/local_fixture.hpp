@@ -41,8 +41,8 @@ class LocalBusTest : public testing::Test {
   }
 
   static std::unique_ptr<Bus> join(const char* name = "demo",
-                                   Duration send_limit = std::chrono::seconds(20)) {
-    auto bus = open_local(name, send_limit);
+                                   Duration patience = std::chrono::seconds(20)) {
+    auto bus = open_local(name, patience);
     EXPECT_TRUE(bus) << bus.error().message;
     return std::move(*bus);
   }

@@ -20,6 +20,11 @@ namespace servoctl::can {
 class ScriptedBus final : public Bus {
  public:
   explicit ScriptedBus(TimePoint start) : now_(start) {}
+  ScriptedBus(const ScriptedBus&) = delete;
+  ScriptedBus& operator=(const ScriptedBus&) = delete;
+  ~ScriptedBus() override {
+    if (left != nullptr) *left = true;
+  }
 
   TimePoint now() const override { return now_; }
   Result<void> send(const Frame&) override {
@@ -47,6 +52,7 @@ class ScriptedBus final : public Bus {
   TimePoint next = kNever;
   bool broken = false;
   bool interrupted = false;
+  bool* left = nullptr;  ///< Told when nobody is on the bus any more.
 
  private:
   TimePoint now_;

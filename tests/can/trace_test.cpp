@@ -237,6 +237,20 @@ TEST_F(TracePipe, IsNotWaitedForAtTheEndAndSaysWhatIsMissing) {
   EXPECT_EQ(std::stoul(told.front().message) + read_lines(), kFrames) << told.front().message;
 }
 
+TEST_F(TracePipe, LeavesTheBusBeforeItWaitsForItsReader) {
+  open_reader();
+  bool left = false;
+  bool left_when_told = false;
+  auto inner = std::make_unique<ScriptedBus>(kStart);
+  inner->left = &left;
+  auto bus = trace_to(std::move(inner), file_, "can0", TraceClock::bus, [&](const Error&) {
+               left_when_told = left;
+             }).value();
+  for (int i = 0; i < 1'000; ++i) ASSERT_TRUE(bus->send(parsed("080#")));
+  bus.reset();
+  EXPECT_TRUE(left_when_told) << "meanwhile nobody takes what others send to it";
+}
+
 TEST_F(Trace, IsRefusedWhenTheFileCannotBeMade) {
   const auto bus = trace_to(std::make_unique<ScriptedBus>(kStart), "/nosuchfolder/trace.log", "can0");
   ASSERT_FALSE(bus);

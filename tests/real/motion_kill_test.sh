@@ -4,8 +4,7 @@
 # its watchdog after SIGKILL and after the cable was cut (on a vcan; the cable is that between can0 and can1 then). A
 # drive without a watchdog is not killed by SIGKILL, and goes on when the cable is cut: servoctl says so.
 # usage: motion_kill_test.sh SERVOCTL [KILLS [BUS [FAMILY]]]
-# Job control: a process whose parent does not control it cannot be stopped by SIGTSTP.
-set -um
+set -u
 servoctl=$1
 kills=${2:-20}
 bus=${3:-local:motion-kill-$$}
@@ -15,7 +14,12 @@ export SERVOCTL_BUS=$bus SERVOCTL_NODE=1 SERVOCTL_DRIVE=$family
 failures=0
 trap 'kill "$sim" 2>/dev/null; wait "$sim" 2>/dev/null; rm -rf "$work"' EXIT
 
-fail() { failures=$((failures + 1)); printf 'FAILED %s\n' "$*"; }
+# With the first failure, who is there still: a process that is stopped, or waits for what does not come.
+fail() {
+  failures=$((failures + 1))
+  printf 'FAILED %s\n' "$*"
+  [ "$failures" -gt 1 ] || ps -o pid,ppid,pgid,stat,wchan:24,etimes,args --deselect -p 2 --ppid 2 | cut -c1-160
+}
 wait_for() { for _ in $(seq 200); do "$servoctl" status --json >/dev/null 2>&1 && return 0; sleep 0.05; done; return 1; }
 state() { "$servoctl" status --json | jq -r '.result[0] | "\(.energised) \(.state)"'; }
 
@@ -48,6 +52,10 @@ for command in "${commands[@]}"; do
   # shellcheck disable=SC2086
   "$servoctl" $command --dry-run >"$work/out" 2>&1 || fail "$command does not begin: $(cat "$work/out")"
 done
+# Runs a program as a shell with job control does: in a process group of its own, without which SIGTSTP does not stop it, and
+# with the signals that whoever started this test may have made it deaf to. The shell has no job control itself: it leaves the
+# loop that it is in when a job is stopped.
+in_group() { exec perl -e 'setpgrp; exec @ARGV' env --default-signal=INT,QUIT,TSTP "$@"; }
 # Ends, or is stopped with the drive at rest: then it goes on, but not with the motion.
 end_or_stop() {
   for _ in $(seq 200); do
@@ -61,14 +69,15 @@ held() { "$servoctl" read "${objects[@]}" --json | jq -c '[.result[].value]'; }
 before=$(held)
 RANDOM=${SEED:-4711}
 moving=0
-# One kill, of this number. A function, because job control leaves a loop in which a job is stopped.
+tried=0
+# One kill, of this number.
 kill_once() {
+  tried=$((tried + 1))
   command=${commands[RANDOM % ${#commands[@]}]}
   signal=${signals[$1 % ${#signals[@]}]}
   delay=$((500 + RANDOM % 2000))  # It listens for a second before it begins.
-  # Whoever starts this test may have made it deaf to them.
   # shellcheck disable=SC2086
-  env --default-signal=INT,QUIT,TSTP "$servoctl" $command --yes >"$work/out" 2>"$work/err" &
+  in_group "$servoctl" $command --yes >"$work/out" 2>"$work/err" &
   pid=$!
   sleep "$((delay / 1000)).$(printf %03d $((delay % 1000)))"
   case $(state) in true*) moving=$((moving + 1)) ;; esac
@@ -92,6 +101,7 @@ kill_once() {
   [ "$signal" = KILL ] && { "$servoctl" nmt reset --wait --yes >/dev/null 2>&1 || fail "the drive does not restart"; }
 }
 for i in $(seq "$kills"); do kill_once "$i"; done
+[ "$tried" -eq "$kills" ] || fail "$tried of $kills kills were tried"
 
 # The motion begins, and its drive is energised.
 start_jog() {

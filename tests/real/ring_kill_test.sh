@@ -3,8 +3,7 @@
 # the simulated drive, a process of its own, is without power: at once after a signal that can be caught, after the time
 # of its sync manager's watchdog after SIGKILL. What was set is as it was, and the drive in PRE-OP, but for SIGKILL.
 # usage: ring_kill_test.sh SERVOCTL [KILLS [MASTER_URL [RING_URL]]]
-# Job control: a process whose parent does not control it cannot be stopped by SIGTSTP.
-set -um
+set -u
 servoctl=$1
 kills=${2:-20}
 bus=${3:-coe:local:ring-kill-$$}
@@ -14,7 +13,12 @@ export SERVOCTL_BUS=$bus SERVOCTL_NODE=1 SERVOCTL_DRIVE=sv2
 failures=0
 trap 'kill "$sim" 2>/dev/null; wait "$sim" 2>/dev/null; rm -rf "$work"' EXIT
 
-fail() { failures=$((failures + 1)); printf 'FAILED %s\n' "$*"; }
+# With the first failure, who is there still: a process that is stopped, or waits for what does not come.
+fail() {
+  failures=$((failures + 1))
+  printf 'FAILED %s\n' "$*"
+  [ "$failures" -gt 1 ] || ps -o pid,ppid,pgid,stat,wchan:24,etimes,args --deselect -p 2 --ppid 2 | cut -c1-160
+}
 wait_for() { for _ in $(seq 200); do "$servoctl" status --json >/dev/null 2>&1 && return 0; sleep 0.05; done; return 1; }
 state() { "$servoctl" status --json | jq -r '.result[0] | "\(.energised) \(.state) \(.al_state)"'; }
 held() { "$servoctl" read 0x6060 0x60FF 0x1C12:0 0x1C12:1 0x1C13:0 --json | jq -c '[.result[].value]'; }
@@ -29,6 +33,11 @@ signals=(INT TERM HUP QUIT TSTP USR1 KILL INTINT)
 before=$(held)
 RANDOM=${SEED:-4711}
 moving=0
+tried=0
+# Runs a program as a shell with job control does: in a process group of its own, without which SIGTSTP does not stop it, and
+# with the signals that whoever started this test may have made it deaf to. The shell has no job control itself: it leaves the
+# loop that it is in when a job is stopped.
+in_group() { exec perl -e 'setpgrp; exec @ARGV' env --default-signal=INT,QUIT,TSTP "$@"; }
 # Ends, or is stopped with the drive at rest: then it goes on, but not with the motion.
 end_or_stop() {
   for _ in $(seq 200); do
@@ -37,14 +46,14 @@ end_or_stop() {
   done
   kill -INT "$1"; kill -CONT "$1"
 }
-# One kill, of this number. A function, because job control leaves a loop in which a job is stopped.
+# One kill, of this number.
 kill_once() {
+  tried=$((tried + 1))
   command=${commands[RANDOM % ${#commands[@]}]}
   signal=${signals[$1 % ${#signals[@]}]}
   delay=$((20 + RANDOM % 2500))
-  # Whoever starts this test may have made it deaf to them.
   # shellcheck disable=SC2086
-  env --default-signal=INT,QUIT,TSTP "$servoctl" $command --yes >"$work/out" 2>"$work/err" &
+  in_group "$servoctl" $command --yes >"$work/out" 2>"$work/err" &
   pid=$!
   sleep "$((delay / 1000)).$(printf %03d $((delay % 1000)))"
   grep -q ' rpm\|ENERGISED' "$work/out" "$work/err" && kill -0 "$pid" 2>/dev/null && moving=$((moving + 1))
@@ -79,6 +88,7 @@ kill_once() {
   fi
 }
 for i in $(seq "$kills"); do kill_once "$i"; done
+[ "$tried" -eq "$kills" ] || fail "$tried of $kills kills were tried"
 
 # What is held and falls by itself is an error; what its user ends is none.
 timeout 20 "$servoctl" -b 'coe:sim:sv2@1?fall=1s' state op >"$work/out" 2>"$work/err"
