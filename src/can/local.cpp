@@ -113,7 +113,8 @@ void LocalBus::deliver_all(std::span<const std::uint8_t> datagram) {
   std::erase(waiting, member_);
   std::erase_if(waiting, [&](const auto& member) {
     const bool done = deliver(datagram, member);
-    return done ? (lagging_.erase(member), true) : lagging_.count(member) != 0;
+    if (done) lagging_.erase(member);
+    return done || lagging_.count(member) != 0;
   });
   const auto limit = now() + patience_;
   while (!waiting.empty() && now() < limit) {
