@@ -37,7 +37,8 @@ Result<report::Value> run_drives(Context& context, const Arguments& arguments) {
   }
   if (table.rows.empty()) {
     std::string folders;
-    for (const auto& folder : context.drive_folders) append(folders, folder.string());
+    for (const auto& folder : std::span<const std::filesystem::path>(context.drive_folders))
+      append(folders, folder.string());
     return fail(Errc::file, "no drive data was found in " + folders, "set SERVOCTL_DRIVES to its folder");
   }
   return report::Value(std::move(table));

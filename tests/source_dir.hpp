@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace servoctl {
 
@@ -9,6 +10,6 @@ namespace servoctl {
 std::string source_dir();
 
 /// Where the data of drives are looked for.
-inline const std::filesystem::path kFolders[] = {std::filesystem::path(source_dir()) / "eds"};
+inline const std::vector<std::filesystem::path> kFolders{std::filesystem::path(source_dir()) / "eds"};
 
 }  // namespace servoctl

@@ -110,7 +110,6 @@ int run_tab(const std::vector<std::string>& words, StandardConsole& console) {
   ::alarm(kLongestWaitSeconds);
   Shell::Options options;
   options.defaults = settings_from_environment();
-  options.drive_folders = drive::drive_folders();
   options.state_folder = state_folder_as_it_is();
   Shell shell(console, std::move(options));
   const auto answer = answer_tab(std::span(words).subspan(1), shell);
@@ -122,7 +121,6 @@ int run(const std::vector<std::string>& words, StandardConsole& console) {
   if (!words.empty() && words.front() == kTabQuestion) return run_tab(words, console);
   Shell::Options options;
   options.defaults = settings_from_environment();
-  options.drive_folders = drive::drive_folders();
   options.state_folder = state_folder();
   options.cancelled = interrupted;
   Shell shell(console, std::move(options));

@@ -33,7 +33,7 @@ class Shell {
  public:
   struct Options {
     Settings defaults;
-    std::vector<std::filesystem::path> drive_folders;
+    drive::Folders drive_folders;
     std::filesystem::path state_folder;  ///< As Context::state_folder.
     sim::SimBus::Clock clock = sim::SimBus::Clock::real_time;
     std::function<bool()> cancelled;
@@ -117,7 +117,7 @@ class Shell {
   Result<std::unique_ptr<session::RingEnd>> open_ring_end(const Settings& settings);
   /// As BusHolder::open_register_end().
   Result<std::unique_ptr<session::RegisterEnd>> open_register_end(const Settings& settings);
-  const std::vector<std::filesystem::path>& drive_folders() const { return options_.drive_folders; }
+  const drive::Folders& drive_folders() const { return options_.drive_folders; }
   const std::filesystem::path& state_folder() const { return options_.state_folder; }
 
   /// Lines about what nodes told since the last call.

@@ -12,7 +12,7 @@ namespace servoctl::command {
 
 /// The desk of one command line: with what its words and the front end add.
 struct Context : show::Desk {
-  std::span<const std::filesystem::path> drive_folders;
+  drive::Folders drive_folders;
   std::vector<const cabinet::Axis*> axes;  ///< That the nodes are; empty where they are just nodes.
   bool nodes_typed = false;                ///< In the line itself; else by `use` or the environment.
   bool read_only = false;                  ///< Nothing in a drive may be changed.

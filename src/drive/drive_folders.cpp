@@ -39,4 +39,10 @@ std::vector<fs::path> drive_folders() {
   return out;
 }
 
+Folders::operator std::span<const fs::path>() const {
+  if (given_) return *given_;
+  static const auto found = drive_folders();
+  return found;
+}
+
 }  // namespace servoctl::drive

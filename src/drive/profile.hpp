@@ -2,11 +2,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "base/result.hpp"
@@ -57,6 +59,21 @@ std::string canonical_id(std::string_view id);
 /// (`$XDG_CONFIG_HOME/servoctl/drives`, `~/.config/servoctl/drives`), the data installed with the program or
 /// standing in its source tree.
 std::vector<std::filesystem::path> drive_folders();
+
+/// The folders of a program: drive_folders(), looked for when they are first asked for (most lines never do),
+/// or others that are given to it.
+class Folders {
+ public:
+  Folders() = default;
+  // NOLINTBEGIN(google-explicit-constructor): stands wherever folders do.
+  Folders(std::vector<std::filesystem::path> given) : given_(std::move(given)) {}
+  Folders(std::initializer_list<std::filesystem::path> given) : given_(given) {}
+  operator std::span<const std::filesystem::path>() const;
+  // NOLINTEND(google-explicit-constructor)
+
+ private:
+  std::optional<std::vector<std::filesystem::path>> given_;
+};
 
 /// A family that was found: its name and its files without extension.
 struct Family {

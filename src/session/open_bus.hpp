@@ -11,15 +11,16 @@
 #include "can/bus.hpp"
 #include "can/link.hpp"
 #include "can/trace.hpp"
+#include "drive/profile.hpp"
 #include "sim/sim_bus.hpp"
 
 namespace servoctl::session {
 
 /// What is needed to open a bus beside its URL.
 struct BusOptions {
-  std::span<const std::filesystem::path> drive_folders;  ///< Where simulated drives find their data.
-  std::filesystem::path trace;                           ///< Every frame goes into this file; empty: none.
-  can::TraceFailed trace_failed = {};                    ///< See can::trace_to().
+  drive::Folders drive_folders;        ///< Where simulated drives find their data.
+  std::filesystem::path trace;         ///< Every frame goes into this file; empty: none.
+  can::TraceFailed trace_failed = {};  ///< See can::trace_to().
   sim::SimBus::Clock clock = sim::SimBus::Clock::real_time;
 };
 

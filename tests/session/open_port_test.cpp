@@ -8,7 +8,7 @@
 namespace servoctl::session {
 namespace {
 
-const std::filesystem::path kFolders[] = {std::filesystem::path(source_dir()) / "eds"};
+const std::vector<std::filesystem::path> kFolders = {std::filesystem::path(source_dir()) / "eds"};
 
 Result<std::unique_ptr<ethernet::Port>> open(std::string_view url) {
   return open_port(
