@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,8 +14,8 @@ namespace servoctl::cli {
 class FamilyGate {
  public:
   struct Options {
-    std::span<const std::filesystem::path> folders;  ///< Of the families that may fit instead.
-    bool force = false;                              ///< --force-family
+    drive::Folders folders;  ///< Of the families that may fit instead.
+    bool force = false;      ///< --force-family
     bool dry_run = false;
   };
 
