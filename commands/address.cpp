@@ -7,11 +7,14 @@
 #include "canopen/node_id.hpp"
 #include "command/command.hpp"
 #include "command/duration_option.hpp"
+#include "command/interface_option.hpp"
 #include "command/setting_options.hpp"
 #include "drive/bitrate.hpp"
+#include "session/open_bus.hpp"
 #include "session/scan.hpp"
 #include "settings/address_plan_run.hpp"
-#include "show/records.hpp"
+#include "settings/address_table.hpp"
+#include "settings/bitrate_switch.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -95,7 +98,21 @@ const cabinet::Axis* axis_at(const Context& context, const AddressChange& change
   return nullptr;
 }
 
-std::string question_address(const Context& context, std::span<const AddressChange> changes) {
+std::string question_end(const Context& context, std::span<const AddressChange> changes,
+                         const settings::BitrateSwitch& follower) {
+  if (follower.follows()) {
+    auto out = "; " + settings::switch_text(follower, changes.front());
+    if (const auto who = who_receives(follower.link->name()); !who.empty()) out += "; " + who;
+    return out + ".";
+  }
+  const bool restarts = std::ranges::any_of(changes, &AddressChange::restarts);
+  return restarts ? fmt::format("? It is restarted (NMT {}).",
+                                drive::name(context.profile->rules.nmt.address_after))
+                  : std::string("? It holds when the drive is switched off and on.");
+}
+
+std::string question_address(const Context& context, std::span<const AddressChange> changes,
+                             const settings::BitrateSwitch& follower) {
   std::string out;
   for (const auto& change : changes) {
     if (change.idle()) continue;
@@ -108,11 +125,8 @@ std::string question_address(const Context& context, std::span<const AddressChan
   for (const auto& change : changes)
     if (const auto* other = axis_at(context, change); other != nullptr)
       out += fmt::format("; in the cabinet file {} is the place of axis {}", change.to, other->name);
-  const auto& rules = context.profile->rules.nmt;
-  const bool restarts =
-      std::any_of(changes.begin(), changes.end(), [](const auto& c) { return c.restarts(); });
-  return out + (restarts ? fmt::format("? It is restarted (NMT {}).", drive::name(rules.address_after))
-                         : std::string("? It holds when the drive is switched off and on."));
+  if (out.empty()) out = "Every drive has it for its next start";
+  return out + question_end(context, changes, follower);
 }
 
 /// What a file of the user's says of the drive that has moved.
@@ -136,52 +150,50 @@ void tell_power(Context& context, const AddressChange& change, const AddressOutc
       change.node, change.to, change.to));
 }
 
-void tell_next_bitrate(Context& context, std::uint32_t bitrate) {
-  for (const auto& line : settings::bitrate_steps(context.session->url(), bitrate))
+void tell_next_bitrate(Context& context, const settings::BitrateSwitch& follower) {
+  if (follower.link != nullptr && !follower.why_not.empty())
+    context.notices.push_back(fmt::format("{} is left alone: {}", follower.link->name(), follower.why_not));
+  for (const auto& line : settings::bitrate_steps(context.session->url(), follower.bitrate))
     context.notices.push_back(line);
 }
 
-Value kept_value(session::Kept kept) {
-  return kept == session::Kept::unknown ? Value() : Value(kept == session::Kept::yes);
-}
-
-report::List address_row(const AddressChange& change, const AddressOutcome& outcome) {
-  report::List stayed;
-  for (const auto object : outcome.stayed) stayed.emplace_back(to_string(object));
-  return {change.node,
-          change.to,
-          change.bitrate ? Value(*change.bitrate) : Value(),
-          change.bitrate ? Value(drive::bitrate_text(*change.bitrate)) : Value(),
-          change.identity.serial ? Value(*change.identity.serial) : Value(),
-          settings::text_of(outcome.end),
-          kept_value(outcome.kept),
-          Value(std::move(stayed)),
-          outcome.error ? show::error_record(*outcome.error) : Value()};
+/// How the interface follows its drives to another bitrate, where one is wished.
+Result<settings::BitrateSwitch> follower_of(Context& context, std::span<const AddressChange> changes,
+                                            const settings::AddressWish& wish,
+                                            const settings::AddressOptions& options) {
+  if (!wish.bitrate) return settings::BitrateSwitch{};
+  const auto name = session::canonical_url(context.session->url());
+  auto link = name.find(':') == std::string::npos ? can::open_link(name) : nullptr;
+  auto out =
+      settings::plan_switch(context, link ? std::move(*link) : nullptr, changes, *wish.bitrate, options);
+  if (!out || !out->follows()) return out;
+  if (const auto held = hold_energised(context, name); !held) return fail(held.error());
+  return out;
 }
 
 Result<Value> change_addresses(Context& context, std::span<const AddressChange> changes,
-                               const settings::AddressOptions& options) {
-  report::Table table;
-  table.columns = {{"node"},
-                   {"new_node", "new"},
-                   {"bitrate", "", Show::json},
-                   {"bitrate_text", "bitrate", Show::text},
-                   {"serial"},
-                   {"result"},
-                   {"kept", "", Show::json},
-                   {"cob_ids_left", "", Show::json},
-                   {"error", "", Show::json}};
-  std::optional<std::uint32_t> bitrate;
-  for (const auto& change : changes) {
-    const auto outcome = settings::change_address(context, change, options);
-    if (outcome.error) context.errors.push_back(*outcome.error);
-    tell_power(context, change, outcome);
-    tell_axes(context, change, outcome);
-    if (outcome.end == AddressEnd::awaits_restart && change.bitrate) bitrate = change.bitrate;
-    table.rows.push_back(address_row(change, outcome));
+                               const settings::AddressOptions& options, settings::BitrateSwitch& follower) {
+  std::vector<AddressOutcome> outcomes;
+  for (const auto& change : changes) outcomes.push_back(settings::change_address(context, change, options));
+  const bool all = std::ranges::all_of(outcomes, [](const AddressOutcome& outcome) {
+    return !outcome.error &&
+           (outcome.end == AddressEnd::awaits_restart || outcome.end == AddressEnd::nothing_to_do);
+  });
+  if (follower.follows() && all)
+    settings::follow_bitrate(context, follower, changes, outcomes, options);
+  else if (follower.follows())
+    context.notices.push_back(
+        fmt::format("{} stays at its bitrate, and nothing is restarted: not every drive was written",
+                    follower.link->name()));
+  bool awaits_bitrate = false;
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    if (outcomes[i].error) context.errors.push_back(*outcomes[i].error);
+    tell_power(context, changes[i], outcomes[i]);
+    tell_axes(context, changes[i], outcomes[i]);
+    awaits_bitrate = awaits_bitrate || (outcomes[i].end == AddressEnd::awaits_restart && changes[i].bitrate);
   }
-  if (bitrate) tell_next_bitrate(context, *bitrate);
-  return Value(std::move(table));
+  if (awaits_bitrate) tell_next_bitrate(context, follower);
+  return Value(settings::address_table(changes, outcomes));
 }
 
 Result<Value> run_plan(Context& context, const Arguments& arguments,
@@ -226,11 +238,18 @@ Result<Value> run_address(Context& context, const Arguments& arguments) {
     changes.push_back(std::move(*change));
   }
   if (const auto free = settings::refuse_taken(*context.session, targets); !free) return fail(free.error());
-  if (context.dry_run) return settings::planned_address(context, changes, options->unlock);
-  if (std::any_of(changes.begin(), changes.end(), [](const auto& change) { return !change.idle(); }))
-    if (const auto agreed = context.confirm(question_address(context, changes)); !agreed)
+  auto follower = follower_of(context, changes, *wish, *options);
+  if (!follower) return fail(follower.error());
+  if (context.dry_run) {
+    if (follower->follows())
+      context.notices.push_back("then " + settings::switch_commands(*follower, changes.front()));
+    return settings::planned_address(context, changes, options->unlock);
+  }
+  const bool idle = std::ranges::all_of(changes, &AddressChange::idle);
+  if (!idle || follower->follows())
+    if (const auto agreed = context.confirm(question_address(context, changes, *follower)); !agreed)
       return fail(agreed.error());
-  return change_addresses(context, changes, *options);
+  return change_addresses(context, changes, *options, *follower);
 }
 
 Result<void> check_address(Context& context, const Arguments& arguments) {
@@ -241,7 +260,7 @@ Result<void> check_address(Context& context, const Arguments& arguments) {
 
 constexpr Example kAddressExamples[] = {
     {"address 5 -n 1 -d gsd600", "node 1 becomes node 5"},
-    {"address --bitrate 500k -n all -d gsd600", "every drive of the bus; in force when all have restarted"},
+    {"address --bitrate 500k -n all -d gsd600", "every drive of the bus, and its interface"},
     {"address --plan nodes.csv -d gsd600", "renumber several by a table with the columns node,new"},
 };
 
@@ -256,10 +275,14 @@ const Command kAddress{
         "drive (NMT), or says that it is to be switched off and on: `drives FAMILY` shows which. Then the "
         "drive is looked for at its new node-ID, and held against what it said of itself before. A node-ID "
         "that somebody uses is refused: all that answer, and all that are heard within 1.5 s. An energised "
-        "drive is left alone. COB-IDs that did not follow the node-ID are listed. A drive with a new "
-        "bitrate is not restarted: all nodes of the bus have to be changed first, and the interface with "
-        "them; what to do is listed. Masters, and nodes that watch the heartbeat of the drive, are not "
-        "told of its new number.\n\n"
+        "drive is left alone. COB-IDs that did not follow the node-ID are listed. Masters, and nodes that watch the "
+        "heartbeat of the drive, are not told of its new number.\n\n"
+        "With --bitrate, all nodes of the bus are named (-n all) and change together: all are written first, then "
+        "restarted by one NMT command, the interface is taken to the new bitrate, and each drive is looked for; "
+        "where none took it, the interface goes back. Drives that have to be switched off and on need --wait: the "
+        "interface changes when all are off. It is left alone, and what to do by hand is listed, where it has no "
+        "bitrate that can be set (an slcan adapter is named with its new one), where the right CAP_NET_ADMIN is "
+        "missing, or where somebody on the bus would be left behind. --dry-run shows the commands.\n\n"
         "--plan FILE.csv renumbers several (columns node,new; serial and "
         "bitrate where wanted): all are looked at first, and each moves when its new node-ID is free; "
         "drives that exchange theirs go through a free one. It ends with the first that fails; "

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "canopen/cob_id.hpp"
+#include "canopen/node_list.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/can_network.hpp"
 #include "session/hearing.hpp"
@@ -83,6 +84,18 @@ Result<std::map<std::uint8_t, std::string>> nodes_in_use(Session& session,
   if (!waited) return fail(waited.error());
   const auto own = can->heartbeat_node();
   if (own && wanted.count(*own) > 0) out[*own] = "carries servoctl's own heartbeat";
+  return out;
+}
+
+Result<std::vector<std::uint8_t>> nodes_beside(Session& session, std::span<const std::uint8_t> nodes) {
+  const auto used = nodes_in_use(session, canopen::every_node_id());
+  if (!used) return fail(used.error());
+  const auto* can = session.can();
+  std::vector<std::uint8_t> out;
+  for (const auto& [node, how] : *used) {
+    const bool is_own = can != nullptr && can->heartbeat_node() == node;
+    if (!is_own && std::find(nodes.begin(), nodes.end(), node) == nodes.end()) out.push_back(node);
+  }
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "drive/rules.hpp"
 #include "session/session.hpp"
@@ -20,6 +21,9 @@ inline constexpr Duration kAddressListening = std::chrono::milliseconds(1500);
 Result<std::map<std::uint8_t, std::string>> nodes_in_use(Session& session,
                                                          std::span<const std::uint8_t> nodes,
                                                          Duration listening = kAddressListening);
+
+/// Those that use the bus beside `nodes`, as nodes_in_use() finds them; servoctl's own heartbeat is nobody.
+Result<std::vector<std::uint8_t>> nodes_beside(Session& session, std::span<const std::uint8_t> nodes);
 
 /// Sends the node the NMT command that puts a new address in force; nothing for a power cycle. What was heard
 /// of it is forgotten: another may answer under its number from now on.

@@ -106,9 +106,8 @@ Result<AddressChange> plan_address(show::Desk& desk, std::uint8_t node, const Ad
     if (const auto done = add_write(desk, out, rules.node_id, out.to, out.moves()); !done)
       return fail(done.error());
   if (wish.bitrate) {
-    const auto before = out.writes.size();
     if (const auto done = add_write(desk, out, rules.bitrate, *code, false); !done) return fail(done.error());
-    if (out.writes.size() > before) out.bitrate = wish.bitrate;
+    out.bitrate = wish.bitrate;
   }
   auto cob_ids = out.moves() ? read_own_cob_ids(desk, node) : Result<session::Values>(session::Values{});
   if (!cob_ids) return fail(cob_ids.error());
@@ -149,6 +148,7 @@ std::string_view text_of(AddressEnd end) {
   switch (end) {
     case AddressEnd::nothing_to_do: return "nothing to do";
     case AddressEnd::moved: return "moved";
+    case AddressEnd::at_bitrate: return "found at its new bitrate";
     case AddressEnd::awaits_restart: return "written; holds from its next start";
     case AddressEnd::as_before: return "not changed";
     case AddressEnd::failed: break;
@@ -168,13 +168,21 @@ Result<report::Value> planned_address(show::Desk& desk, std::span<const AddressC
 std::vector<std::string> bitrate_steps(const std::string& bus_url, std::uint32_t bitrate) {
   auto name = session::canonical_url(bus_url);
   const bool is_serial = name.starts_with("slcan:");
-  if (name.find(':') != std::string::npos) name = "can0";
-  return {
-      "change all nodes of the bus before any of them restarts: one with another bitrate disturbs the rest",
-      "then switch all of them off",
-      is_serial ? fmt::format("name the bus with its new bitrate: slcan:PORT@{}", bitrate)
-                : fmt::format("`bus up {} --bitrate {}`", name, bitrate),
-      "switch them on; `scan` shows who answers"};
+  const bool is_kernels = name.find(':') == std::string::npos;
+  std::vector<std::string> out;
+  if (is_kernels)
+    out.push_back(fmt::format(
+        "`address --bitrate {} -n all` restarts all drives and switches {} with them; by hand:", bitrate,
+        name));
+  else
+    name = "can0";
+  out.push_back(
+      "change all nodes of the bus before any of them restarts: one with another bitrate disturbs the rest");
+  out.push_back("then switch all of them off");
+  out.push_back(is_serial ? fmt::format("name the bus with its new bitrate: slcan:PORT@{}", bitrate)
+                          : fmt::format("`bus up {} --bitrate {}`", name, bitrate));
+  out.push_back("switch them on; `scan` shows who answers");
+  return out;
 }
 
 }  // namespace servoctl::settings

@@ -24,8 +24,8 @@ struct AddressWish {
 /// What leads one drive to its new address.
 struct AddressChange {
   std::uint8_t node = 0;
-  std::uint8_t to = 0;  ///< `node` where it stays.
-  std::optional<std::uint32_t> bitrate;
+  std::uint8_t to = 0;                   ///< `node` where it stays.
+  std::optional<std::uint32_t> bitrate;  ///< What it has from its next start on, where one was wished.
   session::Identity identity;
   std::vector<session::SdoRequest> writes;
   std::vector<Bytes> before;  ///< What the objects of `writes` hold now.
@@ -57,6 +57,7 @@ Result<void> refuse_taken(session::Session& session, std::span<const std::uint8_
 enum class AddressEnd : std::uint8_t {
   nothing_to_do,
   moved,           ///< Found at its new address, the same drive.
+  at_bitrate,      ///< Found at its new bitrate, and at its new address if it has one, the same drive.
   awaits_restart,  ///< Written and read back; it holds when the drive is switched off and on.
   as_before,       ///< It failed, and its parameters hold what they held.
   failed           ///< The error says where the drive is, as far as that is known.
@@ -81,6 +82,9 @@ struct AddressOutcome {
 /// write or the storing fails, the old values are written back and nothing is restarted. From the first write
 /// to the restart Ctrl-C is not heard. Nobody is asked; notices go to the desk.
 AddressOutcome change_address(show::Desk& desk, const AddressChange& change, const AddressOptions& options);
+
+/// Looks, as change_address() does, for a drive that was restarted since: `so_far` is what came of it before.
+AddressOutcome find_again(show::Desk& desk, const AddressChange& change, AddressOutcome so_far);
 
 /// The frames of that, as `--dry-run` shows them.
 Result<report::Value> planned_address(show::Desk& desk, std::span<const AddressChange> changes, bool unlock);

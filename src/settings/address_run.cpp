@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "base/duration.hpp"
+#include "drive/bitrate.hpp"
 #include "drive/naming.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/identify.hpp"
@@ -40,6 +41,12 @@ class AddressRun {
       return std::move(out_);
     }
     if (change_->writes.empty() || write()) restart();
+    return std::move(out_);
+  }
+
+  AddressOutcome find_from(AddressOutcome so_far) {
+    out_ = std::move(so_far);
+    find();
     return std::move(out_);
   }
 
@@ -185,6 +192,11 @@ class AddressRun {
   }
 
   void not_there(bool old) {
+    if (change_->bitrate)
+      return void(fail_with(
+          AddressEnd::failed,
+          about(Errc::timeout, fmt::format("no answer at {}", drive::bitrate_text(*change_->bitrate)),
+                "switch it off and on: at another bitrate it disturbs the others")));
     if (!old)
       return void(fail_with(
           AddressEnd::failed,
@@ -208,7 +220,7 @@ class AddressRun {
   }
 
   void arrived() {
-    out_.end = AddressEnd::moved;
+    out_.end = change_->bitrate ? AddressEnd::at_bitrate : AddressEnd::moved;
     if (!change_->moves()) return;
     if (!tells_itself_apart(change_->identity))
       desk_->notices.push_back(fmt::format(
@@ -246,6 +258,11 @@ class AddressRun {
 
 AddressOutcome change_address(show::Desk& desk, const AddressChange& change, const AddressOptions& options) {
   return AddressRun(desk, change, options).run();
+}
+
+AddressOutcome find_again(show::Desk& desk, const AddressChange& change, AddressOutcome so_far) {
+  const AddressOptions none;
+  return AddressRun(desk, change, none).find_from(std::move(so_far));
 }
 
 }  // namespace servoctl::settings

@@ -1,0 +1,246 @@
+#include "settings/bitrate_switch.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <utility>
+
+#include "base/duration.hpp"
+#include "drive/bitrate.hpp"
+#include "session/scan.hpp"
+
+namespace servoctl::settings {
+namespace {
+
+using drive::bitrate_text;
+using session::Identity;
+
+/// Until the NMT command has left the controller, and before any drive has started again: 2 ms of it at
+/// 50 kbit/s.
+constexpr Duration kCommandLeaves = std::chrono::milliseconds(20);
+/// From an NMT reset to the boot-up message.
+constexpr Duration kBooting = std::chrono::seconds(10);
+constexpr Duration kLookAgain = std::chrono::seconds(2);
+/// So long may an adapter take to come up.
+constexpr Duration kInterfaceComesUp = std::chrono::seconds(2);
+
+bool restarts_over_bus(const AddressChange& change) {
+  return change.restart != drive::NmtRules::Restart::power_cycle;
+}
+
+std::string left_behind_text(const BitrateSwitch& plan, std::span<const std::uint8_t> others) {
+  return fmt::format("node{} {} would be left at {}; -n all names all that answer",
+                     others.size() == 1 ? "" : "s", fmt::join(others, ", "),
+                     plan.before.bitrate ? bitrate_text(*plan.before.bitrate) : "the old bitrate");
+}
+
+/// All drives and the interface, between two bitrates.
+class SwitchRun {
+ public:
+  SwitchRun(show::Desk& desk, BitrateSwitch& plan, std::span<const AddressChange> changes,
+            const AddressOptions& options)
+      : desk_(&desk), session_(desk.session), plan_(&plan), options_(&options) {
+    for (auto change : changes) {
+      change.bitrate = plan.bitrate;
+      before_.push_back(change.node);
+      after_.push_back(change.to);
+      changes_.push_back(std::move(change));
+    }
+    over_bus_ = restarts_over_bus(changes_.front());
+  }
+
+  void run(std::span<AddressOutcome> outcomes) {
+    const auto done = move();
+    if (!done) {
+      for (auto& outcome : outcomes) outcome.end = end_;
+      outcomes.front().error = done.error();
+      return;
+    }
+    for (std::size_t i = 0; i < changes_.size(); ++i)
+      outcomes[i] = find_again(*desk_, changes_[i], std::move(outcomes[i]));
+  }
+
+ private:
+  Result<void> move() {
+    deadline_ = session_->now() + (over_bus_ ? kBooting : options_->patience);
+    if (const auto gone = over_bus_ ? reset_all() : wait_until_off(); !gone) return gone;
+    for (const auto node : before_) session::forget_node(*session_, node);
+    for (const auto node : after_) session::forget_node(*session_, node);
+    boots_ = boots();
+    end_ = AddressEnd::failed;
+    if (const auto set = take_to(plan_->bitrate); !set) return fail(left_alone(set.error()));
+    const auto found = wait_until_on();
+    if (!found) return fail(somewhere(found.error()));
+    return *found > 0 ? Result<void>() : look_at_old();
+  }
+
+  Result<void> reset_all() {
+    if (const auto sent = session::restart_node(*session_, 0, changes_.front().restart); !sent) return sent;
+    const auto left = session_->wait([] { return false; }, session_->now() + kCommandLeaves);
+    // The command has gone out: nobody can stop between the two bitrates any more.
+    return left || left.error().code == Errc::interrupted ? Result<void>() : fail(left.error());
+  }
+
+  Result<void> wait_until_off() {
+    desk_->tell(
+        fmt::format("switch all drives of the bus off and on again now: they are waited for at {} for {}\n",
+                    bitrate_text(plan_->bitrate), to_string(options_->patience)));
+    while (session_->now() < deadline_) {
+      const auto there = session::scan(*session_, before_);
+      if (!there && there.error().code == Errc::interrupted) return fail(there.error());
+      // Where nobody is left, nobody acknowledges either.
+      if (!there || there->empty()) return {};
+      const auto waited = session_->wait([] { return false; }, session_->now() + std::chrono::seconds(1));
+      if (!waited && waited.error().code == Errc::interrupted) return fail(waited.error());
+      if (!waited) return {};
+    }
+    return fail(drive_error(Errc::negative, before_.front(),
+                            fmt::format("still answers: the drives were not switched off, and {} stays at {}",
+                                        plan_->link->name(), session::settings_text(plan_->before)),
+                            "what was written holds from their next start; the same line waits again"));
+  }
+
+  Result<void> take_to(std::uint32_t bitrate) {
+    const auto now = plan_->link->state();
+    if (!now) return fail(now.error());
+    const auto steps = session::plan_bus_up(plan_->link->name(), *now, {.bitrate = bitrate});
+    if (!steps) return fail(steps.error());
+    if (const auto set = session::set_up(*plan_->link, *now, *steps); !set) return set;
+    return session_->network().recover(session_->now() + kInterfaceComesUp);
+  }
+
+  std::vector<std::uint32_t> boots() const {
+    std::vector<std::uint32_t> out;
+    for (const auto node : after_) out.push_back(session_->watch().boots(node));
+    return out;
+  }
+
+  /// How many are there. Where no one has started yet there is nobody who would acknowledge a question.
+  Result<std::size_t> wait_until_on() {
+    const auto booted = [&] {
+      const auto now = boots();
+      std::size_t out = 0;
+      for (std::size_t i = 0; i < now.size(); ++i) out += now[i] > boots_[i] ? 1 : 0;
+      return out;
+    };
+    std::size_t found = 0;
+    bool looked = false;
+    for (bool over = false; !over && found < after_.size();) {
+      const auto until = std::min(deadline_, session_->now() + kLookAgain);
+      const auto waited = session_->wait([&] { return !looked && booted() == after_.size(); }, until);
+      over = session_->now() >= deadline_;
+      if (waited && !over_bus_ && !over && booted() == 0) continue;
+      looked = true;
+      const auto there =
+          waited ? session::scan(*session_, after_) : Result<std::vector<Identity>>(fail(waited.error()));
+      if (there) {
+        found = there->size();
+      } else if (over || there.error().code == Errc::interrupted) {
+        return fail(there.error());
+      } else {
+        // Nobody has started yet who would acknowledge.
+        (void)session_->network().recover(until);
+      }
+    }
+    return found;
+  }
+
+  /// None took the bitrate: perhaps none was restarted.
+  Result<void> look_at_old() {
+    const auto name = plan_->link->name();
+    auto error = drive_error(Errc::timeout, after_.front(),
+                             fmt::format("no drive answers at {}", bitrate_text(plan_->bitrate)),
+                             fmt::format("{} has it now; switch the drives off and on, then `scan`", name));
+    if (!plan_->before.bitrate || !take_to(*plan_->before.bitrate)) return fail(std::move(error));
+    const auto there = session::scan(*session_, before_);
+    if (!there || there->empty()) {
+      if (!take_to(plan_->bitrate)) error.hint = "`bus status` shows the interface";
+      return fail(std::move(error));
+    }
+    end_ = AddressEnd::awaits_restart;
+    const auto old = bitrate_text(*plan_->before.bitrate);
+    return fail(drive_error(
+        Errc::negative, there->front().node,
+        fmt::format(
+            "still answers at {}: the restart did not put its new bitrate in force; {} is at {} again", old,
+            name, old),
+        over_bus_ ? "add --wait 5min: it asks for switching off and on" : "switch the drives off and on"));
+  }
+
+  Error left_alone(Error error) const {
+    error.message = fmt::format("the drives start at {} now, and {} could not follow: {}",
+                                bitrate_text(plan_->bitrate), plan_->link->name(), error.message);
+    return error;
+  }
+
+  Error somewhere(Error error) const {
+    error.message = fmt::format("{} is at {} now; where the drives are was not seen: {}", plan_->link->name(),
+                                bitrate_text(plan_->bitrate), error.message);
+    if (error.hint.empty()) error.hint = "`scan` shows who answers";
+    return error;
+  }
+
+  show::Desk* desk_;
+  session::Session* session_;
+  BitrateSwitch* plan_;
+  const AddressOptions* options_;
+  std::vector<AddressChange> changes_;
+  std::vector<std::uint8_t> before_;
+  std::vector<std::uint8_t> after_;
+  std::vector<std::uint32_t> boots_;  ///< Of `after_`, when they went.
+  bool over_bus_ = false;
+  TimePoint deadline_{};
+  AddressEnd end_ = AddressEnd::awaits_restart;
+};
+
+}  // namespace
+
+Result<BitrateSwitch> plan_switch(show::Desk& desk, std::unique_ptr<can::LinkControl> link,
+                                  std::span<const AddressChange> changes, std::uint32_t bitrate,
+                                  const AddressOptions& options, const std::optional<bool>& may_change) {
+  BitrateSwitch out{.bitrate = bitrate};
+  if (!link || changes.empty()) return out;
+  const auto now = link->state();
+  if (!now) return fail(now.error());
+  if (now->kind != "can") return out;
+  out.link = std::move(link);
+  out.before = *now;
+  if (now->bitrate == bitrate) {
+    out.why_not = fmt::format("it has {} already", bitrate_text(bitrate));
+  } else if (may_change == false) {
+    out.why_not = "it needs the right CAP_NET_ADMIN: " + can::right_command();
+  } else if (!restarts_over_bus(changes.front()) && options.patience == Duration::zero()) {
+    out.why_not = "the drives have to be switched off and on: with --wait 5min they are waited for";
+  } else {
+    std::vector<std::uint8_t> drives;
+    for (const auto& change : changes) drives.push_back(change.node);
+    const auto others = session::nodes_beside(*desk.session, drives);
+    if (!others) return fail(others.error());
+    if (!others->empty()) out.why_not = left_behind_text(out, *others);
+  }
+  return out;
+}
+
+std::string switch_text(const BitrateSwitch& plan, const AddressChange& change) {
+  return fmt::format("{}, and {} goes to {} (from {})",
+                     restarts_over_bus(change)
+                         ? fmt::format("then all are restarted at once (NMT {})", drive::name(change.restart))
+                         : std::string("then all have to be switched off and on"),
+                     plan.link->name(), bitrate_text(plan.bitrate), session::settings_text(plan.before));
+}
+
+std::string switch_commands(const BitrateSwitch& plan, const AddressChange& change) {
+  const auto& name = plan.link->name();
+  return fmt::format(
+      "{}, `{}`, `{}`",
+      restarts_over_bus(change) ? fmt::format("{} (NMT {} to all)", session::restart_frame(0, change.restart),
+                                              drive::name(change.restart))
+                                : std::string("when the drives are off"),
+      can::ip_command(name, {.up = false}), can::ip_command(name, {.up = true, .bitrate = plan.bitrate}));
+}
+
+void follow_bitrate(show::Desk& desk, BitrateSwitch& plan, std::span<const AddressChange> changes,
+                    std::span<AddressOutcome> outcomes, const AddressOptions& options) {
+  SwitchRun(desk, plan, changes, options).run(outcomes);
+}
+
+}  // namespace servoctl::settings
