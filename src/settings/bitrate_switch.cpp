@@ -119,7 +119,7 @@ class SwitchRun {
     const auto booted = [&] {
       const auto now = boots();
       std::size_t out = 0;
-      for (std::size_t i = 0; i < now.size(); ++i) out += now[i] > boots_[i] ? 1 : 0;
+      for (std::size_t i = 0; i < now.size(); ++i) out += now[i] > boots_[i] ? 1U : 0U;
       return out;
     };
     std::size_t found = 0;

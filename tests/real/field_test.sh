@@ -195,7 +195,22 @@ check_slcan() {
   run bus up can0; expect 0 '^state +error-active'
 }
 
+# Simulated drives keep their place on the wire at any bitrate: what is shown here is the interface of the kernel.
+check_drives_and_interface() {
+  simulate gsd600@3
+  run address --bitrate 500k -n all -d gsd600 -b can0 --dry-run
+  expect 0 '000#8100 \(NMT reset node to all\), `ip link set can0 down`, `ip link set can0 up type can bitrate 500000`'
+  [ "$(bitrate can0)" = 1000000 ] || fail "a dry run changed can0"
+  run address --bitrate 500k -n all -d gsd600 -b can0; expect 8 'and can0 goes to 500 kbit/s \(from 1 Mbit/s'
+  [ "$(bitrate can0)" = 1000000 ] || fail "a question that was not answered changed can0"
+  run address --bitrate 500k -n all -d gsd600 -b can0 --yes; expect 0 'found at its new bitrate'
+  is_at 500000 || fail "can0 did not go to 500000 with the drive"
+  kill "${background[-1]}"; wait "${background[-1]}" 2>/dev/null
+  run bus up can0 --bitrate 1M --yes; expect 0 '^bitrate +1 Mbit/s'
+}
+
 check_up_and_down
+check_drives_and_interface
 check_status
 check_holders
 check_right
